@@ -1,0 +1,317 @@
+//! Building a scene: the one place where geometry is checked.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use glam::DVec3;
+use thiserror::Error;
+
+use crate::{
+    BoundingBox, BoundingSphere, Camera, FaceId, MAX_REFLECTANCE, Material, MaterialId, Rgb, Scene, Triangle,
+    VertexId,
+};
+
+/// Why a scene cannot be built.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SceneError {
+    /// There is nothing that light could meet.
+    #[error("the scene has no triangle with an area ({dropped} without one were dropped)")]
+    Empty {
+        /// Degenerate triangles that were dropped.
+        dropped: u64,
+    },
+    /// More vertices or triangles than 32-bit numbers can count.
+    #[error("the scene has more than {} {what}", u32::MAX)]
+    TooLarge {
+        /// `vertices`, `triangles` or `materials`.
+        what: &'static str,
+    },
+    /// A polygon names a vertex or material that was not added.
+    #[error("polygon {face} refers to {what} {index}, but only {count} were added")]
+    OutOfRange {
+        /// Number of the polygon.
+        face: u32,
+        /// `vertex` or `material`.
+        what: &'static str,
+        /// The number that it asks for.
+        index: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// A material has a negative, infinite or undefined colour.
+    #[error("material \"{name}\" has the {what} ({}, {}, {}), which must be finite and not negative", value.x, value.y, value.z)]
+    BadMaterial {
+        /// Name of the material.
+        name: String,
+        /// `reflectance` or `exitance`.
+        what: &'static str,
+        /// The value found.
+        value: Rgb,
+    },
+}
+
+/// Something that was changed or left out while a scene was read.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warning {
+    /// Triangles without an area, or with coordinates that are not finite, were left out.
+    DroppedTriangles {
+        /// How many.
+        count: u64,
+    },
+    /// A material reflected as much light as it gets, or more: its reflectance was set to [`MAX_REFLECTANCE`].
+    ClampedReflectance {
+        /// Name of the material.
+        material: String,
+        /// The largest band of the reflectance that the file asks for.
+        asked: f64,
+    },
+    /// A part of the file has no meaning here, or is missing, and was passed over.
+    Ignored {
+        /// What it was, and what happens instead.
+        what: String,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DroppedTriangles { count } => {
+                write!(f, "{count} triangles without an area were left out")
+            }
+            Self::ClampedReflectance { material, asked } => write!(
+                f,
+                "material \"{material}\" reflects {asked:.4} of the light it gets; {MAX_REFLECTANCE} is used, \
+                 because a surface must absorb some"
+            ),
+            Self::Ignored { what } => f.write_str(what),
+        }
+    }
+}
+
+/// A new scene and what was changed to make it one.
+#[derive(Clone, Debug)]
+pub struct Built {
+    /// The scene.
+    pub scene: Scene,
+    /// What was changed or left out.
+    pub warnings: Vec<Warning>,
+}
+
+/// Collects vertices, materials and polygons, and checks them.
+#[derive(Clone, Debug, Default)]
+pub struct SceneBuilder {
+    vertices: Vec<DVec3>,
+    materials: Vec<Material>,
+    cameras: Vec<Camera>,
+    triangles: Vec<Triangle>,
+    faces: u32,
+    warnings: Vec<Warning>,
+}
+
+impl SceneBuilder {
+    /// An empty scene.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a position. Equal positions become one vertex when the scene is built.
+    pub fn add_vertex(&mut self, position: DVec3) -> VertexId {
+        self.vertices.push(position);
+        VertexId::new(self.vertices.len() - 1)
+    }
+
+    /// Adds a material.
+    pub fn add_material(&mut self, material: Material) -> MaterialId {
+        self.materials.push(material);
+        MaterialId::new(self.materials.len() - 1)
+    }
+
+    /// Adds a camera.
+    pub fn add_camera(&mut self, camera: Camera) {
+        self.cameras.push(camera);
+    }
+
+    /// Adds a warning that the reader of a file wants to pass on.
+    pub fn warn(&mut self, warning: Warning) {
+        self.warnings.push(warning);
+    }
+
+    /// Adds a polygon, counter-clockwise seen from its front. It is cut into the fan of triangles
+    /// `(0, 1, 2), (0, 2, 3), …`; with fewer than three corners it adds nothing.
+    pub fn add_polygon(&mut self, corners: &[VertexId], material: MaterialId) -> FaceId {
+        let face = FaceId(self.faces);
+        self.faces += 1;
+        for i in 2..corners.len() {
+            self.triangles.push(Triangle {
+                vertices: [corners[0], corners[i - 1], corners[i]],
+                material,
+                face,
+                source: self.triangles.len() as u32,
+            });
+        }
+        face
+    }
+
+    /// Checks everything, welds equal vertices, drops triangles without an area and clamps reflectances.
+    ///
+    /// # Errors
+    ///
+    /// If nothing is left, an index is out of range, or a material has an impossible colour.
+    pub fn build(mut self) -> Result<Built, SceneError> {
+        self.check_sizes()?;
+        self.check_indices()?;
+        self.check_materials()?;
+        self.drop_degenerate_triangles();
+        if self.triangles.is_empty() {
+            let dropped = self.warnings.iter().map(|w| match w {
+                Warning::DroppedTriangles { count } => *count,
+                _ => 0,
+            });
+            return Err(SceneError::Empty { dropped: dropped.sum() });
+        }
+        self.weld();
+        let (Some(bounding_box), Some(bounding_sphere)) =
+            (BoundingBox::of(self.vertices.iter().copied()), BoundingSphere::of(&self.vertices))
+        else {
+            return Err(SceneError::Empty { dropped: 0 });
+        };
+        let scene = Scene {
+            vertices: self.vertices,
+            triangles: self.triangles,
+            materials: self.materials,
+            cameras: self.cameras,
+            bounding_box,
+            bounding_sphere,
+        };
+        Ok(Built { scene, warnings: self.warnings })
+    }
+
+    fn check_sizes(&self) -> Result<(), SceneError> {
+        for (what, count) in [
+            ("vertices", self.vertices.len()),
+            ("triangles", self.triangles.len()),
+            ("materials", self.materials.len()),
+        ] {
+            if u32::try_from(count).is_err() {
+                return Err(SceneError::TooLarge { what });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_indices(&self) -> Result<(), SceneError> {
+        for t in &self.triangles {
+            let check = |what, index: u32, count: usize| {
+                if (index as usize) < count {
+                    Ok(())
+                } else {
+                    Err(SceneError::OutOfRange { face: t.face.0, what, index, count })
+                }
+            };
+            for v in t.vertices {
+                check("vertex", v.0, self.vertices.len())?;
+            }
+            check("material", t.material.0, self.materials.len())?;
+        }
+        Ok(())
+    }
+
+    fn check_materials(&mut self) -> Result<(), SceneError> {
+        for m in &mut self.materials {
+            for (what, value) in [("reflectance", m.reflectance), ("exitance", m.exitance)] {
+                if !value.is_finite() || value.min_element() < 0.0 {
+                    return Err(SceneError::BadMaterial { name: m.name.clone(), what, value });
+                }
+            }
+            let asked = m.reflectance.max_element();
+            if asked > MAX_REFLECTANCE {
+                self.warnings.push(Warning::ClampedReflectance { material: m.name.clone(), asked });
+                m.reflectance = m.reflectance.min(Rgb::splat(MAX_REFLECTANCE));
+            }
+        }
+        Ok(())
+    }
+
+    /// Leaves out triangles that are a line or a point to the precision of the coordinates.
+    fn drop_degenerate_triangles(&mut self) {
+        let before = self.triangles.len();
+        let vertices = &self.vertices;
+        self.triangles.retain(|t| {
+            let [a, b, c] = t.vertices.map(|v| vertices[v.index()]);
+            let (ab, bc, ca) = (b - a, c - b, a - c);
+            let longest = ab.length_squared().max(bc.length_squared()).max(ca.length_squared());
+            let doubled_area = ab.cross(ca).length();
+            // Also false for NaN and infinite coordinates.
+            doubled_area.is_finite() && doubled_area > 1e-12 * longest
+        });
+        let count = (before - self.triangles.len()) as u64;
+        if count > 0 {
+            self.warnings.push(Warning::DroppedTriangles { count });
+        }
+    }
+
+    /// Makes one vertex of equal positions, in the order of their first use, and forgets unused ones.
+    fn weld(&mut self) {
+        let mut by_position: HashMap<[u64; 3], VertexId> = HashMap::with_capacity(self.vertices.len());
+        let mut welded: Vec<DVec3> = Vec::new();
+        for t in &mut self.triangles {
+            for v in &mut t.vertices {
+                // Adding zero turns −0 into +0, so that equal numbers have equal bits.
+                let p = self.vertices[v.index()] + DVec3::ZERO;
+                *v = *by_position.entry(p.to_array().map(f64::to_bits)).or_insert_with(|| {
+                    welded.push(p);
+                    VertexId::new(welded.len() - 1)
+                });
+            }
+        }
+        self.vertices = welded;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner_triangle(builder: &mut SceneBuilder, scale: f64, material: MaterialId) {
+        let v = [DVec3::ZERO, DVec3::X * scale, DVec3::Y * scale].map(|p| builder.add_vertex(p));
+        builder.add_polygon(&v, material);
+    }
+
+    #[test]
+    fn equal_positions_are_welded_and_degenerate_triangles_counted() {
+        let mut b = SceneBuilder::new();
+        let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+        corner_triangle(&mut b, 0.0, m);
+        corner_triangle(&mut b, 1.0, m);
+        corner_triangle(&mut b, 2.0, m);
+        corner_triangle(&mut b, f64::NAN, m);
+        let built = b.build().unwrap();
+        assert_eq!(built.scene.vertices().len(), 5);
+        assert_eq!(built.scene.triangles().iter().map(|t| t.source).collect::<Vec<_>>(), [1, 2]);
+        assert_eq!(built.warnings, [Warning::DroppedTriangles { count: 2 }]);
+    }
+
+    #[test]
+    fn full_reflectance_is_clamped_with_a_warning() {
+        let mut b = SceneBuilder::new();
+        let m = b.add_material(Material::diffuse("white", Rgb::new(1.0, 0.5, 2.0)));
+        corner_triangle(&mut b, 1.0, m);
+        let built = b.build().unwrap();
+        assert_eq!(built.scene.materials()[0].reflectance, Rgb::new(MAX_REFLECTANCE, 0.5, MAX_REFLECTANCE));
+        assert_eq!(built.warnings.len(), 1);
+    }
+
+    #[test]
+    fn impossible_input_is_refused() {
+        let mut b = SceneBuilder::new();
+        assert_eq!(b.clone().build().unwrap_err(), SceneError::Empty { dropped: 0 });
+        let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+        b.add_polygon(&[VertexId(0), VertexId(1), VertexId(7)], m);
+        assert!(matches!(b.build().unwrap_err(), SceneError::OutOfRange { what: "vertex", .. }));
+        let mut b = SceneBuilder::new();
+        let m = b.add_material(Material::diffuse("m", Rgb::new(f64::NAN, 0.0, 0.0)));
+        corner_triangle(&mut b, 1.0, m);
+        assert!(matches!(b.build().unwrap_err(), SceneError::BadMaterial { .. }));
+    }
+}

@@ -1,0 +1,57 @@
+//! Scenes for light transport: triangles, materials and cameras, with readers for glTF and OBJ.
+//!
+//! # Design
+//!
+//! A light-transport solver asks little of a scene: flat triangles, one diffuse material each, and the
+//! knowledge of which side of a triangle is its *front*. [`Scene`] holds exactly that, in double precision
+//! and in world space, with the node trees and file formats already resolved. It is immutable: a scene is
+//! put together by a [`SceneBuilder`], which is the one place where geometry is checked, so that every later
+//! crate may rely on finite coordinates, valid indices, triangles that have an area and reflectances below one.
+//!
+//! What a reader had to leave out or change is never silent: it comes back beside the scene as a list of
+//! [`Warning`]s.
+//!
+//! Indices are typed ([`TriangleId`], [`MaterialId`], …): a triangle number cannot be used where a material
+//! number is meant.
+//!
+//! # Conventions
+//!
+//! * Lengths are metres if the scene says so; the solver never needs to know.
+//! * The *front* of a triangle is the side from which its corners run counter-clockwise.
+//! * Colours are linear Rec. 709 RGB ([`Rgb`]).
+//! * Emission is stored as radiant *exitance* `M` \[W/m²\]: a file's emitted radiance `L` becomes `M = π L`.
+//!
+//! # Example
+//!
+//! ```
+//! use sir_geom::{Material, Rgb, SceneBuilder, shapes::{self, Facing}};
+//! use glam::DVec3;
+//!
+//! let mut builder = SceneBuilder::new();
+//! let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
+//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
+//! let scene = builder.build()?.scene;
+//! assert_eq!(scene.triangles().len(), 12);
+//! assert!((scene.total_area() - 6.0).abs() < 1e-12);
+//! # Ok::<(), sir_geom::SceneError>(())
+//! ```
+
+mod bounds;
+mod builder;
+mod camera;
+mod index;
+mod material;
+mod scene;
+pub mod shapes;
+
+pub use bounds::{BoundingBox, BoundingSphere};
+pub use builder::{Built, SceneBuilder, SceneError, Warning};
+pub use camera::{Camera, Projection};
+pub use index::{FaceId, MaterialId, TriangleId, VertexId};
+pub use material::{MAX_REFLECTANCE, Material, Sides};
+pub use scene::{Scene, Side, Triangle};
+
+/// A colour or a spectral quantity in three bands: linear Rec. 709 red, green and blue.
+///
+/// The unit is that of the quantity: 1 for a reflectance, W/m² for a radiosity, W for a power.
+pub type Rgb = glam::DVec3;

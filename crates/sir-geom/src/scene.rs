@@ -1,0 +1,159 @@
+//! The scene: what light can meet.
+
+use glam::DVec3;
+
+use crate::{BoundingBox, BoundingSphere, Camera, FaceId, Material, MaterialId, Sides, TriangleId, VertexId};
+
+/// One side of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Side {
+    /// The side from which the corners run counter-clockwise.
+    Front,
+    /// The other one.
+    Back,
+}
+
+impl Side {
+    /// The opposite side.
+    #[inline]
+    #[must_use]
+    pub fn flip(self) -> Self {
+        match self {
+            Self::Front => Self::Back,
+            Self::Back => Self::Front,
+        }
+    }
+}
+
+/// A triangle of a [`Scene`]. Its area is never zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Triangle {
+    /// Corners, counter-clockwise seen from the front.
+    pub vertices: [VertexId; 3],
+    /// Material of both sides.
+    pub material: MaterialId,
+    /// The polygon that this triangle is a part of.
+    pub face: FaceId,
+    /// Its number, from 0, among all triangles of the file in file order, those that were dropped included.
+    pub source: u32,
+}
+
+/// Triangles, materials and cameras in world space.
+///
+/// Made by a [`SceneBuilder`](crate::SceneBuilder), which guarantees: at least one triangle, finite coordinates,
+/// indices in range, areas above zero, reflectances in `[0, MAX_REFLECTANCE]`, finite non-negative exitances.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub(crate) vertices: Vec<DVec3>,
+    pub(crate) triangles: Vec<Triangle>,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) cameras: Vec<Camera>,
+    pub(crate) bounding_box: BoundingBox,
+    pub(crate) bounding_sphere: BoundingSphere,
+}
+
+impl Scene {
+    /// Positions, indexed by [`VertexId`]. No two are equal.
+    #[must_use]
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// Triangles, indexed by [`TriangleId`], in file order.
+    #[must_use]
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// Materials, indexed by [`MaterialId`].
+    #[must_use]
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// Cameras in file order.
+    #[must_use]
+    pub fn cameras(&self) -> &[Camera] {
+        &self.cameras
+    }
+
+    /// All triangle numbers in order.
+    pub fn triangle_ids(&self) -> impl ExactSizeIterator<Item = TriangleId> + use<> {
+        (0..self.triangles.len() as u32).map(TriangleId)
+    }
+
+    /// The triangle with this number.
+    #[inline]
+    #[must_use]
+    pub fn triangle(&self, id: TriangleId) -> &Triangle {
+        &self.triangles[id.index()]
+    }
+
+    /// The three corners of a triangle.
+    #[inline]
+    #[must_use]
+    pub fn corners(&self, id: TriangleId) -> [DVec3; 3] {
+        self.triangle(id).vertices.map(|v| self.vertices[v.index()])
+    }
+
+    /// The material of a triangle.
+    #[inline]
+    #[must_use]
+    pub fn material(&self, id: TriangleId) -> &Material {
+        &self.materials[self.triangle(id).material.index()]
+    }
+
+    /// Area of a triangle.
+    #[must_use]
+    pub fn area(&self, id: TriangleId) -> f64 {
+        0.5 * self.scaled_normal(id).length()
+    }
+
+    /// Unit normal on the front of a triangle.
+    #[must_use]
+    pub fn normal(&self, id: TriangleId) -> DVec3 {
+        self.scaled_normal(id).normalize()
+    }
+
+    /// Normal on the front of a triangle, twice as long as its area.
+    fn scaled_normal(&self, id: TriangleId) -> DVec3 {
+        let [a, b, c] = self.corners(id);
+        (b - a).cross(c - a)
+    }
+
+    /// Whether the given side of a triangle reflects or emits; the other kind only absorbs.
+    #[inline]
+    #[must_use]
+    pub fn is_active(&self, id: TriangleId, side: Side) -> bool {
+        side == Side::Front || self.material(id).sides == Sides::Both
+    }
+
+    /// Emitted exitance `M` \[W/m²\] of a side of a triangle.
+    #[must_use]
+    pub fn exitance(&self, id: TriangleId, side: Side) -> crate::Rgb {
+        let material = self.material(id);
+        match side {
+            Side::Front => material.exitance,
+            Side::Back if material.sides == Sides::Both && material.back_emits => material.exitance,
+            Side::Back => crate::Rgb::ZERO,
+        }
+    }
+
+    /// Sum of the areas of all triangles (one side each).
+    #[must_use]
+    pub fn total_area(&self) -> f64 {
+        self.triangle_ids().map(|t| self.area(t)).sum()
+    }
+
+    /// Smallest axis-aligned box around the triangles.
+    #[must_use]
+    pub fn bounding_box(&self) -> BoundingBox {
+        self.bounding_box
+    }
+
+    /// A sphere that strictly encloses the triangles.
+    #[must_use]
+    pub fn bounding_sphere(&self) -> BoundingSphere {
+        self.bounding_sphere
+    }
+}

@@ -1,0 +1,43 @@
+//! Patches: the elements on which radiosity is solved.
+//!
+//! # Design
+//!
+//! *Trace coarse, record fine.* A patch is a piece of an input triangle, cut by a regular subdivision: each edge
+//! in `n` equal parts, which gives `n²` congruent triangles. Nothing is stored per patch: area, corners and number
+//! follow from the triangle's `n` and the barycentric coordinates of a hit, in constant time. An acceleration
+//! structure therefore holds the input triangles only, however fine the patches are.
+//!
+//! Power lives on *sides* ([`SideId`]): a patch of a one-sided triangle has one, of a two-sided triangle two.
+//! The sides of one triangle are consecutive numbers.
+//!
+//! Instead of cutting, [`Subdivision::PerFace`] makes one patch of all triangles of a polygon, as the classic
+//! radiosity systems with one element per rectangle have it.
+//!
+//! # Example
+//!
+//! ```
+//! use glam::DVec3;
+//! use sir_geom::{Material, Rgb, SceneBuilder, Side, TriangleId, shapes::{self, Facing}};
+//! use sir_mesh::{Barycentric, PatchMesh, Subdivision};
+//!
+//! let mut builder = SceneBuilder::new();
+//! let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
+//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
+//! let scene = builder.build()?.scene;
+//!
+//! let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01))?;
+//! let (triangle, hit) = (TriangleId(3), Barycentric { v: 0.3, w: 0.6 });
+//! let patch = mesh.patch_at(triangle, hit);
+//! assert!(mesh.patches_of(triangle).contains(&patch.0));
+//! assert!(mesh.patch_area(triangle) <= 0.01);
+//! assert_eq!(mesh.side_of(triangle, patch, Side::Back), None, "this triangle is one-sided");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod barycentric;
+mod divisions;
+mod patches;
+
+pub use barycentric::Barycentric;
+pub use divisions::Subdivision;
+pub use patches::{MeshError, PatchId, PatchMesh, SideId};

@@ -1,0 +1,298 @@
+//! The patches of a scene.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use sir_geom::{FaceId, Scene, Side, Sides, TriangleId, typed_index};
+use thiserror::Error;
+
+use crate::barycentric::{self, Barycentric};
+use crate::divisions::Subdivision;
+
+typed_index!(
+    /// A patch of a [`PatchMesh`].
+    PatchId
+);
+typed_index!(
+    /// One active side of a patch: the thing that holds power.
+    SideId
+);
+
+/// Why patches cannot be made.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum MeshError {
+    /// A limit that must be positive is not.
+    #[error("the largest {what} of a patch is {value}, but it must be a positive number")]
+    NotPositive {
+        /// `area` or `edge`.
+        what: &'static str,
+        /// The limit asked for.
+        value: f64,
+    },
+    /// More patches than 32-bit numbers can count.
+    #[error("so fine a subdivision makes more than {} patches or sides", u32::MAX)]
+    TooMany,
+}
+
+/// The patches of one triangle.
+#[derive(Clone, Copy, Debug)]
+struct TrianglePatches {
+    first_patch: u32,
+    first_side: u32,
+    /// Parts of an edge, `n`; the triangle has `n²` patches.
+    divisions: u32,
+    /// Sides per patch, 1 or 2.
+    sides: u32,
+    /// Area of each patch.
+    area: f64,
+}
+
+/// All patches of a scene. Uses 24 bytes per *triangle* and nothing per patch.
+#[derive(Clone, Debug)]
+pub struct PatchMesh {
+    triangles: Vec<TrianglePatches>,
+    patches: u32,
+    sides: u32,
+}
+
+impl PatchMesh {
+    /// Makes the patches of a scene.
+    ///
+    /// # Errors
+    ///
+    /// If a limit is not positive, or there would be more than 2³² patches.
+    pub fn new(scene: &Scene, subdivision: Subdivision) -> Result<Self, MeshError> {
+        let divisions = subdivision.divisions(scene)?;
+        let mut mesh = Self { triangles: Vec::with_capacity(divisions.len()), patches: 0, sides: 0 };
+        for (t, &n) in scene.triangle_ids().zip(&divisions) {
+            let per_triangle = n.checked_mul(n).ok_or(MeshError::TooMany)?;
+            let sides = match scene.material(t).sides {
+                Sides::Front => 1,
+                Sides::Both => 2,
+            };
+            mesh.triangles.push(TrianglePatches {
+                first_patch: mesh.patches,
+                first_side: mesh.sides,
+                divisions: n,
+                sides,
+                area: scene.area(t) / f64::from(per_triangle),
+            });
+            let more = |count: u32, by: u32| count.checked_add(by).ok_or(MeshError::TooMany);
+            mesh.patches = more(mesh.patches, per_triangle)?;
+            mesh.sides = more(mesh.sides, per_triangle.checked_mul(sides).ok_or(MeshError::TooMany)?)?;
+        }
+        if subdivision == Subdivision::PerFace {
+            mesh.merge_faces(scene);
+        }
+        Ok(mesh)
+    }
+
+    /// Makes one patch of the (undivided) triangles of each polygon.
+    fn merge_faces(&mut self, scene: &Scene) {
+        let mut areas: HashMap<FaceId, f64> = HashMap::new();
+        for (t, record) in scene.triangles().iter().zip(&self.triangles) {
+            *areas.entry(t.face).or_default() += record.area;
+        }
+        let mut first: HashMap<FaceId, (u32, u32)> = HashMap::new();
+        (self.patches, self.sides) = (0, 0);
+        for (t, record) in scene.triangles().iter().zip(&mut self.triangles) {
+            (record.first_patch, record.first_side) = *first.entry(t.face).or_insert_with(|| {
+                let numbers = (self.patches, self.sides);
+                self.patches += 1;
+                self.sides += record.sides;
+                numbers
+            });
+            record.area = areas[&t.face];
+        }
+    }
+
+    /// Number of patches.
+    #[must_use]
+    pub fn patch_count(&self) -> usize {
+        self.patches as usize
+    }
+
+    /// Number of active sides, at most twice the number of patches.
+    #[must_use]
+    pub fn side_count(&self) -> usize {
+        self.sides as usize
+    }
+
+    /// Numbers of the patches of a triangle.
+    #[must_use]
+    pub fn patches_of(&self, triangle: TriangleId) -> Range<u32> {
+        let r = &self.triangles[triangle.index()];
+        r.first_patch..r.first_patch + r.divisions * r.divisions
+    }
+
+    /// Parts into which each edge of a triangle is cut.
+    #[must_use]
+    pub fn divisions(&self, triangle: TriangleId) -> u32 {
+        self.triangles[triangle.index()].divisions
+    }
+
+    /// Area of each patch of a triangle; of a merged face, the area of the whole face.
+    #[inline]
+    #[must_use]
+    pub fn patch_area(&self, triangle: TriangleId) -> f64 {
+        self.triangles[triangle.index()].area
+    }
+
+    /// The patch of a triangle in which a point lies.
+    #[inline]
+    #[must_use]
+    pub fn patch_at(&self, triangle: TriangleId, point: Barycentric) -> PatchId {
+        let r = &self.triangles[triangle.index()];
+        PatchId(r.first_patch + barycentric::locate(r.divisions, point))
+    }
+
+    /// The given side of a patch of a triangle; `None` if that side does not take part in light transport.
+    #[inline]
+    #[must_use]
+    pub fn side_of(&self, triangle: TriangleId, patch: PatchId, side: Side) -> Option<SideId> {
+        let r = &self.triangles[triangle.index()];
+        let within = (patch.0 - r.first_patch) * r.sides;
+        match side {
+            Side::Front => Some(SideId(r.first_side + within)),
+            Side::Back if r.sides == 2 => Some(SideId(r.first_side + within + 1)),
+            Side::Back => None,
+        }
+    }
+
+    /// The given side of the patch in which a point of a triangle lies.
+    #[inline]
+    #[must_use]
+    pub fn side_at(&self, triangle: TriangleId, point: Barycentric, side: Side) -> Option<SideId> {
+        self.side_of(triangle, self.patch_at(triangle, point), side)
+    }
+
+    /// Corners of a patch as points of its triangle, in the triangle's orientation. For a merged face, those
+    /// of the given triangle.
+    #[must_use]
+    pub fn patch_corners(&self, triangle: TriangleId, patch: PatchId) -> [Barycentric; 3] {
+        let r = &self.triangles[triangle.index()];
+        barycentric::corners(r.divisions, patch.0 - r.first_patch)
+    }
+
+    /// Calls `visit` once for every active side, in the order of [`SideId`], with one triangle of its patch.
+    pub fn for_each_side(&self, mut visit: impl FnMut(TriangleId, PatchId, Side, SideId)) {
+        let mut next = 0;
+        for (t, r) in self.triangles.iter().enumerate() {
+            let triangle = TriangleId::new(t);
+            for patch in self.patches_of(triangle).map(PatchId) {
+                for side in [Side::Front, Side::Back] {
+                    if let Some(id) = self.side_of(triangle, patch, side)
+                        && id.0 >= next
+                    {
+                        visit(triangle, patch, side, id);
+                        next = id.0 + 1;
+                    }
+                }
+            }
+            debug_assert!(next >= r.first_side);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use proptest::prelude::*;
+    use sir_geom::shapes::{self, Facing};
+    use sir_geom::{Material, Rgb, SceneBuilder};
+
+    fn room(sides: Sides) -> Scene {
+        let mut b = SceneBuilder::new();
+        let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)).with_sides(sides));
+        shapes::cuboid(&mut b, DVec3::ZERO, DVec3::new(10.0, 7.0, 3.0), [m; 6], Facing::Inward);
+        shapes::sphere(&mut b, DVec3::new(5.0, 3.0, 1.5), 1.0, 2, Facing::Outward, |_| m);
+        b.build().unwrap().scene
+    }
+
+    fn total_area(scene: &Scene, mesh: &PatchMesh) -> f64 {
+        scene.triangle_ids().map(|t| mesh.patch_area(t) * mesh.patches_of(t).len() as f64).sum()
+    }
+
+    #[test]
+    fn limits_hold_and_areas_add_up() {
+        let scene = room(Sides::Front);
+        for subdivision in
+            [Subdivision::MaxArea(0.02), Subdivision::MaxEdge(0.3), Subdivision::Patches(20_000)]
+        {
+            let mesh = PatchMesh::new(&scene, subdivision).unwrap();
+            assert!((total_area(&scene, &mesh) / scene.total_area() - 1.0).abs() < 1e-12);
+            for t in scene.triangle_ids() {
+                let corners = scene.corners(t);
+                let c = mesh.patch_corners(t, PatchId(mesh.patches_of(t).start)).map(|b| b.point(corners));
+                let area = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).length();
+                assert!((area / mesh.patch_area(t) - 1.0).abs() < 1e-9);
+                match subdivision {
+                    Subdivision::MaxArea(max) => assert!(area <= max * (1.0 + 1e-9)),
+                    Subdivision::MaxEdge(max) => assert!(c[0].distance(c[1]) <= max * (1.0 + 1e-9)),
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_target_count_is_met_closely() {
+        let scene = room(Sides::Front);
+        for target in [332, 1_000, 20_000, 614_778] {
+            let mesh = PatchMesh::new(&scene, Subdivision::Patches(target)).unwrap();
+            let off = mesh.patch_count() as f64 / target as f64 - 1.0;
+            assert!(off.abs() < 1e-3 + 2.0 / target as f64, "{target}: {} patches", mesh.patch_count());
+        }
+        let mesh = PatchMesh::new(&scene, Subdivision::Patches(5)).unwrap();
+        assert_eq!(mesh.patch_count(), scene.triangles().len());
+    }
+
+    #[test]
+    fn one_patch_per_face_shares_numbers_between_triangles() {
+        for (sides, per_patch) in [(Sides::Front, 1), (Sides::Both, 2)] {
+            let scene = room(sides);
+            let mesh = PatchMesh::new(&scene, Subdivision::PerFace).unwrap();
+            assert_eq!(mesh.patch_count(), 6 + 320);
+            assert_eq!(mesh.side_count(), per_patch * mesh.patch_count());
+            assert_eq!(mesh.patches_of(TriangleId(0)), mesh.patches_of(TriangleId(1)));
+            assert!((mesh.patch_area(TriangleId(0)) - 21.0).abs() < 1e-12);
+            let mut visited = Vec::new();
+            mesh.for_each_side(|_, _, _, side| visited.push(side.index()));
+            assert_eq!(visited, (0..mesh.side_count()).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn absurd_limits_are_refused() {
+        let scene = room(Sides::Front);
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(
+                PatchMesh::new(&scene, Subdivision::MaxArea(bad)),
+                Err(MeshError::NotPositive { .. })
+            ));
+        }
+        for huge in [Subdivision::MaxArea(1e-12), Subdivision::MaxEdge(1e-9), Subdivision::Patches(1 << 40)] {
+            assert_eq!(PatchMesh::new(&scene, huge).unwrap_err(), MeshError::TooMany);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_side_has_its_own_number(area in 0.01..5.0f64, v in 0.0..1.0f64, w in 0.0..1.0f64) {
+            let scene = room(Sides::Both);
+            let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(area)).unwrap();
+            let mut seen = vec![false; mesh.side_count()];
+            mesh.for_each_side(|_, _, _, s| assert!(!std::mem::replace(&mut seen[s.index()], true)));
+            prop_assert!(seen.iter().all(|&s| s));
+            for t in scene.triangle_ids() {
+                let point = Barycentric { v, w: w * (1.0 - v) };
+                let patch = mesh.patch_at(t, point);
+                prop_assert!(mesh.patches_of(t).contains(&patch.0));
+                let front = mesh.side_at(t, point, Side::Front).unwrap();
+                let back = mesh.side_at(t, point, Side::Back).unwrap();
+                prop_assert_eq!(back.0, front.0 + 1);
+            }
+        }
+    }
+}
