@@ -40,6 +40,7 @@ mod bounds;
 mod builder;
 mod camera;
 mod index;
+mod line;
 mod material;
 mod scene;
 pub mod shapes;
@@ -48,6 +49,7 @@ pub use bounds::{BoundingBox, BoundingSphere};
 pub use builder::{Built, SceneBuilder, SceneError, Warning};
 pub use camera::{Camera, Projection};
 pub use index::{FaceId, MaterialId, TriangleId, VertexId};
+pub use line::{Barycentric, Line};
 pub use material::{MAX_REFLECTANCE, Material, Sides};
 pub use scene::{Scene, Side, Triangle};
 

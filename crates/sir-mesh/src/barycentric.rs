@@ -4,24 +4,7 @@
 //! `ab`. Row `j`, counted from that edge, has `2(n − j) − 1` of them, upright and inverted in turn. They are
 //! numbered row by row, so row `j` starts at number `j(2n − j)`.
 
-use glam::DVec3;
-
-/// A point of a triangle `(a, b, c)`: `(1 − v − w) a + v b + w c`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Barycentric {
-    /// Weight of the second corner.
-    pub v: f64,
-    /// Weight of the third corner.
-    pub w: f64,
-}
-
-impl Barycentric {
-    /// The point with these coordinates in the triangle with the given corners.
-    #[must_use]
-    pub fn point(self, [a, b, c]: [DVec3; 3]) -> DVec3 {
-        (1.0 - self.v - self.w) * a + self.v * b + self.w * c
-    }
-}
+use sir_geom::Barycentric;
 
 /// The number, below `n²`, of the sub-triangle in which a point lies. Points on a common edge belong to one of
 /// the two; points outside the triangle (by rounding) to the nearest in their row or column.

@@ -17,8 +17,8 @@
 //!
 //! ```
 //! use glam::DVec3;
-//! use sir_geom::{Material, Rgb, SceneBuilder, Side, TriangleId, shapes::{self, Facing}};
-//! use sir_mesh::{Barycentric, PatchMesh, Subdivision};
+//! use sir_geom::{Barycentric, Material, Rgb, SceneBuilder, Side, TriangleId, shapes::{self, Facing}};
+//! use sir_mesh::{PatchMesh, Subdivision};
 //!
 //! let mut builder = SceneBuilder::new();
 //! let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
@@ -38,6 +38,5 @@ mod barycentric;
 mod divisions;
 mod patches;
 
-pub use barycentric::Barycentric;
 pub use divisions::Subdivision;
 pub use patches::{MeshError, PatchId, PatchMesh, SideId};

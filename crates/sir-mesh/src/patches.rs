@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use sir_geom::{FaceId, Scene, Side, Sides, TriangleId, typed_index};
+use sir_geom::{Barycentric, FaceId, Scene, Side, Sides, TriangleId, typed_index};
 use thiserror::Error;
 
-use crate::barycentric::{self, Barycentric};
+use crate::barycentric;
 use crate::divisions::Subdivision;
 
 typed_index!(
