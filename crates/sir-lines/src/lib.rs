@@ -1,1 +1,47 @@
-//! Being written.
+//! Lines: where they come from, how many will cross a surface, and their random numbers.
+//!
+//! # Design
+//!
+//! A *line is a pure function of (seed, stage, index)*. [`Streams`] gives every line its own random stream, so it
+//! does not matter which thread, rank or restart traces it. Floats are made from raw bits here, and directions and
+//! points use only `+ − × ÷ √`, because those give the same bits on every machine.
+//!
+//! * Global lines: a [`Domain`] is a convex body around the scene. Its uniform (isotropic) lines meet a surface of
+//!   area `A` in proportion to `A`, which integral geometry turns into a [`Forecast`] of the number of crossings.
+//! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does.
+//! * [`Allocation`] shares a number of lines among sources in proportion to their power.
+//!
+//! # Example
+//!
+//! How often do lines cross a disc of area 1 inside the unit sphere?
+//!
+//! ```
+//! use sir_geom::BoundingSphere;
+//! use sir_lines::{Domain, Stage, Streams};
+//!
+//! let domain = Domain::Sphere(BoundingSphere { centre: glam::DVec3::ZERO, radius: 1.0 });
+//! let streams = Streams::new(7, Stage::GLOBAL);
+//! let lines = 100_000;
+//! let disc = 1.0 / std::f64::consts::PI; // squared radius of a disc of area 1 in the plane z = 0
+//! let counted = (0..lines)
+//!     .map(|i| domain.sample(&mut streams.line(i)))
+//!     .filter(|l| {
+//!         let hit = l.at(-l.origin.z / l.direction.z);
+//!         hit.length_squared() < disc
+//!     })
+//!     .count() as f64;
+//! let expected = domain.forecast(lines).crossings(1.0);
+//! assert!((counted - expected).abs() < 4.0 * expected.sqrt());
+//! ```
+
+mod allocation;
+mod domain;
+mod forecast;
+mod local;
+mod stream;
+
+pub use allocation::Allocation;
+pub use domain::Domain;
+pub use forecast::Forecast;
+pub use local::{cosine_direction, point_on_triangle, unit_vector};
+pub use stream::{Stage, Stream, Streams};

@@ -1,0 +1,79 @@
+//! Local lines: points on a surface and the directions of diffuse light.
+
+use glam::DVec3;
+use sir_geom::Barycentric;
+
+use crate::Stream;
+
+/// A uniform point of the unit sphere, by rejection in a disc (Marsaglia 1972).
+#[inline]
+pub fn unit_vector(stream: &mut Stream) -> DVec3 {
+    loop {
+        let (x, y) = (2.0 * stream.unit() - 1.0, 2.0 * stream.unit() - 1.0);
+        let s = x * x + y * y;
+        if s < 1.0 {
+            let k = 2.0 * (1.0 - s).sqrt();
+            break DVec3::new(k * x, k * y, 1.0 - 2.0 * s);
+        }
+    }
+}
+
+/// A direction with density `cos θ / π` about a unit normal: the normal plus a uniform point of the unit sphere.
+#[inline]
+pub fn cosine_direction(normal: DVec3, stream: &mut Stream) -> DVec3 {
+    loop {
+        let sum = normal + unit_vector(stream);
+        // Too short a sum has no direction; leaving it out changes the density by 1e−16.
+        if sum.length_squared() > 1e-16 {
+            break sum.normalize();
+        }
+    }
+}
+
+/// A uniform point of a triangle: a uniform point of a parallelogram, folded.
+#[inline]
+pub fn point_on_triangle(stream: &mut Stream) -> Barycentric {
+    let (v, w) = (stream.unit(), stream.unit());
+    if v + w > 1.0 { Barycentric { v: 1.0 - v, w: 1.0 - w } } else { Barycentric { v, w } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Stage, Streams};
+
+    #[test]
+    fn cosines_have_the_density_of_diffuse_light() {
+        let normal = DVec3::new(1.0, 2.0, -2.0) / 3.0;
+        let n = 200_000;
+        let streams = Streams::new(5, Stage::FIRST_SHOT);
+        let (mut first, mut second) = (0.0, 0.0);
+        for i in 0..n {
+            let cos = cosine_direction(normal, &mut streams.line(i)).dot(normal);
+            assert!(cos >= 0.0);
+            first += cos;
+            second += cos * cos;
+        }
+        let n = f64::from(n as u32);
+        // E[cos] = 2/3, E[cos²] = 1/2, Var(cos) = 1/18, Var(cos²) = 1/12.
+        assert!((first / n - 2.0 / 3.0).abs() < 4.0 * (1.0 / 18.0 / n).sqrt());
+        assert!((second / n - 0.5).abs() < 4.0 * (1.0 / 12.0 / n).sqrt());
+    }
+
+    #[test]
+    fn points_of_a_triangle_are_uniform() {
+        let streams = Streams::new(6, Stage::FIRST_SHOT);
+        let n = 100_000;
+        let mut sum = [0.0; 3];
+        for i in 0..n {
+            let Barycentric { v, w } = point_on_triangle(&mut streams.line(i));
+            assert!(v >= 0.0 && w >= 0.0 && v + w <= 1.0);
+            sum = [sum[0] + v, sum[1] + w, sum[2] + v * w];
+        }
+        let n = f64::from(n as u32);
+        // E[v] = 1/3 with variance 1/18; E[vw] = 1/12 with variance 1/90 − 1/144.
+        assert!((sum[0] / n - 1.0 / 3.0).abs() < 4.0 * (1.0 / 18.0 / n).sqrt());
+        assert!((sum[1] / n - 1.0 / 3.0).abs() < 4.0 * (1.0 / 18.0 / n).sqrt());
+        assert!((sum[2] / n - 1.0 / 12.0).abs() < 4.0 * ((1.0 / 90.0 - 1.0 / 144.0) / n).sqrt());
+    }
+}
