@@ -1,0 +1,20 @@
+//! Writes the project's scenes into a folder: `cargo run -p sir-scenes --example make_scenes [FOLDER]`.
+//!
+//! Without an argument it is the folder `scenes` of the repository.
+
+use std::{error::Error, fs, path::PathBuf};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = std::env::args_os()
+        .nth(1)
+        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes")), PathBuf::from);
+    for stored in sir_scenes::stored()? {
+        let path = folder.join(stored.path);
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent)?;
+        }
+        sir_scenes::write_gltf(&stored.scene, &path)?;
+        eprintln!("{}: {} triangles", path.display(), stored.scene.triangles().len());
+    }
+    Ok(())
+}

@@ -1,0 +1,23 @@
+//! The project's own scenes, and a writer that stores any [`Scene`](sir_geom::Scene) as glTF.
+//!
+//! Every scene is a function of a few numbers, so that its exact dimensions can be read in one place and its file
+//! can be made again, byte for byte, by `cargo run -p sir-scenes --example make_scenes`.
+//!
+//! * [`furnace`] and [`concentric_spheres`] have a known answer: they tell whether a solver is right.
+//! * [`cornell_box`] was measured in reality: it is the common yardstick of the field.
+//!
+//! All lengths are metres, `y` is up, and no scene has light that can leave it, but for the Cornell box, which is open
+//! at the front.
+
+mod cornell_box;
+mod error;
+mod exact;
+mod gltf;
+mod spectrum;
+mod stored;
+
+pub use cornell_box::cornell_box;
+pub use error::Error;
+pub use exact::{SphereShell, concentric_spheres, concentric_spheres_answer, furnace, furnace_answer};
+pub use gltf::write_gltf;
+pub use stored::{FURNACE_EXITANCE, FURNACE_REFLECTANCE, INNER_SPHERE, OUTER_SPHERE, Stored, stored};

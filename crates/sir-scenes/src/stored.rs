@@ -1,0 +1,44 @@
+//! The scenes that the repository holds as files.
+
+use sir_geom::{Rgb, Scene, SceneError};
+
+use crate::{SphereShell, concentric_spheres, cornell_box, furnace};
+
+/// Reflectance of the stored furnace: the radiosity is 2, 5 and 10 W/m².
+pub const FURNACE_REFLECTANCE: Rgb = Rgb::new(0.5, 0.8, 0.9);
+/// Exitance of the stored furnace \[W/m²\].
+pub const FURNACE_EXITANCE: Rgb = Rgb::ONE;
+/// The inner one of the stored concentric spheres.
+pub const INNER_SPHERE: SphereShell =
+    SphereShell { radius: 1.0, reflectance: Rgb::splat(0.5), exitance: Rgb::splat(100.0) };
+/// The outer one of the stored concentric spheres.
+pub const OUTER_SPHERE: SphereShell =
+    SphereShell { radius: 2.0, reflectance: Rgb::splat(0.8), exitance: Rgb::ZERO };
+
+/// A scene and the file that it is stored in.
+#[derive(Clone, Debug)]
+pub struct Stored {
+    /// Path below the folder `scenes`, with `/` between its parts.
+    pub path: &'static str,
+    /// The scene.
+    pub scene: Scene,
+}
+
+/// All stored scenes, made anew.
+///
+/// # Errors
+///
+/// None that can occur with the numbers above.
+pub fn stored() -> Result<Vec<Stored>, SceneError> {
+    Ok(vec![
+        Stored { path: "cornell-box/cornell-box.gltf", scene: cornell_box()?.scene },
+        Stored {
+            path: "furnace/furnace.gltf",
+            scene: furnace(1.0, FURNACE_REFLECTANCE, FURNACE_EXITANCE)?.scene,
+        },
+        Stored {
+            path: "concentric-spheres/concentric-spheres.glb",
+            scene: concentric_spheres(INNER_SPHERE, OUTER_SPHERE, 4)?.scene,
+        },
+    ])
+}
