@@ -41,6 +41,7 @@ mod builder;
 mod camera;
 mod index;
 mod line;
+mod load;
 mod material;
 mod scene;
 pub mod shapes;
@@ -50,6 +51,7 @@ pub use builder::{Built, SceneBuilder, SceneError, Warning};
 pub use camera::{Camera, Projection};
 pub use index::{FaceId, MaterialId, TriangleId, VertexId};
 pub use line::{Barycentric, Line};
+pub use load::{LoadError, LoadOptions, SidesPolicy, load};
 pub use material::{MAX_REFLECTANCE, Material, Sides};
 pub use scene::{Scene, Side, Triangle};
 

@@ -1,0 +1,138 @@
+//! Numbers from accessors, buffer views and buffers.
+
+use ::gltf::json::accessor::{Accessor, ComponentType, Type};
+use ::gltf::json::validation::Checked;
+use ::gltf::json::{Index, buffer};
+
+use super::{LoadError, Reader, lookup};
+
+/// The most elements of an accessor that no buffer view backs: zeros cost a file nothing.
+const MAX_UNBACKED: usize = 1 << 20;
+
+/// How the components of an element are stored.
+#[derive(Clone, Copy)]
+struct Layout {
+    component: ComponentType,
+    normalized: bool,
+}
+
+impl Reader<'_> {
+    /// The bytes of a buffer view and its stride. `what` names who asks.
+    pub(super) fn view(
+        &self,
+        index: Index<buffer::View>,
+        what: &str,
+    ) -> Result<(&[u8], Option<usize>), LoadError> {
+        let view = lookup(self.path, self.root, index, &format!("{what}: buffer view"))?;
+        let buffer = self.buffers.get(view.buffer.value()).map_or(&[][..], |b| b);
+        let start = usize::try_from(view.byte_offset.unwrap_or_default().0).ok();
+        let end = start.and_then(|s| s.checked_add(usize::try_from(view.byte_length.0).ok()?));
+        let bytes = start.zip(end).and_then(|(start, end)| buffer.get(start..end));
+        let bytes = bytes.ok_or_else(|| {
+            self.invalid(format!(
+                "buffer view {} reaches beyond buffer {}, which has {} bytes",
+                index.value(),
+                view.buffer.value(),
+                buffer.len()
+            ))
+        })?;
+        // A stride of zero is not valid, but written by some exporters for "none".
+        Ok((bytes, view.byte_stride.map(|stride| stride.0).filter(|&stride| stride > 0)))
+    }
+
+    /// All elements of an accessor of `N` components each, as numbers.
+    ///
+    /// # Errors
+    ///
+    /// If the accessor has another type, a component type that is not among `allowed`, or data that is not there.
+    pub(super) fn elements<const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        type_: Type,
+        allowed: &[ComponentType],
+        what: &str,
+    ) -> Result<Vec<[f64; N]>, LoadError> {
+        let accessor = lookup(self.path, self.root, index, &format!("{what}: accessor"))?;
+        let name = format!("{what}: accessor {}", index.value());
+        let layout = match &accessor.component_type {
+            Checked::Valid(t)
+                if allowed.contains(&t.0) && matches!(accessor.type_, Checked::Valid(t) if t == type_) =>
+            {
+                Layout { component: t.0, normalized: accessor.normalized }
+            }
+            _ => return Err(self.invalid(format!("{name} has a type that has no meaning there"))),
+        };
+        let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
+        let mut elements = match accessor.buffer_view {
+            Some(view) => self.run(view, accessor.byte_offset.unwrap_or_default().0, layout, count, &name)?,
+            None if count <= MAX_UNBACKED => vec![[0.0; N]; count],
+            None => return Err(self.invalid(format!("{name} has {count} elements, but no data"))),
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let changes = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
+            let Checked::Valid(index_type) = &sparse.indices.component_type else {
+                return Err(self.invalid(format!("{name} has sparse indices of an unknown type")));
+            };
+            let places = Layout { component: index_type.0, normalized: false };
+            let at = (&sparse.indices.buffer_view, sparse.indices.byte_offset.0);
+            let places: Vec<[f64; 1]> = self.run(*at.0, at.1, places, changes, &name)?;
+            let from = (&sparse.values.buffer_view, sparse.values.byte_offset.0);
+            let values: Vec<[f64; N]> = self.run(*from.0, from.1, layout, changes, &name)?;
+            for ([place], value) in places.into_iter().zip(values) {
+                *elements
+                    .get_mut(place as usize)
+                    .ok_or_else(|| self.invalid(format!("{name}: sparse index {place} is out of range")))? =
+                    value;
+            }
+        }
+        Ok(elements)
+    }
+
+    /// `count` elements that start at an offset of a buffer view.
+    fn run<const N: usize>(
+        &self,
+        view: Index<buffer::View>,
+        offset: u64,
+        layout: Layout,
+        count: usize,
+        what: &str,
+    ) -> Result<Vec<[f64; N]>, LoadError> {
+        let (bytes, stride) = self.view(view, what)?;
+        let size = layout.component.size();
+        let stride = stride.unwrap_or(N * size);
+        let fits = || {
+            let offset = usize::try_from(offset).ok()?;
+            let end =
+                stride.checked_mul(count.checked_sub(1)?)?.checked_add(N * size)?.checked_add(offset)?;
+            bytes.get(offset..end)
+        };
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let bytes = fits().ok_or_else(|| {
+            self.invalid(format!(
+                "{what} has {count} elements, more than the {} bytes of buffer view {} hold",
+                bytes.len(),
+                view.value()
+            ))
+        })?;
+        let element = |i: usize| std::array::from_fn(|c| layout.number(&bytes[i * stride + c * size..]));
+        Ok((0..count).map(element).collect())
+    }
+}
+
+impl Layout {
+    /// The number at the start of some bytes (glTF 2.0 specification, section 3.6.2).
+    fn number(self, bytes: &[u8]) -> f64 {
+        let (value, largest) = match (self.component, bytes) {
+            (ComponentType::I8, &[a, ..]) => (f64::from(a as i8), 127.0),
+            (ComponentType::U8, &[a, ..]) => (f64::from(a), 255.0),
+            (ComponentType::I16, &[a, b, ..]) => (f64::from(i16::from_le_bytes([a, b])), 32767.0),
+            (ComponentType::U16, &[a, b, ..]) => (f64::from(u16::from_le_bytes([a, b])), 65535.0),
+            (ComponentType::U32, &[a, b, c, d, ..]) => return f64::from(u32::from_le_bytes([a, b, c, d])),
+            (ComponentType::F32, &[a, b, c, d, ..]) => return f64::from(f32::from_le_bytes([a, b, c, d])),
+            _ => return 0.0,
+        };
+        if self.normalized { (value / largest).max(-1.0) } else { value }
+    }
+}

@@ -1,0 +1,120 @@
+//! From files to the JSON document and its buffers.
+
+use std::path::Path;
+
+use ::gltf::json::{Root, deserialize};
+
+use super::super::files::{self, Reference};
+use super::LoadError;
+
+/// The document, and the binary part if the file is a GLB that has one.
+pub(super) fn open(path: &Path) -> Result<(Root, Option<Vec<u8>>), LoadError> {
+    let invalid = |what: String| LoadError::Gltf { path: path.to_owned(), what };
+    let bytes = files::read_needed(path)?;
+    let (json, binary) = if bytes.starts_with(b"glTF") {
+        split_glb(&bytes).map_err(|what| invalid(what.to_owned()))?
+    } else {
+        (&bytes[..], None)
+    };
+    let root = deserialize::from_slice(json).map_err(|e| invalid(e.to_string()))?;
+    Ok((root, binary.map(<[u8]>::to_vec)))
+}
+
+/// The JSON chunk and the binary chunk of a GLB (glTF 2.0 specification, section 4.4). What follows is ignored.
+fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), &'static str> {
+    let word = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
+    if word(4) != Some(2) {
+        return Err("the version of its GLB header is not 2");
+    }
+    let end = word(8).map(|length| length as usize).filter(|&length| length <= bytes.len());
+    let end = end.ok_or("the file is shorter than its GLB header says; it was cut off")?;
+    let chunk = |at: usize, kind: &[u8; 4]| {
+        let start = at + 8;
+        let length = word(at)? as usize;
+        (bytes.get(at + 4..start)? == kind && start <= end && length <= end - start)
+            .then(|| &bytes[start..start + length])
+    };
+    let json = chunk(12, b"JSON").ok_or("its first GLB chunk is not a whole JSON chunk")?;
+    let next = 20 + json.len();
+    let binary = chunk(next, b"BIN\0");
+    if binary.is_none() && bytes.get(next + 4..next + 8) == Some(b"BIN\0") {
+        return Err("its binary GLB chunk is cut off");
+    }
+    Ok((json, binary))
+}
+
+/// The bytes of all buffers of a document.
+pub(super) fn buffers(
+    path: &Path,
+    root: &Root,
+    mut binary: Option<Vec<u8>>,
+) -> Result<Vec<Vec<u8>>, LoadError> {
+    let mut buffers = Vec::with_capacity(root.buffers.len());
+    for (i, buffer) in root.buffers.iter().enumerate() {
+        let invalid =
+            |what: String| LoadError::Gltf { path: path.to_owned(), what: format!("buffer {i}: {what}") };
+        let mut bytes = match (&buffer.uri, binary.take_if(|_| i == 0 && buffer.uri.is_none())) {
+            (Some(uri), _) => fetch(path, uri, || format!("buffer {i}"))?,
+            (None, Some(binary)) => binary,
+            (None, None) => {
+                return Err(invalid("neither a URI nor a binary chunk gives its data".to_owned()));
+            }
+        };
+        let length = usize::try_from(buffer.byte_length.0).unwrap_or(usize::MAX);
+        if bytes.len() < length {
+            return Err(invalid(format!("it should have {length} bytes, but there are {}", bytes.len())));
+        }
+        bytes.truncate(length);
+        buffers.push(bytes);
+    }
+    Ok(buffers)
+}
+
+/// The bytes that a URI of the file stands for.
+pub(super) fn fetch(path: &Path, uri: &str, element: impl Fn() -> String) -> Result<Vec<u8>, LoadError> {
+    match files::resolve(path, uri) {
+        Ok(Reference::Data(bytes)) => Ok(bytes),
+        Ok(Reference::File(file)) => files::read_needed(&file),
+        Err(why) => Err(LoadError::Reference {
+            path: path.to_owned(),
+            element: element(),
+            uri: uri.chars().take(60).collect(),
+            why: why.to_owned(),
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::split_glb;
+
+    fn glb(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
+        let mut body = Vec::new();
+        for (kind, data) in chunks {
+            body.extend((data.len() as u32).to_le_bytes());
+            body.extend(*kind);
+            body.extend(*data);
+        }
+        [&b"glTF"[..], &2u32.to_le_bytes(), &(12 + body.len() as u32).to_le_bytes(), &body].concat()
+    }
+
+    #[test]
+    fn chunks_are_found_and_anything_cut_off_is_noticed() {
+        let whole = glb(&[(b"JSON", b"{}  "), (b"BIN\0", b"1234"), (b"MORE", b"x")]);
+        assert_eq!(split_glb(&whole), Ok((&b"{}  "[..], Some(&b"1234"[..]))));
+        assert_eq!(split_glb(&glb(&[(b"JSON", b"{}")])), Ok((&b"{}"[..], None)));
+        assert_eq!(split_glb(&glb(&[(b"JSON", b"{}"), (b"MORE", b"x")])), Ok((&b"{}"[..], None)));
+        for length in 4..whole.len() {
+            assert!(split_glb(&whole[..length]).is_err(), "{length} bytes");
+        }
+        for bad in [glb(&[(b"BIN\0", b"1234")]), glb(&[])] {
+            assert!(split_glb(&bad).is_err());
+        }
+        let mut tiny = whole.clone();
+        tiny[8..12].copy_from_slice(&5u32.to_le_bytes());
+        assert!(split_glb(&tiny).is_err());
+        let mut huge_chunk = whole;
+        huge_chunk[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
+        assert!(split_glb(&huge_chunk).is_err());
+    }
+}

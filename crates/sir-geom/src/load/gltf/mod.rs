@@ -1,0 +1,113 @@
+//! glTF 2.0, text (`.gltf`) and binary (`.glb`).
+//!
+//! The crate `gltf` gives the types of the JSON part. Its validation and its accessors are not used: they panic
+//! at some files (a position accessor that is out of range, a GLB length below 12, a camera without its object)
+//! and refuse others for parts that a scene does not need. Here every index is looked up with a check instead.
+
+mod access;
+mod camera;
+mod container;
+mod material;
+mod primitive;
+mod walk;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use ::gltf::json::{Index, Root, root::Get};
+
+use super::notes::Notes;
+use super::{LoadError, LoadOptions};
+use crate::{MaterialId, Rgb, SceneBuilder};
+
+/// Extensions whose meaning is taken in, or does not change a diffuse scene.
+const KNOWN_EXTENSIONS: [&str; 3] =
+    ["KHR_materials_emissive_strength", "KHR_mesh_quantization", "KHR_texture_transform"];
+
+/// Reads a glTF file into a builder.
+pub(super) fn read(
+    path: &Path,
+    options: LoadOptions,
+    builder: &mut SceneBuilder,
+    notes: &mut Notes,
+) -> Result<(), LoadError> {
+    let (root, binary) = container::open(path)?;
+    check_version(path, &root)?;
+    check_extensions(path, &root, notes)?;
+    let buffers = container::buffers(path, &root, binary)?;
+    let reader = Reader {
+        path,
+        root: &root,
+        buffers,
+        options,
+        builder,
+        notes,
+        materials: BTreeMap::new(),
+        textures: BTreeMap::new(),
+        vertices: 0,
+        triangles: 0,
+    };
+    reader.scene()
+}
+
+/// A file on its way into a builder.
+struct Reader<'a> {
+    path: &'a Path,
+    root: &'a Root,
+    buffers: Vec<Vec<u8>>,
+    options: LoadOptions,
+    builder: &'a mut SceneBuilder,
+    notes: &'a mut Notes,
+    /// Materials met so far by their index in the file; `None` stands for the default one.
+    materials: BTreeMap<Option<usize>, MaterialId>,
+    /// Mean colours by image; `None` for one that cannot be read.
+    textures: BTreeMap<usize, Option<Rgb>>,
+    /// How many were added so far.
+    vertices: usize,
+    triangles: usize,
+}
+
+impl Reader<'_> {
+    fn invalid(&self, what: impl Into<String>) -> LoadError {
+        LoadError::Gltf { path: self.path.to_owned(), what: what.into() }
+    }
+}
+
+/// The element of a file at an index. `what` says who asks for which kind of element.
+fn lookup<'a, T>(path: &Path, root: &'a Root, index: Index<T>, what: &str) -> Result<&'a T, LoadError>
+where
+    Root: Get<T>,
+{
+    root.get(index).ok_or_else(|| LoadError::Gltf {
+        path: path.to_owned(),
+        what: format!("{what} {} does not exist", index.value()),
+    })
+}
+
+fn check_version(path: &Path, root: &Root) -> Result<(), LoadError> {
+    let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
+    // Any 2.x is meant to be readable as 2.0, unless the file states a minimum.
+    let readable = match &root.asset.min_version {
+        Some(minimum) => minimum == "2.0",
+        None => root.asset.version.starts_with("2."),
+    };
+    if readable {
+        return Ok(());
+    }
+    let what = format!("its version is \"{needed}\", and 2.0 is read");
+    Err(LoadError::Gltf { path: path.to_owned(), what })
+}
+
+fn check_extensions(path: &Path, root: &Root, notes: &mut Notes) -> Result<(), LoadError> {
+    let unknown = |names: &[String]| -> Vec<String> {
+        names.iter().filter(|name| !KNOWN_EXTENSIONS.contains(&name.as_str())).cloned().collect()
+    };
+    let names = unknown(&root.extensions_required);
+    if !names.is_empty() {
+        return Err(LoadError::RequiredExtensions { path: path.to_owned(), names });
+    }
+    for name in unknown(&root.extensions_used) {
+        notes.name("glTF extensions have no meaning here and were ignored", name);
+    }
+    Ok(())
+}

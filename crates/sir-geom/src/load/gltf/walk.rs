@@ -1,0 +1,91 @@
+//! The walk through the nodes of a scene.
+
+use ::gltf::json::scene::Node;
+use ::gltf::json::{Index, Root};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use super::{LoadError, Reader, camera, lookup};
+
+impl Reader<'_> {
+    /// Adds everything in the default scene, else in the first one, else below the nodes without a parent.
+    pub(super) fn scene(mut self) -> Result<(), LoadError> {
+        let scene = match self.root.scene {
+            Some(index) => Some(lookup(self.path, self.root, index, "the default scene: scene")?),
+            None => self.root.scenes.first(),
+        };
+        let roots = match scene {
+            Some(scene) => scene.nodes.clone(),
+            None => orphans(self.root),
+        };
+        if !self.root.animations.is_empty() {
+            self.notes.count("animations were ignored", self.root.animations.len());
+        }
+        // A stack of our own: the depth of a tree from a file has no limit. Last in is first out, so children
+        // are put on it in reverse order.
+        let mut stack: Vec<_> = roots.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
+        let mut visited = vec![false; self.root.nodes.len()];
+        while let Some((index, parent)) = stack.pop() {
+            let node = lookup(self.path, self.root, index, "a scene or node: node")?;
+            if std::mem::replace(&mut visited[index.value()], true) {
+                let what = format!("node {} has two parents or is its own descendant", index.value());
+                return Err(self.invalid(what));
+            }
+            let to_world = parent * local_transform(node);
+            self.node(node, &to_world)?;
+            stack.extend(node.children.iter().flatten().rev().map(|&child| (child, to_world)));
+        }
+        Ok(())
+    }
+
+    fn node(&mut self, node: &Node, to_world: &DAffine3) -> Result<(), LoadError> {
+        if let Some(index) = node.camera {
+            let source = lookup(self.path, self.root, index, "a node: camera")?;
+            let name = source.name.as_deref().or(node.name.as_deref()).unwrap_or_default();
+            match camera::convert(source, name, to_world) {
+                Some(camera) => self.builder.add_camera(camera),
+                None => self.notes.name("cameras show nothing, and were left out", format!("\"{name}\"")),
+            }
+        }
+        if let Some(index) = node.mesh {
+            if node.skin.is_some() {
+                self.notes.count("skinned meshes are read in the pose of their nodes", 1);
+            }
+            let mesh = lookup(self.path, self.root, index, "a node: mesh")?;
+            let mut shared = Vec::new();
+            for (i, primitive) in mesh.primitives.iter().enumerate() {
+                let what = format!("mesh {}, primitive {i}", index.value());
+                self.primitive(primitive, to_world, &mut shared, &what)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Nodes that are no node's child.
+fn orphans(root: &Root) -> Vec<Index<Node>> {
+    let mut is_child = vec![false; root.nodes.len()];
+    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
+        if let Some(flag) = is_child.get_mut(child.value()) {
+            *flag = true;
+        }
+    }
+    (0u32..).zip(is_child).filter(|(_, is_child)| !is_child).map(|(i, _)| Index::new(i)).collect()
+}
+
+/// The transform from a node to its parent: a matrix, or translation × rotation × scale.
+fn local_transform(node: &Node) -> DAffine3 {
+    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+    if let Some(matrix) = node.matrix {
+        let m = matrix.map(f64::from);
+        let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
+        return DAffine3::from_mat3_translation(DMat3::from_cols(column(0), column(1), column(2)), column(3));
+    }
+    // In single precision a rotation is a unit quaternion to seven digits only.
+    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
+    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
+    DAffine3::from_scale_rotation_translation(
+        node.scale.map_or(DVec3::ONE, vector),
+        rotation,
+        node.translation.map_or(DVec3::ZERO, vector),
+    )
+}

@@ -1,0 +1,84 @@
+//! Readers of scene files: glTF 2.0 and Wavefront OBJ.
+//!
+//! A reader takes from a file what a [`Scene`](crate::Scene) has, and says in [`Warning`](crate::Warning)s, one
+//! line per kind, what it passed over. Files come from anywhere, so nothing in them is trusted: whatever is
+//! wrong with one ends in a [`LoadError`], never in a panic or in memory out of proportion to its size.
+
+mod error;
+mod files;
+mod gltf;
+mod notes;
+mod obj;
+mod texture;
+
+use std::path::Path;
+
+pub use error::LoadError;
+
+use crate::{Built, Material, SceneBuilder, Sides};
+use notes::Notes;
+
+/// The most vertices or triangles of a scene: beyond it a solver has no use for the scene, and a small file
+/// with many instances could fill the memory.
+const MAX_ELEMENTS: usize = 1 << 28;
+
+/// Reflectance in place of one that a file does not give.
+const DEFAULT_REFLECTANCE: f64 = 0.5;
+
+/// How to read a scene file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct LoadOptions {
+    /// Which sides of surfaces take part in light transport.
+    pub sides: SidesPolicy,
+}
+
+/// What decides which sides of a surface reflect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum SidesPolicy {
+    /// The file: `doubleSided` in glTF, where both sides also emit. OBJ files have no such notion: both sides
+    /// reflect, and the front emits.
+    #[default]
+    AsAuthored,
+    /// Both sides of every surface reflect. Which sides emit is left to the file.
+    Both,
+    /// Only the fronts reflect and emit.
+    Front,
+}
+
+impl SidesPolicy {
+    /// The material as this policy has it.
+    fn apply(self, mut material: Material) -> Material {
+        match self {
+            Self::AsAuthored => {}
+            Self::Both => material.sides = Sides::Both,
+            Self::Front => {
+                material.sides = Sides::Front;
+                material.back_emits = false;
+            }
+        }
+        material
+    }
+}
+
+/// Reads a scene file; the extension of its name (`gltf`, `glb` or `obj`, in any case) tells the format.
+///
+/// Triangles come in the order of the file: that of its faces in OBJ, and that of a walk through the nodes,
+/// parents before children, in glTF. Textures are replaced by their mean linear colour.
+///
+/// # Errors
+///
+/// If the file or one that its geometry needs cannot be read, breaks its format, or holds no triangle. Missing
+/// material libraries and textures are warnings.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Built, LoadError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
+    match extension.as_deref() {
+        Some("gltf" | "glb") => gltf::read(path, *options, &mut builder, &mut notes)?,
+        Some("obj") => obj::read(path, *options, &mut builder, &mut notes)?,
+        _ => return Err(LoadError::UnknownFormat { path: path.to_owned(), extension }),
+    }
+    notes.warn(&mut builder);
+    let mut built = builder.build().map_err(|source| LoadError::Scene { path: path.to_owned(), source })?;
+    notes::shorten(&mut built.warnings);
+    Ok(built)
+}

@@ -1,0 +1,109 @@
+//! Warnings, gathered so that a thousand of a kind make one line.
+
+use std::collections::HashSet;
+
+use crate::{SceneBuilder, Warning};
+
+/// How many names a line gives before it only counts.
+const NAMES: usize = 5;
+
+/// What a reader left out or replaced, by kind, in the order in which each kind came up first.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    kinds: Vec<Note>,
+}
+
+#[derive(Debug)]
+struct Note {
+    what: &'static str,
+    count: usize,
+    /// The first few names.
+    names: Vec<String>,
+    seen: HashSet<String>,
+}
+
+impl Notes {
+    /// Notes `count` things of the kind `what`, a phrase that goes on after a number.
+    pub(super) fn count(&mut self, what: &'static str, count: usize) {
+        if count > 0 {
+            self.kind(what).count += count;
+        }
+    }
+
+    /// Notes one thing of the kind `what` by its name, unless it was noted before.
+    pub(super) fn name(&mut self, what: &'static str, name: impl Into<String>) {
+        let (note, name) = (self.kind(what), name.into());
+        if note.seen.insert(name.clone()) {
+            note.count += 1;
+            if note.names.len() < NAMES {
+                note.names.push(name);
+            }
+        }
+    }
+
+    fn kind(&mut self, what: &'static str) -> &mut Note {
+        let i = self.kinds.iter().position(|n| n.what == what).unwrap_or_else(|| {
+            self.kinds.push(Note { what, count: 0, names: Vec::new(), seen: HashSet::new() });
+            self.kinds.len() - 1
+        });
+        &mut self.kinds[i]
+    }
+
+    /// Passes everything on as warnings.
+    pub(super) fn warn(self, builder: &mut SceneBuilder) {
+        for Note { what, count, names, .. } in self.kinds {
+            let mut line = format!("{count} {what}");
+            if !names.is_empty() {
+                line = format!("{line}: {}", names.join(", "));
+            }
+            if count > names.len() && !names.is_empty() {
+                line = format!("{line} and {} more", count - names.len());
+            }
+            builder.warn(Warning::Ignored { what: line });
+        }
+    }
+}
+
+/// Leaves the first few of many warnings about clamped reflectances, and counts the others.
+pub(super) fn shorten(warnings: &mut Vec<Warning>) {
+    let mut clamped = 0;
+    warnings.retain(|w| {
+        clamped += usize::from(matches!(w, Warning::ClampedReflectance { .. }));
+        !matches!(w, Warning::ClampedReflectance { .. }) || clamped <= NAMES
+    });
+    if clamped > NAMES {
+        let what = format!(
+            "{} more materials reflect all the light they get, and were clamped too",
+            clamped - NAMES
+        );
+        warnings.push(Warning::Ignored { what });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kind_is_one_line_however_often_it_comes_up() {
+        let mut notes = Notes::default();
+        for i in 0..100 {
+            notes.name("textures are missing", format!("t{}.png", i % 50));
+            notes.count("points were skipped", 2);
+        }
+        notes.count("lines were skipped", 0);
+        let mut builder = SceneBuilder::new();
+        notes.warn(&mut builder);
+        let m = builder.add_material(crate::Material::diffuse("m", crate::Rgb::splat(0.5)));
+        let z = glam::DVec3::ZERO;
+        crate::shapes::quad(&mut builder, [z, glam::DVec3::X, glam::DVec3::ONE, glam::DVec3::Y], m);
+        let lines: Vec<String> = builder.build().unwrap().warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            lines,
+            [
+                "50 textures are missing: t0.png, t1.png, t2.png, t3.png, t4.png and 45 more",
+                "200 points were skipped"
+            ]
+        );
+    }
+}

@@ -1,0 +1,144 @@
+//! Rewrites OBJ and MTL text into the part of the formats that `tobj` reads without surprises.
+//!
+//! `tobj` 4.0 takes a comment after a value for a value, makes triangles of the polylines `l 1 2 3`, wants blanks
+//! rather than tabs after some keywords, and panics at colours with fewer than three numbers. So it gets only
+//! the statements that a scene is made of, in their plainest form, each on its line of the original.
+
+use std::borrow::Cow;
+
+/// An OBJ file in plain form.
+#[derive(Debug, Default)]
+pub(super) struct Obj {
+    /// Statements `v`, `f` and `usemtl`, without texture coordinates and normals.
+    pub(super) text: String,
+    /// What stands behind each `mtllib`.
+    pub(super) libraries: Vec<String>,
+    /// What stands behind each `usemtl`.
+    pub(super) used_materials: Vec<String>,
+    /// Statements `p` and `l`, and faces with one or two corners.
+    pub(super) points_and_lines: usize,
+}
+
+/// Takes from OBJ text what a scene is made of.
+pub(super) fn obj(text: &str) -> Obj {
+    let mut plain = Obj::default();
+    let mut lines = 0;
+    for (line, statement) in statements(text) {
+        let (keyword, rest) = split_word(&statement);
+        pad_to(&mut plain.text, &mut lines, line);
+        match keyword {
+            "v" => push_words(&mut plain.text, "v", rest.split_whitespace().take(3)),
+            "f" if rest.split_whitespace().nth(2).is_some() => {
+                let positions =
+                    rest.split_whitespace().map(|corner| corner.split('/').next().unwrap_or_default());
+                push_words(&mut plain.text, "f", positions);
+            }
+            "f" | "l" | "p" => plain.points_and_lines += 1,
+            "usemtl" => {
+                push_words(&mut plain.text, "usemtl", [rest].into_iter());
+                plain.used_materials.push(rest.to_owned());
+            }
+            "mtllib" => plain.libraries.push(rest.to_owned()),
+            _ => {}
+        }
+    }
+    plain.text.push('\n');
+    plain
+}
+
+/// Takes from MTL text the names and diffuse properties of materials.
+///
+/// # Errors
+///
+/// The line and what is wrong with it.
+pub(super) fn mtl(text: &str) -> Result<String, (usize, String)> {
+    let mut plain = String::new();
+    let mut lines = 0;
+    for (line, statement) in statements(text) {
+        let (keyword, rest) = split_word(&statement);
+        pad_to(&mut plain, &mut lines, line);
+        for known in ["newmtl", "Kd", "Ke", "map_Kd", "map_Ke"] {
+            if keyword.eq_ignore_ascii_case(known) {
+                match (known, rest.split_whitespace().count()) {
+                    // One number stands for three (the MTL specification has this for all colours).
+                    ("Kd" | "Ke", 1) => push_words(&mut plain, known, [rest; 3].into_iter()),
+                    ("Kd" | "Ke", 0 | 2) => {
+                        return Err((line, format!("\"{statement}\" must have one or three numbers")));
+                    }
+                    ("newmtl", 0) => return Err((line, "a material has no name".to_owned())),
+                    ("map_Kd" | "map_Ke", 0) => {}
+                    _ => push_words(&mut plain, known, [rest].into_iter()),
+                }
+            }
+        }
+    }
+    plain.push('\n');
+    Ok(plain)
+}
+
+/// The first word, and what follows it; both without blanks around.
+pub(super) fn split_word(text: &str) -> (&str, &str) {
+    let text = text.trim();
+    text.split_once(char::is_whitespace).map_or((text, ""), |(word, rest)| (word, rest.trim_start()))
+}
+
+/// Statements with their line numbers from 1, without comments; a backslash at the end of a line goes on with the
+/// next one.
+fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lines = text.lines().map(without_comment).enumerate();
+    std::iter::from_fn(move || {
+        let (i, first) = lines.next()?;
+        let mut statement = Cow::Borrowed(first);
+        while let Some(start) = statement.strip_suffix('\\') {
+            let next = lines.next().map_or("", |(_, next)| next);
+            statement = Cow::Owned(format!("{start} {next}"));
+        }
+        Some((i + 1, statement))
+    })
+}
+
+/// A line up to a `#` at its start or after a blank, trimmed. Names may have a `#` inside.
+fn without_comment(line: &str) -> &str {
+    let comment = line
+        .match_indices('#')
+        .map(|(i, _)| i)
+        .find(|&i| line[..i].chars().next_back().is_none_or(char::is_whitespace));
+    line[..comment.unwrap_or(line.len())].trim()
+}
+
+/// Ends lines until the text is at the start of `line`; `lines` counts those that were ended.
+fn pad_to(text: &mut String, lines: &mut usize, line: usize) {
+    for _ in *lines + 1..line {
+        text.push('\n');
+    }
+    *lines = line - 1;
+}
+
+fn push_words<'a>(text: &mut String, keyword: &str, words: impl Iterator<Item = &'a str>) {
+    text.push_str(keyword);
+    for word in words {
+        text.push(' ');
+        text.push_str(word);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn statements_keep_their_lines() {
+        let plain = obj(
+            "# head\n\nv\t1 2  3 0.1 0.2 0.3 # red\r\nf 1/2/3 \\\n  2//4 -1\nl 1 2 3\nusemtl\ta b#1 # c\n g x\n",
+        );
+        assert_eq!(plain.text, "\n\nv 1 2 3\nf 1 2 -1\n\n\nusemtl a b#1\n\n");
+        assert_eq!((plain.points_and_lines, plain.used_materials), (1, vec!["a b#1".to_owned()]));
+    }
+
+    #[test]
+    fn colours_have_three_numbers() {
+        assert_eq!(mtl("newmtl  a\n\tkd 0.5\nKe 1 2 3 # x").unwrap(), "newmtl a\nKd 0.5 0.5 0.5\nKe 1 2 3\n");
+        assert_eq!(mtl("newmtl a\n\nKd 0.5 1").unwrap_err().0, 3);
+    }
+}

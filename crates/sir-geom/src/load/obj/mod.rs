@@ -1,0 +1,126 @@
+//! Wavefront OBJ with material libraries (MTL).
+//!
+//! `Kd` is the reflectance, times the mean of `map_Kd`; `Ke`, times the mean of `map_Ke`, the radiance that the
+//! front emits: a file has no notion of sides, so both reflect and only the front emits. Polygons are cut into
+//! fans from their first corner.
+
+mod clean;
+mod mtl;
+
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::notes::Notes;
+use super::{DEFAULT_REFLECTANCE, LoadError, LoadOptions, files};
+use crate::{Material, MaterialId, Rgb, SceneBuilder, Sides, VertexId};
+
+/// A statement that makes `tobj` ask for materials, which all are at hand by then.
+const ALL_LIBRARIES: &str = "mtllib *\n";
+
+/// Reads an OBJ file into a builder.
+pub(super) fn read(
+    path: &Path,
+    options: LoadOptions,
+    builder: &mut SceneBuilder,
+    notes: &mut Notes,
+) -> Result<(), LoadError> {
+    let obj = clean::obj(&String::from_utf8_lossy(&files::read_needed(path)?));
+    notes.count("points and lines were skipped", obj.points_and_lines);
+    let mut library = mtl::Library::default();
+    for (i, names) in obj.libraries.iter().enumerate() {
+        if !obj.libraries[..i].contains(names) {
+            library.add(path, names, options, notes)?;
+        }
+    }
+    for name in obj.used_materials.iter().filter(|name| !library.by_name.contains_key(*name)) {
+        notes.name("materials are in no library, and are made grey", name);
+    }
+    let models = parse(path, &obj.text, &library)?;
+    add(&models, library.materials, options, builder, notes);
+    Ok(())
+}
+
+/// Lets `tobj` make meshes of plain OBJ text, one for each run of faces of the same material, in the file's order.
+fn parse(path: &Path, text: &str, library: &mtl::Library) -> Result<Vec<tobj::Model>, LoadError> {
+    let text = format!("{ALL_LIBRARIES}{text}");
+    let mut rest = text.as_bytes();
+    let as_they_are = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..Default::default() };
+    let numbers = library.by_name.iter().map(|(name, &i)| (name.clone(), i));
+    let result = tobj::load_obj_buf(&mut rest, &as_they_are, |_| Ok((Vec::new(), numbers.clone().collect())));
+    let text = &text[ALL_LIBRARIES.len()..];
+    match result {
+        Ok((models, _)) => Ok(models),
+        Err(tobj::LoadError::FaceVertexOutOfBounds) => Err(no_such_vertex(path, text)),
+        Err(e) => {
+            let (line, statement) = line_at(text, text.len().saturating_sub(rest.len()));
+            let what = format!("{e} in \"{statement}\"");
+            Err(LoadError::Syntax { path: path.to_owned(), line, what })
+        }
+    }
+}
+
+/// The number, from 1, and the start of the line that ends at byte `end`.
+fn line_at(text: &str, end: usize) -> (usize, String) {
+    let (line, statement) = text[..end].lines().enumerate().last().unwrap_or_default();
+    (line + 1, statement.chars().take(80).collect())
+}
+
+/// Finds the first corner of a face that is none of the vertices.
+fn no_such_vertex(path: &Path, text: &str) -> LoadError {
+    let count = text.lines().filter(|line| line.starts_with("v ")).count();
+    let mut before = 0;
+    for (i, line) in text.lines().enumerate() {
+        before += usize::from(line.starts_with("v "));
+        for corner in line.strip_prefix("f ").unwrap_or_default().split_whitespace() {
+            let known = match corner.parse::<isize>() {
+                Ok(n) if n < 0 => n.unsigned_abs() <= before,
+                Ok(n) => (1..=count).contains(&n.unsigned_abs()),
+                Err(_) => false,
+            };
+            if !known {
+                return LoadError::NoSuchVertex {
+                    path: path.to_owned(),
+                    line: i + 1,
+                    index: corner.to_owned(),
+                    count,
+                };
+            }
+        }
+    }
+    LoadError::Syntax { path: path.to_owned(), line: 1, what: "a face refers to a missing vertex".to_owned() }
+}
+
+fn add(
+    models: &[tobj::Model],
+    materials: Vec<Material>,
+    options: LoadOptions,
+    builder: &mut SceneBuilder,
+    notes: &mut Notes,
+) {
+    let materials: Vec<MaterialId> = materials.into_iter().map(|m| builder.add_material(m)).collect();
+    let mut default = None;
+    for mesh in models.iter().map(|model| &model.mesh).filter(|mesh| !mesh.indices.is_empty()) {
+        let material = mesh.material_id.map(|i| materials[i]).unwrap_or_else(|| {
+            let grey = Material::diffuse("", Rgb::splat(DEFAULT_REFLECTANCE)).with_sides(Sides::Both);
+            *default.get_or_insert_with(|| builder.add_material(options.sides.apply(grey)))
+        });
+        let vertices: Vec<VertexId> =
+            mesh.positions.chunks_exact(3).map(|p| builder.add_vertex(DVec3::from_slice(p))).collect();
+        let corners: Vec<VertexId> = mesh.indices.iter().map(|&i| vertices[i as usize]).collect();
+        // An absent list of arities means triangles only.
+        let triangles = vec![3; if mesh.face_arities.is_empty() { corners.len() / 3 } else { 0 }];
+        let mut rest = &corners[..];
+        for &arity in mesh.face_arities.iter().chain(&triangles) {
+            let (face, behind) = rest.split_at(arity as usize);
+            builder.add_polygon(face, material);
+            rest = behind;
+        }
+        if mesh.material_id.is_none() {
+            notes.count(
+                "faces have no known material, and are made grey",
+                mesh.face_arities.len() + triangles.len(),
+            );
+        }
+    }
+}
