@@ -1,0 +1,76 @@
+//! Closed scenes and difficult lines.
+
+use glam::DVec3;
+use sir_geom::shapes::{self, Facing};
+use sir_geom::{Line, Material, Rgb, Scene, SceneBuilder};
+use sir_lines::{Stream, unit_vector};
+
+/// A room with two spheres, overlapping boxes and a box that touches floor and wall: all closed.
+pub(crate) fn furnished_room() -> Scene {
+    let mut b = SceneBuilder::new();
+    let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+    let at = |x, y, z| DVec3::new(x, y, z);
+    shapes::cuboid(&mut b, at(-3.0, 0.0, -2.0), at(3.0, 2.5, 2.0), [m; 6], Facing::Inward);
+    shapes::cuboid(&mut b, at(-3.0, 0.0, -1.0), at(-2.0, 0.75, 1.0), [m; 6], Facing::Outward);
+    shapes::cuboid(&mut b, at(0.25, 0.5, 0.1), at(1.25, 0.75, 1.1), [m; 6], Facing::Outward);
+    shapes::cuboid(&mut b, at(1.0, 0.1, 0.3), at(1.5, 1.75, 0.7), [m; 6], Facing::Outward);
+    shapes::sphere(&mut b, at(-0.5, 1.0, 0.0), 0.6, 4, Facing::Outward, |_| m);
+    shapes::sphere(&mut b, at(2.0, 1.3, -1.0), 0.4, 3, Facing::Outward, |_| m);
+    b.build().unwrap().scene
+}
+
+/// A sphere with this many halvings of an icosahedron's edges.
+pub(crate) fn ball(level: u32) -> Scene {
+    let mut b = SceneBuilder::new();
+    let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+    shapes::sphere(&mut b, DVec3::new(0.1, -0.2, 0.3), 1.7, level, Facing::Outward, |_| m);
+    b.build().unwrap().scene
+}
+
+fn pick(count: usize, s: &mut Stream) -> usize {
+    (s.unit() * count as f64) as usize
+}
+
+fn any_origin(scene: &Scene, s: &mut Stream) -> DVec3 {
+    let sphere = scene.bounding_sphere();
+    sphere.centre + sphere.radius * unit_vector(s)
+}
+
+fn through(origin: DVec3, target: DVec3) -> Option<Line> {
+    Some(Line { origin, direction: (target - origin).try_normalize()? })
+}
+
+/// A line of the given kind: anywhere, through a vertex, through a point of an edge, along an edge, through two
+/// vertices, along an axis through a vertex, or in the plane of a triangle.
+pub(crate) fn difficult_line(scene: &Scene, kind: usize, s: &mut Stream) -> Option<Line> {
+    let triangle =
+        |s: &mut Stream| scene.corners(sir_geom::TriangleId::new(pick(scene.triangles().len(), s)));
+    let vertex = |s: &mut Stream| scene.vertices()[pick(scene.vertices().len(), s)];
+    match kind {
+        0 => through(any_origin(scene, s), any_origin(scene, s)),
+        1 => through(any_origin(scene, s), vertex(s)),
+        2 => {
+            let [a, b, _] = triangle(s);
+            through(any_origin(scene, s), a.lerp(b, s.unit()))
+        }
+        3 => {
+            let [a, b, _] = triangle(s);
+            through(a + (a - b), b)
+        }
+        4 => {
+            let (a, b) = (vertex(s), vertex(s));
+            through(a + (a - b), b)
+        }
+        5 => {
+            let axis = DVec3::AXES[pick(3, s)];
+            Some(Line { origin: vertex(s) - 3.0 * axis, direction: axis })
+        }
+        _ => {
+            let [a, b, c] = triangle(s);
+            through(a.lerp(b, s.unit()), c.lerp(b, s.unit()))
+        }
+    }
+}
+
+/// How many kinds of lines there are.
+pub(crate) const KINDS: usize = 7;

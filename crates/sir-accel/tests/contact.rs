@@ -1,0 +1,86 @@
+//! Surfaces in contact are put in order by their rule, in both directions.
+
+use glam::DVec3;
+use sir_accel::Accel;
+use sir_geom::{Line, Material, Rgb, Scene, SceneBuilder, Side, shapes};
+
+/// Squares in the plane through `height`, facing up or down, in the order given.
+fn sheets(sheets: &[(f64, Side)]) -> Scene {
+    let mut b = SceneBuilder::new();
+    let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+    // Tilted, so that rounding has something to decide.
+    let tilt = glam::DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.7);
+    for (i, &(height, facing)) in sheets.iter().enumerate() {
+        let r = 1.0 + 0.37 * i as f64;
+        let mut corners = [(-r, -r), (r, -r), (r, r), (-r, r)].map(|(x, y)| tilt * DVec3::new(x, y, height));
+        if facing == Side::Back {
+            corners.reverse();
+        }
+        shapes::quad(&mut b, corners, m);
+    }
+    b.build().unwrap().scene
+}
+
+fn order(scene: &Scene, upwards: bool) -> Vec<(u32, Side)> {
+    let tilt = glam::DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.7);
+    let direction = tilt * DVec3::new(0.3, 0.2, if upwards { 1.0 } else { -1.0 }).normalize();
+    let line = Line { origin: tilt * DVec3::new(0.15, -0.11, 0.0) - direction, direction };
+    let accel = Accel::new(scene);
+    accel.tracer().all_hits(&line).iter().map(|h| (scene.triangle(h.triangle).face.0, h.side)).collect()
+}
+
+#[test]
+fn a_later_decal_lies_on_top() {
+    let scene = sheets(&[(0.0, Side::Front), (0.0, Side::Front)]);
+    assert_eq!(order(&scene, false), [(1, Side::Front), (0, Side::Front)]);
+    assert_eq!(order(&scene, true), [(0, Side::Back), (1, Side::Back)]);
+}
+
+#[test]
+fn of_two_sheets_back_to_back_each_shows_its_front() {
+    for (first, second) in [(Side::Front, Side::Back), (Side::Back, Side::Front)] {
+        let scene = sheets(&[(0.0, first), (0.0, second)]);
+        let up = u32::from(first == Side::Back);
+        assert_eq!(order(&scene, false), [(up, Side::Front), (1 - up, Side::Back)]);
+        assert_eq!(order(&scene, true), [(1 - up, Side::Front), (up, Side::Back)]);
+    }
+}
+
+/// The other half of a square is in the same plane, but not on top of the first.
+#[test]
+fn a_ray_from_the_common_edge_of_coplanar_triangles_is_free() {
+    let scene = sheets(&[(0.0, Side::Front)]);
+    let accel = Accel::new(&scene);
+    for t in scene.triangle_ids() {
+        let [a, b, c] = scene.corners(t);
+        for (p, q) in [(a, b), (b, c), (c, a)] {
+            for direction in [scene.normal(t), (scene.normal(t) + 0.3 * DVec3::X).normalize()] {
+                let ray = Line { origin: p.midpoint(q), direction };
+                assert_eq!(accel.tracer().closest(&ray, Some(t)), None);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_gap_wider_than_contact_is_a_gap() {
+    let scene = sheets(&[(1e-4, Side::Front), (0.0, Side::Front)]);
+    assert_eq!(order(&scene, false), [(0, Side::Front), (1, Side::Front)]);
+}
+
+/// A ray that leaves the lower of two fronts is stopped by the upper one, and not the other way round.
+#[test]
+fn rays_follow_the_same_rule() {
+    let scene = sheets(&[(0.0, Side::Front), (0.0, Side::Front)]);
+    let accel = Accel::new(&scene);
+    let mut tracer = accel.tracer();
+    for t in scene.triangle_ids() {
+        let [a, b, c] = scene.corners(t);
+        let ray = Line { origin: (a + b + c) / 3.0, direction: scene.normal(t) };
+        let met = tracer.closest(&ray, Some(t)).map(|h| scene.triangle(h.triangle).face.0);
+        let lower = scene.triangle(t).face.0 == 0;
+        assert_eq!(met, lower.then_some(1), "{t}");
+        let from_above = Line { origin: ray.at(0.5), direction: -ray.direction };
+        assert_eq!(tracer.closest(&from_above, None).map(|h| h.side), Some(Side::Front));
+    }
+}
