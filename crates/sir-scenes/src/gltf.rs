@@ -195,11 +195,11 @@ fn strength(material: &Material) -> f32 {
 }
 
 fn material(material: &Material) -> Value {
-    let [r, g, b] = material.reflectance.as_vec3().to_array();
+    let colour = material.reflectance.as_vec3().extend(1.0).to_array().map(short);
     let mut value = json!({
         "name": material.name,
         "pbrMetallicRoughness": {
-            "baseColorFactor": [r, g, b, 1.0].map(short),
+            "baseColorFactor": colour,
             "metallicFactor": 0.0,
             "roughnessFactor": 1.0,
         },
