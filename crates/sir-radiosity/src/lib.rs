@@ -1,1 +1,73 @@
-//! Being written.
+//! Monte Carlo radiosity with a first shot of local lines and multipath on global lines.
+//!
+//! # Design
+//!
+//! The method is that of Martínez, Forés and Martín (2009), *Parallel implementation of a global line Monte Carlo
+//! radiosity*, with Sbert's multipath (1996, 1997) at its heart. This crate knows how a range of lines changes a
+//! solution. It knows nothing of threads, ranks, files or progress: those who do cut the ranges.
+//!
+//! * [`FirstShot`]: lines from the light sources carry the emitted power to the first surfaces.
+//! * [`Multipath`]: lines through the whole scene pass the reflected power on, between every pair of surfaces that
+//!   face each other along a line, in both directions.
+//! * [`Solution`]: irradiance and its standard error per side of a patch.
+//!
+//! Power is counted in whole [`Quanta`]: integers add up to the same sum in any order, and the energy
+//! [`Balance`] closes exactly, not nearly. Lines become [`Segment`]s, which name the two sides that see each other:
+//! a new kind of line or a new transport needs to know nothing else.
+//!
+//! # Example
+//!
+//! In a closed box whose faces all emit `M` and reflect `ρ`, the radiosity is `M / (1 − ρ)` everywhere.
+//!
+//! ```
+//! use glam::DVec3;
+//! use sir_geom::{Material, Rgb, SceneBuilder, Side, shapes::{self, Facing}};
+//! use sir_lines::Domain;
+//! use sir_mesh::Subdivision;
+//! use sir_radiosity::{FirstShot, Model, Multipath};
+//!
+//! let mut builder = SceneBuilder::new();
+//! let grey = Material::diffuse("grey", Rgb::splat(0.5)).emitting(Rgb::splat(1.0));
+//! let grey = builder.add_material(grey);
+//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
+//! let model = Model::new(builder.build()?.scene, Subdivision::PerTriangle)?;
+//!
+//! let (seed, lines) = (1, 100_000);
+//! let shot = FirstShot::new(&model, lines, seed)?;
+//! let mut tally = shot.tally();
+//! shot.trace(0..lines, &mut tally);
+//!
+//! let domain = Domain::Sphere(model.scene.bounding_sphere());
+//! let mut multipath = Multipath::new(&model, shot.finish(tally)?, domain, lines, seed);
+//! multipath.trace(0..lines);
+//! let solution = multipath.finish()?.solution;
+//!
+//! model.mesh.for_each_side(|triangle, _, _, side| {
+//!     let radiosity = solution.radiosity(&model, triangle, Side::Front, side);
+//!     let sigma = solution.standard_error(&model, triangle, side);
+//!     assert!((radiosity - 2.0).abs().cmplt(4.0 * sigma).all(), "{radiosity} ± {sigma}");
+//! });
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod balance;
+mod error;
+mod first_shot;
+mod model;
+mod multipath;
+mod power;
+mod received;
+mod segments;
+mod solution;
+mod sources;
+
+pub use balance::{Balance, Counts};
+pub use error::SolveError;
+pub use first_shot::{FirstShot, FirstShotTally, Shot};
+pub use model::Model;
+pub use multipath::{Multipath, Transported};
+pub use power::{PowerUnit, Quanta};
+pub use received::Received;
+pub use segments::{End, Segment, segments};
+pub use solution::Solution;
+pub use sources::{Source, sources};

@@ -1,0 +1,23 @@
+//! Errors.
+
+use thiserror::Error;
+
+/// Why light cannot be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum SolveError {
+    /// No surface emits.
+    #[error(
+        "nothing in the scene emits light; give a material an emission \
+         (glTF: emissiveFactor with KHR_materials_emissive_strength, OBJ: Ke in the MTL file)"
+    )]
+    NoLight,
+    /// Power was lost or made: a tally overflowed.
+    #[error(
+        "the energy balance of the {stage} does not close: a tally overflowed, because too few lines \
+         carry too much power each; ask for more lines"
+    )]
+    Unbalanced {
+        /// `first shot` or `multipath`.
+        stage: &'static str,
+    },
+}

@@ -1,0 +1,149 @@
+//! The first shot: local lines carry the light of the sources to the first surfaces.
+//!
+//! Martínez, Forés and Martín (2009), section 2; Castro, Martínez and Sbert (1998).
+
+use std::ops::Range;
+
+use sir_geom::{Line, Rgb, Side};
+use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
+
+use crate::sources::{Source, sources};
+use crate::{Balance, Counts, Model, PowerUnit, Quanta, Received, SolveError};
+
+/// The lines of a first shot: what each one carries, and from where.
+#[derive(Clone, Debug)]
+pub struct FirstShot<'m> {
+    model: &'m Model,
+    sources: Vec<Source>,
+    /// Power of one line of each source.
+    per_line: Vec<Quanta>,
+    allocation: Allocation,
+    streams: Streams,
+    unit: PowerUnit,
+    lines: u64,
+}
+
+/// What some of the lines of a first shot have brought so far.
+#[derive(Clone, Debug)]
+pub struct FirstShotTally {
+    received: Received,
+    counts: Counts,
+    emitted: Quanta,
+    blocked: Quanta,
+    escaped: Quanta,
+}
+
+/// The outcome of a first shot.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// Direct power received by each side.
+    pub received: Received,
+    /// The size of a quantum, for this and all later stages.
+    pub unit: PowerUnit,
+    /// Where the power went. Its `unshot` is the reflected direct power that multipath has to send on.
+    pub balance: Balance,
+    /// What the lines met.
+    pub counts: Counts,
+}
+
+impl<'m> FirstShot<'m> {
+    /// Shares `lines` lines among the sources in proportion to their power, so that all lines carry the same.
+    ///
+    /// # Errors
+    ///
+    /// If nothing emits.
+    pub fn new(model: &'m Model, lines: u64, seed: u64) -> Result<Self, SolveError> {
+        let sources = sources(&model.scene);
+        let weights: Vec<f64> = sources.iter().map(|s| s.power.element_sum()).collect();
+        let total = sources.iter().fold(Rgb::ZERO, |sum, s| sum + s.power);
+        if total.max_element() <= 0.0 {
+            return Err(SolveError::NoLight);
+        }
+        let reflectance = model.scene.materials().iter().map(|m| m.reflectance.max_element());
+        let unit = PowerUnit::for_total(total.max_element(), reflectance.fold(0.0, f64::max));
+        // A line carries ΣΦ/N in all, in the colour of its source.
+        let line = total.element_sum() / lines as f64;
+        let per_line = sources.iter().zip(&weights).map(|(s, w)| unit.quanta(s.power * (line / w))).collect();
+        let offset = Streams::new(seed, Stage::ALLOCATION).line(0).unit();
+        let allocation = Allocation::new(&weights, lines, offset);
+        let streams = Streams::new(seed, Stage::FIRST_SHOT);
+        Ok(Self { model, sources, per_line, allocation, streams, unit, lines })
+    }
+
+    /// Number of lines.
+    #[must_use]
+    pub fn lines(&self) -> u64 {
+        self.lines
+    }
+
+    /// An empty tally.
+    #[must_use]
+    pub fn tally(&self) -> FirstShotTally {
+        FirstShotTally {
+            received: Received::nothing(self.model.mesh.side_count()),
+            counts: Counts::default(),
+            emitted: Quanta::ZERO,
+            blocked: Quanta::ZERO,
+            escaped: Quanta::ZERO,
+        }
+    }
+
+    /// Traces some of the lines. Each line should be traced once.
+    pub fn trace(&self, lines: Range<u64>, tally: &mut FirstShotTally) {
+        let Model { scene, mesh, accel } = self.model;
+        let mut tracer = accel.tracer();
+        for index in lines {
+            let k = self.allocation.owner(index);
+            let Source { triangle, side, .. } = self.sources[k];
+            let mut stream = self.streams.line(index);
+            let origin = point_on_triangle(&mut stream).point(scene.corners(triangle));
+            let normal = match side {
+                Side::Front => scene.normal(triangle),
+                Side::Back => -scene.normal(triangle),
+            };
+            let ray = Line { origin, direction: cosine_direction(normal, &mut stream) };
+            let power = self.per_line[k];
+            tally.emitted += power;
+            tally.counts.lines += 1;
+            match tracer.closest(&ray, Some(triangle)) {
+                None => {
+                    tally.escaped += power;
+                    tally.counts.empty += 1;
+                }
+                Some(hit) => {
+                    tally.counts.crossings += 1;
+                    match mesh.side_at(hit.triangle, hit.point, hit.side) {
+                        Some(side) => tally.received.add(side, power),
+                        None => tally.blocked += power,
+                    }
+                }
+            }
+        }
+    }
+
+    /// Closes the books once all lines are traced.
+    ///
+    /// # Errors
+    ///
+    /// If a tally overflowed.
+    pub fn finish(&self, tally: FirstShotTally) -> Result<Shot, SolveError> {
+        let FirstShotTally { mut received, counts, emitted, blocked, escaped } = tally;
+        let mut balance = Balance { emitted, blocked, escaped, ..Balance::default() };
+        self.model.mesh.for_each_side(|triangle, _, _, side| {
+            let power = received.power[side.index()];
+            let reflected = power.scaled(self.model.scene.material(triangle).reflectance);
+            balance.unshot += reflected;
+            balance.absorbed += power - reflected;
+        });
+        // The number of lines is given, so the variance of a sum is binomial: Σw² − (Σw)²/N.
+        for (variance, power) in received.variance.iter_mut().zip(&received.power) {
+            for (v, p) in variance.iter_mut().zip(power.0) {
+                *v = (*v - p as f64 * p as f64 / counts.lines.max(1) as f64).max(0.0);
+            }
+        }
+        if !balance.closes() {
+            return Err(SolveError::Unbalanced { stage: "first shot" });
+        }
+        Ok(Shot { received, unit: self.unit, balance, counts })
+    }
+}

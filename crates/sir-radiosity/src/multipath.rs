@@ -1,0 +1,165 @@
+//! Multipath: global lines pass power on between all surfaces that face each other.
+//!
+//! Sbert, Pueyo, Neumann and Purgathofer (1996), *Global multipath Monte Carlo algorithms for radiosity*; Martínez,
+//! Forés and Martín (2009), section 2.
+
+use std::ops::Range;
+
+use sir_geom::TriangleId;
+use sir_lines::{Domain, Stage, Streams};
+use sir_mesh::SideId;
+
+use crate::segments::{End, Segment, segments};
+use crate::{Balance, Counts, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError};
+
+/// What a side holds while power travels.
+#[derive(Clone, Copy, Debug)]
+struct SideState {
+    /// Power received and reflected, but not sent on.
+    unshot: Quanta,
+    /// Reflected direct power that leaves with every line \[quanta\]: its forecast share.
+    emission: [f32; 3],
+}
+
+/// A transport of power along global lines. Sequential: the result depends on the order of the lines.
+#[derive(Clone, Debug)]
+pub struct Multipath<'m> {
+    model: &'m Model,
+    sides: Vec<SideState>,
+    books: Books,
+    domain: Domain,
+    streams: Streams,
+    unit: PowerUnit,
+    lines: u64,
+}
+
+/// What is written down while power travels.
+#[derive(Clone, Debug)]
+struct Books {
+    received: Received,
+    balance: Balance,
+    counts: Counts,
+}
+
+/// The outcome of a transport.
+#[derive(Clone, Debug)]
+pub struct Transported {
+    /// Irradiance of all sides.
+    pub solution: Solution,
+    /// Power received by each side, direct and indirect: the exact tallies.
+    pub received: Received,
+    /// The size of a quantum.
+    pub unit: PowerUnit,
+    /// Where the power of this stage went. Its `emitted` is what the lines took from the sources by forecast, which
+    /// differs from the reflected direct power by chance.
+    pub balance: Balance,
+    /// What the lines met.
+    pub counts: Counts,
+}
+
+impl<'m> Multipath<'m> {
+    /// Prepares the transport of the reflected direct power of a first shot on `lines` lines.
+    ///
+    /// A side of a patch of area `A` is left by `n = N · 2A/S` lines on average, so each takes `1/n` of its reflected
+    /// direct power along.
+    #[must_use]
+    pub fn new(model: &'m Model, shot: Shot, domain: Domain, lines: u64, seed: u64) -> Self {
+        let forecast = domain.forecast(lines);
+        let mut sides = Vec::with_capacity(model.mesh.side_count());
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let reflected =
+                shot.received.power[side.index()].scaled(model.scene.material(triangle).reflectance);
+            let crossings = forecast.crossings(model.mesh.patch_area(triangle));
+            sides.push(SideState {
+                unshot: Quanta::ZERO,
+                emission: reflected.0.map(|q| (q as f64 / crossings) as f32),
+            });
+        });
+        let books = Books { received: shot.received, balance: Balance::default(), counts: Counts::default() };
+        let streams = Streams::new(seed, Stage::GLOBAL);
+        Self { model, sides, books, domain, streams, unit: shot.unit, lines }
+    }
+
+    /// Number of lines that the forecast was made for.
+    #[must_use]
+    pub fn lines(&self) -> u64 {
+        self.lines
+    }
+
+    /// Traces the next lines. The ranges of successive calls should follow each other.
+    pub fn trace(&mut self, lines: Range<u64>) {
+        let Self { model, sides, books, domain, streams, .. } = self;
+        let mut tracer = model.accel.tracer();
+        for index in lines {
+            let line = domain.sample(&mut streams.line(index));
+            let hits = tracer.all_hits(&line);
+            books.counts.lines += 1;
+            books.counts.empty += u64::from(hits.is_empty());
+            books.counts.odd += hits.len() as u64 % 2;
+            books.counts.crossings += hits.len() as u64;
+            segments(&model.mesh, hits, |segment| exchange(model, sides, books, segment));
+        }
+    }
+
+    /// Closes the books once all lines are traced.
+    ///
+    /// # Errors
+    ///
+    /// If a tally overflowed.
+    pub fn finish(self) -> Result<Transported, SolveError> {
+        let Books { received, mut balance, counts } = self.books;
+        for side in &self.sides {
+            balance.unshot += side.unshot;
+        }
+        if !balance.closes() {
+            return Err(SolveError::Unbalanced { stage: "multipath" });
+        }
+        let solution = Solution::new(self.model, &received, self.unit);
+        Ok(Transported { solution, received, unit: self.unit, balance, counts })
+    }
+}
+
+/// Both ends of a segment send what they hold to the other one.
+#[inline]
+fn exchange(model: &Model, sides: &mut [SideState], books: &mut Books, segment: Segment) {
+    match (segment.from, segment.to) {
+        (End::Side(i, triangle_i), End::Side(j, triangle_j)) => {
+            let (from_i, from_j) = (take(sides, books, i), take(sides, books, j));
+            give(model, sides, books, (j, triangle_j), from_i);
+            give(model, sides, books, (i, triangle_i), from_j);
+        }
+        (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
+            let power = take(sides, books, i);
+            books.balance.escaped += power;
+        }
+        (End::Side(i, _), End::Inactive) | (End::Inactive, End::Side(i, _)) => {
+            let power = take(sides, books, i);
+            books.balance.blocked += power;
+        }
+        _ => {}
+    }
+}
+
+/// Takes all unshot power of a side and this line's share of its reflected direct power.
+#[inline]
+fn take(sides: &mut [SideState], books: &mut Books, side: SideId) -> Quanta {
+    let state = &mut sides[side.index()];
+    let emission = Quanta(state.emission.map(|e| e as i64));
+    books.balance.emitted += emission;
+    std::mem::take(&mut state.unshot) + emission
+}
+
+/// A side receives power, absorbs some and keeps the rest to send it on.
+#[inline]
+fn give(
+    model: &Model,
+    sides: &mut [SideState],
+    books: &mut Books,
+    (side, triangle): (SideId, TriangleId),
+    power: Quanta,
+) {
+    books.received.add(side, power);
+    let reflected = power.scaled(model.scene.material(triangle).reflectance);
+    sides[side.index()].unshot += reflected;
+    books.balance.absorbed += power - reflected;
+}

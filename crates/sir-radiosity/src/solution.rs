@@ -1,0 +1,42 @@
+//! The result.
+
+use sir_geom::{Rgb, Side, TriangleId};
+use sir_mesh::SideId;
+
+use crate::{Model, PowerUnit, Received};
+
+/// Irradiance of every side of every patch, with standard errors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Irradiance `E` per band \[W/m²\], indexed by [`SideId`].
+    pub irradiance: Vec<Rgb>,
+    /// Standard error of `irradiance` per band \[W/m²\], indexed by [`SideId`].
+    pub error: Vec<Rgb>,
+}
+
+impl Solution {
+    /// Irradiance is received power over area.
+    pub(crate) fn new(model: &Model, received: &Received, unit: PowerUnit) -> Self {
+        let sides = model.mesh.side_count();
+        let mut solution = Self { irradiance: Vec::with_capacity(sides), error: Vec::with_capacity(sides) };
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let per_area = 1.0 / model.mesh.patch_area(triangle);
+            solution.irradiance.push(unit.watts(received.power[side.index()]) * per_area);
+            let deviation = received.variance[side.index()].map(|v| v.sqrt() * unit.quantum());
+            solution.error.push(Rgb::from_array(deviation) * per_area);
+        });
+        solution
+    }
+
+    /// Radiosity `B = M + ρ E` \[W/m²\]; `side` must be the given side of a patch of `triangle`.
+    #[must_use]
+    pub fn radiosity(&self, model: &Model, triangle: TriangleId, side: Side, id: SideId) -> Rgb {
+        model.radiosity(triangle, side, self.irradiance[id.index()])
+    }
+
+    /// Standard error of the radiosity \[W/m²\]; `id` must be a side of a patch of `triangle`.
+    #[must_use]
+    pub fn standard_error(&self, model: &Model, triangle: TriangleId, id: SideId) -> Rgb {
+        model.scene.material(triangle).reflectance * self.error[id.index()]
+    }
+}
