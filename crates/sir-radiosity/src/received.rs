@@ -1,5 +1,6 @@
 //! Power received by the sides of patches.
 
+use sha2::{Digest, Sha256};
 use sir_mesh::SideId;
 
 use crate::Quanta;
@@ -31,5 +32,17 @@ impl Received {
         for (v, p) in variance.iter_mut().zip(power.0) {
             *v += p as f64 * p as f64;
         }
+    }
+
+    /// SHA-256 of the tallies in hexadecimal: the same for the same result, on any machine.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        let mut hasher = Sha256::new();
+        for power in &self.power {
+            for band in power.0 {
+                hasher.update(band.to_le_bytes());
+            }
+        }
+        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }

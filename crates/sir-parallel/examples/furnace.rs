@@ -1,0 +1,37 @@
+//! Solves a closed box with a progress report: `cargo run --release -p sir-parallel --example furnace`.
+#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+
+use glam::DVec3;
+use sir_geom::shapes::{self, Facing};
+use sir_geom::{Material, Rgb, SceneBuilder};
+use sir_lines::Domain;
+use sir_mesh::Subdivision;
+use sir_parallel::{Observer, first_shot, multipath};
+use sir_radiosity::Model;
+
+/// Prints a line at every tenth of a stage.
+struct Tenths(u64);
+
+impl Observer for Tenths {
+    fn progress(&mut self, done: u64, total: u64) {
+        if done * 10 / total > self.0 {
+            self.0 = done * 10 / total;
+            println!("{done} of {total} lines");
+        }
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut builder = SceneBuilder::new();
+    let grey = Material::diffuse("grey", Rgb::new(0.5, 0.8, 0.9)).emitting(Rgb::ONE);
+    let grey = builder.add_material(grey);
+    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
+    let model = Model::new(builder.build()?.scene, Subdivision::Patches(600))?;
+
+    let shot = first_shot(&model, 1_000_000, 1, &mut Tenths(0))?.outcome;
+    let domain = Domain::Sphere(model.scene.bounding_sphere());
+    let run = multipath(&model, shot, domain, 1_000_000, 1, &mut Tenths(0))?;
+    let mean = run.outcome.solution.irradiance.iter().sum::<Rgb>() / model.mesh.side_count() as f64;
+    println!("mean irradiance {mean:.4}, exact [2, 5, 10], in {:.2} s", run.time.as_secs_f64());
+    Ok(())
+}
