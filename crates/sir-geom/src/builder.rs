@@ -140,15 +140,17 @@ impl SceneBuilder {
     /// Adds a polygon, counter-clockwise seen from its front. It is cut into the fan of triangles
     /// `(0, 1, 2), (0, 2, 3), …`; with fewer than three corners it adds nothing.
     pub fn add_polygon(&mut self, corners: &[VertexId], material: MaterialId) -> FaceId {
+        let fan: Vec<_> = (2..corners.len()).map(|i| [corners[0], corners[i - 1], corners[i]]).collect();
+        self.add_face(&fan, material)
+    }
+
+    /// Adds triangles that belong together, counter-clockwise seen from their fronts.
+    pub fn add_face(&mut self, triangles: &[[VertexId; 3]], material: MaterialId) -> FaceId {
         let face = FaceId(self.faces);
         self.faces += 1;
-        for i in 2..corners.len() {
-            self.triangles.push(Triangle {
-                vertices: [corners[0], corners[i - 1], corners[i]],
-                material,
-                face,
-                source: self.triangles.len() as u32,
-            });
+        for &vertices in triangles {
+            let source = self.triangles.len() as u32;
+            self.triangles.push(Triangle { vertices, material, face, source });
         }
         face
     }

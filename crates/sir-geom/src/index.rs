@@ -49,6 +49,6 @@ typed_index!(
     MaterialId
 );
 typed_index!(
-    /// A polygon as its author drew it: the triangles that a reader cut it into share this number.
+    /// A polygon or a piece of curved surface as its author drew it: the triangles it was cut into share this number.
     FaceId
 );

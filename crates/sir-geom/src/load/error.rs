@@ -64,8 +64,8 @@ pub enum LoadError {
         /// What is wrong with it.
         what: String,
     },
-    /// A face of an OBJ file refers to a vertex that the file does not have.
-    #[error("{}:{line}: a face refers to vertex {index}, but the file has vertices 1 to {count}; export the file again", path.display())]
+    /// A face of an OBJ file refers to a vertex that is not there.
+    #[error("{}:{line}: a face refers to vertex {index}, but {count} vertices stand before it; export the file again", path.display())]
     NoSuchVertex {
         /// The OBJ file.
         path: PathBuf,
@@ -73,7 +73,7 @@ pub enum LoadError {
         line: usize,
         /// The number as the file has it.
         index: String,
-        /// How many vertices there are.
+        /// How many vertices stand before the line.
         count: usize,
     },
     /// The file describes more geometry than is taken in.

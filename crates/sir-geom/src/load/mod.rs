@@ -18,9 +18,9 @@ pub use error::LoadError;
 use crate::{Built, Material, SceneBuilder, Sides};
 use notes::Notes;
 
-/// The most vertices or triangles of a scene: beyond it a solver has no use for the scene, and a small file
-/// with many instances could fill the memory.
-const MAX_ELEMENTS: usize = 1 << 28;
+/// The most vertices or triangles of a glTF scene. Without a limit, a small file with many instances of its
+/// meshes could fill any memory.
+const MAX_ELEMENTS: usize = 1 << 26;
 
 /// Reflectance in place of one that a file does not give.
 const DEFAULT_REFLECTANCE: f64 = 0.5;

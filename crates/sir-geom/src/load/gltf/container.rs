@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ::gltf::json::{Root, deserialize};
+use ::gltf::json::{Root, Value, deserialize};
 
 use super::super::files::{self, Reference};
 use super::LoadError;
@@ -16,8 +16,24 @@ pub(super) fn open(path: &Path) -> Result<(Root, Option<Vec<u8>>), LoadError> {
     } else {
         (&bytes[..], None)
     };
-    let root = deserialize::from_slice(json).map_err(|e| invalid(e.to_string()))?;
+    let mut document: Value = deserialize::from_slice(json).map_err(|e| invalid(e.to_string()))?;
+    forget_unused(&mut document);
+    let root = deserialize::from_value(document).map_err(|e| invalid(e.to_string()))?;
     Ok((root, binary.map(<[u8]>::to_vec)))
+}
+
+/// Takes away what no scene needs, so that nothing in it is an error, and adds the empty list of nodes that a
+/// scene may leave out, but not for the crate `gltf`.
+fn forget_unused(document: &mut Value) {
+    let Some(members) = document.as_object_mut() else { return };
+    for unused in ["animations", "samplers", "skins"] {
+        members.remove(unused);
+    }
+    for scene in members.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
+        if let Some(scene) = scene.as_object_mut() {
+            scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
+        }
+    }
 }
 
 /// The JSON chunk and the binary chunk of a GLB (glTF 2.0 specification, section 4.4). What follows is ignored.

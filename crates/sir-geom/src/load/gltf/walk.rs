@@ -17,9 +17,6 @@ impl Reader<'_> {
             Some(scene) => scene.nodes.clone(),
             None => orphans(self.root),
         };
-        if !self.root.animations.is_empty() {
-            self.notes.count("animations were ignored", self.root.animations.len());
-        }
         // A stack of our own: the depth of a tree from a file has no limit. Last in is first out, so children
         // are put on it in reverse order.
         let mut stack: Vec<_> = roots.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();

@@ -5,6 +5,7 @@
 //! the statements that a scene is made of, in their plainest form, each on its line of the original.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 /// An OBJ file in plain form.
 #[derive(Debug, Default)]
@@ -14,7 +15,7 @@ pub(super) struct Obj {
     /// What stands behind each `mtllib`.
     pub(super) libraries: Vec<String>,
     /// What stands behind each `usemtl`.
-    pub(super) used_materials: Vec<String>,
+    pub(super) used_materials: BTreeSet<String>,
     /// Statements `p` and `l`, and faces with one or two corners.
     pub(super) points_and_lines: usize,
 }
@@ -27,16 +28,14 @@ pub(super) fn obj(text: &str) -> Obj {
         let (keyword, rest) = split_word(&statement);
         pad_to(&mut plain.text, &mut lines, line);
         match keyword {
-            "v" => push_words(&mut plain.text, "v", rest.split_whitespace().take(3)),
+            "v" => push_words(&mut plain.text, "v", rest.split_whitespace().take(3).map(coordinate)),
             "f" if rest.split_whitespace().nth(2).is_some() => {
-                let positions =
-                    rest.split_whitespace().map(|corner| corner.split('/').next().unwrap_or_default());
-                push_words(&mut plain.text, "f", positions);
+                push_words(&mut plain.text, "f", rest.split_whitespace().map(position));
             }
             "f" | "l" | "p" => plain.points_and_lines += 1,
             "usemtl" => {
                 push_words(&mut plain.text, "usemtl", [rest].into_iter());
-                plain.used_materials.push(rest.to_owned());
+                plain.used_materials.insert(rest.to_owned());
             }
             "mtllib" => plain.libraries.push(rest.to_owned()),
             _ => {}
@@ -90,9 +89,11 @@ fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     std::iter::from_fn(move || {
         let (i, first) = lines.next()?;
         let mut statement = Cow::Borrowed(first);
-        while let Some(start) = statement.strip_suffix('\\') {
-            let next = lines.next().map_or("", |(_, next)| next);
-            statement = Cow::Owned(format!("{start} {next}"));
+        while statement.ends_with('\\') {
+            let statement = statement.to_mut();
+            statement.pop();
+            statement.push(' ');
+            statement.push_str(lines.next().map_or("", |(_, next)| next));
         }
         Some((i + 1, statement))
     })
@@ -115,6 +116,17 @@ fn pad_to(text: &mut String, lines: &mut usize, line: usize) {
     *lines = line - 1;
 }
 
+/// A coordinate; `1.#IND` and the like, which some C libraries write for what is not a number, become `nan`.
+fn coordinate(word: &str) -> &str {
+    if word.contains('#') { "nan" } else { word }
+}
+
+/// The number of the position of a corner `position/texture/normal`; the whole corner if there is none, so that
+/// it can be complained about.
+fn position(corner: &str) -> &str {
+    corner.split('/').next().filter(|position| !position.is_empty()).unwrap_or(corner)
+}
+
 fn push_words<'a>(text: &mut String, keyword: &str, words: impl Iterator<Item = &'a str>) {
     text.push_str(keyword);
     for word in words {
@@ -133,7 +145,7 @@ mod tests {
             "# head\n\nv\t1 2  3 0.1 0.2 0.3 # red\r\nf 1/2/3 \\\n  2//4 -1\nl 1 2 3\nusemtl\ta b#1 # c\n g x\n",
         );
         assert_eq!(plain.text, "\n\nv 1 2 3\nf 1 2 -1\n\n\nusemtl a b#1\n\n");
-        assert_eq!((plain.points_and_lines, plain.used_materials), (1, vec!["a b#1".to_owned()]));
+        assert_eq!((plain.points_and_lines, plain.used_materials), (1, ["a b#1".to_owned()].into()));
     }
 
     #[test]

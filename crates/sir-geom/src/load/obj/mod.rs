@@ -7,6 +7,7 @@
 mod clean;
 mod mtl;
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use glam::DVec3;
@@ -27,11 +28,10 @@ pub(super) fn read(
 ) -> Result<(), LoadError> {
     let obj = clean::obj(&String::from_utf8_lossy(&files::read_needed(path)?));
     notes.count("points and lines were skipped", obj.points_and_lines);
-    let mut library = mtl::Library::default();
-    for (i, names) in obj.libraries.iter().enumerate() {
-        if !obj.libraries[..i].contains(names) {
-            library.add(path, names, options, notes)?;
-        }
+    let mut library = mtl::Library::new(&obj.used_materials, options);
+    let mut read = HashSet::new();
+    for names in obj.libraries.iter().filter(|&names| read.insert(names)) {
+        library.add(path, names, notes)?;
     }
     for name in obj.used_materials.iter().filter(|name| !library.by_name.contains_key(*name)) {
         notes.name("materials are in no library, and are made grey", name);
@@ -42,7 +42,7 @@ pub(super) fn read(
 }
 
 /// Lets `tobj` make meshes of plain OBJ text, one for each run of faces of the same material, in the file's order.
-fn parse(path: &Path, text: &str, library: &mtl::Library) -> Result<Vec<tobj::Model>, LoadError> {
+fn parse(path: &Path, text: &str, library: &mtl::Library<'_>) -> Result<Vec<tobj::Model>, LoadError> {
     let text = format!("{ALL_LIBRARIES}{text}");
     let mut rest = text.as_bytes();
     let as_they_are = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..Default::default() };
@@ -66,26 +66,20 @@ fn line_at(text: &str, end: usize) -> (usize, String) {
     (line + 1, statement.chars().take(80).collect())
 }
 
-/// Finds the first corner of a face that is none of the vertices.
+/// Finds the first corner of a face that is none of the vertices before it.
 fn no_such_vertex(path: &Path, text: &str) -> LoadError {
-    let count = text.lines().filter(|line| line.starts_with("v ")).count();
-    let mut before = 0;
+    let mut count = 0;
     for (i, line) in text.lines().enumerate() {
-        before += usize::from(line.starts_with("v "));
-        for corner in line.strip_prefix("f ").unwrap_or_default().split_whitespace() {
-            let known = match corner.parse::<isize>() {
-                Ok(n) if n < 0 => n.unsigned_abs() <= before,
-                Ok(n) => (1..=count).contains(&n.unsigned_abs()),
-                Err(_) => false,
+        count += usize::from(line.starts_with("v "));
+        let mut corners = line.strip_prefix("f ").unwrap_or_default().split_whitespace();
+        let known = |corner: &str| corner.parse::<isize>().is_ok_and(|n| n != 0 && n.unsigned_abs() <= count);
+        if let Some(index) = corners.find(|corner| !known(corner)) {
+            return LoadError::NoSuchVertex {
+                path: path.to_owned(),
+                line: i + 1,
+                index: index.to_owned(),
+                count,
             };
-            if !known {
-                return LoadError::NoSuchVertex {
-                    path: path.to_owned(),
-                    line: i + 1,
-                    index: corner.to_owned(),
-                    count,
-                };
-            }
         }
     }
     LoadError::Syntax { path: path.to_owned(), line: 1, what: "a face refers to a missing vertex".to_owned() }

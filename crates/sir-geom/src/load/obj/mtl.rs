@@ -1,6 +1,6 @@
 //! Material libraries.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
@@ -9,45 +9,42 @@ use super::super::{DEFAULT_REFLECTANCE, LoadError, LoadOptions, files, texture};
 use super::{clean, line_at};
 use crate::{Material, Rgb, Sides};
 
-/// The materials of all libraries of an OBJ file.
-#[derive(Debug, Default)]
-pub(super) struct Library {
+/// The materials of all libraries of an OBJ file, as far as its faces use them.
+#[derive(Debug)]
+pub(super) struct Library<'a> {
+    /// Names of the materials to take in.
+    wanted: &'a BTreeSet<String>,
+    options: LoadOptions,
     pub(super) materials: Vec<Material>,
     /// Places in `materials`; of equal names the last counts.
     pub(super) by_name: BTreeMap<String, usize>,
     textures: HashMap<PathBuf, Option<Rgb>>,
 }
 
-impl Library {
+impl<'a> Library<'a> {
+    /// A library that takes in the materials of these names.
+    pub(super) fn new(wanted: &'a BTreeSet<String>, options: LoadOptions) -> Self {
+        Self { wanted, options, materials: Vec::new(), by_name: BTreeMap::new(), textures: HashMap::new() }
+    }
+
     /// Reads what a `mtllib` statement of the file `obj` names: one file whose name may have blanks, or else
     /// several.
-    pub(super) fn add(
-        &mut self,
-        obj: &Path,
-        names: &str,
-        options: LoadOptions,
-        notes: &mut Notes,
-    ) -> Result<(), LoadError> {
+    pub(super) fn add(&mut self, obj: &Path, names: &str, notes: &mut Notes) -> Result<(), LoadError> {
         let beside = |name: &str| obj.with_file_name(name.trim_matches('"').replace('\\', "/"));
         if let Ok(bytes) = files::read(&beside(names)) {
-            return self.parse(&beside(names), &bytes, options, notes);
+            return self.parse(&beside(names), &bytes, notes);
         }
-        for name in names.split_whitespace() {
-            match files::read(&beside(name)) {
-                Ok(bytes) => self.parse(&beside(name), &bytes, options, notes)?,
+        // A blank inside one of several names has a backslash before it.
+        for name in names.replace("\\ ", "\0").split_whitespace().map(|name| name.replace('\0', " ")) {
+            match files::read(&beside(&name)) {
+                Ok(bytes) => self.parse(&beside(&name), &bytes, notes)?,
                 Err(_) => notes.name("material libraries cannot be read", name),
             }
         }
         Ok(())
     }
 
-    fn parse(
-        &mut self,
-        path: &Path,
-        bytes: &[u8],
-        options: LoadOptions,
-        notes: &mut Notes,
-    ) -> Result<(), LoadError> {
+    fn parse(&mut self, path: &Path, bytes: &[u8], notes: &mut Notes) -> Result<(), LoadError> {
         let syntax = |line, what| LoadError::Syntax { path: path.to_owned(), line, what };
         let text = clean::mtl(&String::from_utf8_lossy(bytes)).map_err(|(line, what)| syntax(line, what))?;
         let mut rest = text.as_bytes();
@@ -55,10 +52,10 @@ impl Library {
             let (line, statement) = line_at(&text, text.len() - rest.len());
             syntax(line, format!("{e} in \"{statement}\""))
         })?;
-        for source in materials {
+        for source in materials.into_iter().filter(|m| self.wanted.contains(&m.name)) {
             self.by_name.insert(source.name.clone(), self.materials.len());
             let material = self.convert(&source, path, notes);
-            self.materials.push(options.sides.apply(material));
+            self.materials.push(self.options.sides.apply(material));
         }
         Ok(())
     }
