@@ -1,0 +1,189 @@
+//! What a pipeline file says, with every default filled in.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use sir_geom::{Camera, SidesPolicy};
+use sir_mesh::Subdivision;
+
+use crate::decode;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+
+/// A valid pipeline: its stages are in a possible order, its numbers are in range and its inputs exist.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pipeline {
+    /// The file, as it was named.
+    pub path: PathBuf,
+    /// What the file says.
+    pub text: String,
+    /// Seed of all random numbers. Default 1.
+    pub seed: u64,
+    /// The stages, in the order in which they run.
+    pub stages: Vec<Stage>,
+}
+
+/// A stage, and where the file asks for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// What to do.
+    pub action: Action,
+    /// Bytes of the pipeline's text.
+    pub span: Range<usize>,
+}
+
+/// What a stage does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Reads a scene.
+    Load {
+        /// The scene file (glTF, GLB or OBJ): the path in the pipeline, joined to the folder of its file.
+        path: PathBuf,
+        /// Which sides of surfaces take part.
+        sides: SidesPolicy,
+    },
+    /// Cuts the triangles into patches.
+    Subdivide(Subdivision),
+    /// Sends the power of the light sources along local lines.
+    FirstShot {
+        /// How many lines, at least 1.
+        lines: u64,
+    },
+    /// Distributes the reflected light along global lines.
+    Multipath {
+        /// How many lines, at least 1.
+        lines: u64,
+    },
+    /// Writes files.
+    Save(Vec<Output>),
+}
+
+impl Action {
+    /// The name of the stage in a pipeline file.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Load { .. } => "Load",
+            Self::Subdivide(_) => "Subdivide",
+            Self::FirstShot { .. } => "FirstShot",
+            Self::Multipath { .. } => "Multipath",
+            Self::Save(_) => "Save",
+        }
+    }
+}
+
+/// A file to write.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Its path inside the run directory.
+    pub path: PathBuf,
+    /// What it holds.
+    pub content: Content,
+}
+
+/// What an output file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Content {
+    /// A picture.
+    Image(Image),
+    /// The lit mesh, as binary glTF.
+    Gltf,
+    /// Radiosity, irradiance and error of every patch, as CSV or NPY.
+    Table,
+}
+
+/// A picture of the solution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Width in pixels. Default 800.
+    pub width: u32,
+    /// Height in pixels. Default: what the camera's aspect asks for, else 600.
+    pub height: Option<u32>,
+    /// Samples per pixel along each edge: 4 means 4 × 4 samples. Default 4.
+    pub samples: u32,
+    /// What the radiance is multiplied by.
+    pub exposure: Exposure,
+    /// From where it is taken.
+    pub camera: CameraChoice,
+}
+
+/// Brightness of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Exposure {
+    /// So that the scene is well seen.
+    #[default]
+    Auto,
+    /// Radiance is multiplied by this number, above 0.
+    Factor(f64),
+}
+
+/// The point of view of a picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum CameraChoice {
+    /// The first camera of the scene, or, if it has none, one from which all of the scene is seen.
+    #[default]
+    Default,
+    /// A camera of the scene by its number, from 0.
+    Number {
+        /// The number.
+        number: usize,
+        /// Where the pipeline says so.
+        span: Range<usize>,
+    },
+    /// A camera of the scene by its name.
+    Name {
+        /// The name.
+        name: String,
+        /// Where the pipeline says so.
+        span: Range<usize>,
+    },
+    /// A camera that the pipeline describes.
+    Own(Camera),
+}
+
+impl Pipeline {
+    /// Reads the pipeline file `path`.
+    ///
+    /// # Errors
+    ///
+    /// All problems of the file, or why it cannot be read.
+    pub fn read(path: &Path) -> Result<Self, crate::Error> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| crate::Error::ReadPipeline { path: path.to_owned(), source })?;
+        Ok(Self::parse(&text, path)?)
+    }
+
+    /// Reads the text of a pipeline file. Paths in it are relative to the folder of `path`.
+    ///
+    /// # Errors
+    ///
+    /// All problems of the text, each with its place and what to write instead. A missing input file is one.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, Diagnostics> {
+        decode::decode(text, path)
+    }
+
+    /// Problems of this pipeline, ready to be shown.
+    #[must_use]
+    pub fn diagnostics(&self, problems: Vec<Diagnostic>) -> Diagnostics {
+        Diagnostics::new(&self.path, &self.text, problems)
+    }
+
+    /// All files that the pipeline asks for, in the order of the file.
+    pub fn outputs(&self) -> impl Iterator<Item = &Output> {
+        self.stages.iter().flat_map(|stage| match &stage.action {
+            Action::Save(outputs) => outputs.as_slice(),
+            _ => &[],
+        })
+    }
+
+    /// The scene file.
+    #[must_use]
+    pub fn scene_path(&self) -> &Path {
+        self.stages
+            .iter()
+            .find_map(|stage| match &stage.action {
+                Action::Load { path, .. } => Some(path.as_path()),
+                _ => None,
+            })
+            .unwrap_or(Path::new(""))
+    }
+}
