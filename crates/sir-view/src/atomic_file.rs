@@ -1,0 +1,83 @@
+//! Files that appear whole or not at all.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use crate::ViewError;
+
+/// Writes a file by way of a temporary one beside it, which takes the file's name only when it is complete and
+/// on disk. Nobody ever sees half a file, and an older file of that name stays until the new one is there.
+///
+/// # Errors
+///
+/// If the file cannot be written, or `write` fails; the temporary file is then removed.
+pub fn write_atomically(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), ViewError> {
+    let temporary = temporary_name(path).map_err(ViewError::writing(path))?;
+    let result = fill(&temporary, write).and_then(|()| fs::rename(&temporary, path));
+    result.map_err(|error| {
+        // The first error says more than a second one about the clean-up would.
+        let _ = fs::remove_file(&temporary);
+        ViewError::writing(path)(error)
+    })
+}
+
+fn fill(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    write(&mut file)?;
+    file.flush()?;
+    file.get_ref().sync_all()
+}
+
+/// A hidden name in the same folder, hence on the same file system; it has the process number in it, so that two
+/// processes do not write to one file.
+fn temporary_name(path: &Path) -> io::Result<PathBuf> {
+    let name = path
+        .file_name()
+        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path has no file name"))?;
+    let mut hidden = OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".{}.part", std::process::id()));
+    Ok(path.with_file_name(hidden))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(dir: &Path) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(dir).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_failure_leaves_the_old_file_and_nothing_else() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.txt");
+        write_atomically(&path, |f| f.write_all(b"old")).unwrap();
+        let error = write_atomically(&path, |f| {
+            f.write_all(b"half of the new")?;
+            Err(io::Error::other("disk on fire"))
+        })
+        .unwrap_err()
+        .to_string();
+        assert!(error.contains("a.txt") && error.contains("disk on fire"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(dir.path()), ["a.txt"]);
+        write_atomically(&path, |f| f.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    fn a_missing_folder_is_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let error = write_atomically(&dir.path().join("no/such/file"), |_| Ok(())).unwrap_err();
+        assert!(error.to_string().contains("no/such/file"), "{error}");
+    }
+}

@@ -1,0 +1,195 @@
+//! Points of space: welding those that are equal but for rounding, and finding those on a line.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+/// Points of which no two are closer than a tolerance.
+pub(super) struct Weld {
+    tolerance: f64,
+    origin: DVec3,
+    points: Vec<DVec3>,
+    cells: HashMap<[i64; 3], Vec<u32>>,
+}
+
+impl Weld {
+    /// `origin` is any point near the others.
+    pub(super) fn new(origin: DVec3, tolerance: f64) -> Self {
+        Self { tolerance, origin, points: Vec::new(), cells: HashMap::new() }
+    }
+
+    /// The number of the point at this position: that of the first one within the tolerance, if there is one.
+    pub(super) fn add(&mut self, p: DVec3) -> u32 {
+        // Cells are several tolerances wide, so most points have one cell to look into, and none more than eight.
+        let cell =
+            |q: DVec3| ((q - self.origin) / (8.0 * self.tolerance)).floor().to_array().map(|x| x as i64);
+        let (low, high) = (cell(p - self.tolerance), cell(p + self.tolerance));
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    let near = self.cells.get(&[x, y, z]).into_iter().flatten();
+                    let is_near = |&&i: &&u32| {
+                        self.points[i as usize].distance_squared(p) <= self.tolerance * self.tolerance
+                    };
+                    if let Some(&i) = near.clone().find(is_near) {
+                        return i;
+                    }
+                }
+            }
+        }
+        let number = self.points.len() as u32;
+        self.cells.entry(cell(p)).or_default().push(number);
+        self.points.push(p);
+        number
+    }
+
+    /// The points by number.
+    pub(super) fn into_points(self) -> Vec<DVec3> {
+        self.points
+    }
+}
+
+/// A k-d tree over points, for those near a segment. A grid would need one cell size for millimetres and halls.
+pub(super) struct PointTree<'a> {
+    points: &'a [DVec3],
+    /// Point numbers; a node is a range of them, its children the two halves.
+    order: Vec<u32>,
+    /// Boxes of the nodes in heap order.
+    boxes: Vec<(DVec3, DVec3)>,
+}
+
+/// Points of a node that is not divided.
+const LEAF: usize = 8;
+
+impl<'a> PointTree<'a> {
+    pub(super) fn new(points: &'a [DVec3]) -> Self {
+        let mut tree = Self { points, order: (0..points.len() as u32).collect(), boxes: Vec::new() };
+        let mut order = std::mem::take(&mut tree.order);
+        tree.build(&mut order, 0);
+        tree.order = order;
+        tree
+    }
+
+    fn build(&mut self, order: &mut [u32], node: usize) {
+        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = order.iter().fold(start, |(low, high), &i| {
+            let p = self.points[i as usize];
+            (low.min(p), high.max(p))
+        });
+        if self.boxes.len() <= node {
+            self.boxes.resize(node + 1, start);
+        }
+        self.boxes[node] = (low, high);
+        if order.len() > LEAF {
+            let size = high - low;
+            let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+            let half = order.len() / 2;
+            let points = self.points;
+            order.select_nth_unstable_by(half, |&a, &b| {
+                points[a as usize][axis].total_cmp(&points[b as usize][axis]).then(a.cmp(&b))
+            });
+            let (left, right) = order.split_at_mut(half);
+            self.build(left, 2 * node + 1);
+            self.build(right, 2 * node + 2);
+        }
+    }
+
+    /// Appends to `found` the points whose distance to the segment `ab` is at most `tolerance`, with their place
+    /// along it: 0 at `a`, 1 at `b`, not beyond.
+    pub(super) fn near_segment(&self, a: DVec3, b: DVec3, tolerance: f64, found: &mut Vec<(f64, u32)>) {
+        self.visit(0, 0..self.order.len(), &Segment { a, along: b - a, tolerance }, found);
+    }
+
+    fn visit(
+        &self,
+        node: usize,
+        range: std::ops::Range<usize>,
+        segment: &Segment,
+        found: &mut Vec<(f64, u32)>,
+    ) {
+        if !segment.may_touch(self.boxes[node]) {
+            return;
+        }
+        if range.len() > LEAF {
+            let half = range.start + range.len() / 2;
+            self.visit(2 * node + 1, range.start..half, segment, found);
+            self.visit(2 * node + 2, half..range.end, segment, found);
+            return;
+        }
+        for &i in &self.order[range] {
+            let to = self.points[i as usize] - segment.a;
+            let t = to.dot(segment.along) / segment.along.length_squared();
+            let off = to - t * segment.along;
+            if (0.0..=1.0).contains(&t) && off.length_squared() <= segment.tolerance * segment.tolerance {
+                found.push((t, i));
+            }
+        }
+    }
+}
+
+struct Segment {
+    a: DVec3,
+    along: DVec3,
+    tolerance: f64,
+}
+
+impl Segment {
+    /// Whether the segment meets a box that is widened by the tolerance.
+    fn may_touch(&self, (low, high): (DVec3, DVec3)) -> bool {
+        let (mut enter, mut leave) = (0.0f64, 1.0f64);
+        for axis in 0..3 {
+            let from = low[axis] - self.tolerance - self.a[axis];
+            let to = high[axis] + self.tolerance - self.a[axis];
+            let along = self.along[axis];
+            if along == 0.0 {
+                if from > 0.0 || to < 0.0 {
+                    return false;
+                }
+            } else {
+                let (s, t) = (from / along, to / along);
+                enter = enter.max(s.min(t));
+                leave = leave.min(s.max(t));
+            }
+        }
+        enter <= leave
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn points_within_the_tolerance_are_one_across_cells() {
+        let mut weld = Weld::new(DVec3::ZERO, 1e-6);
+        for i in 0..1000 {
+            let p = DVec3::new(1e-6 * 8.0 * f64::from(i), 0.0, 0.0);
+            let number = weld.add(p);
+            assert_eq!(weld.add(p - DVec3::splat(5e-7)), number);
+            assert_eq!(weld.add(p + DVec3::splat(5e-7)), number);
+        }
+        assert_eq!(weld.into_points().len(), 1000);
+    }
+
+    proptest! {
+        #[test]
+        fn the_tree_finds_what_a_look_at_all_points_finds(
+            coordinates in prop::collection::vec(0u8..6, 3..300),
+            ends in prop::array::uniform6(0u8..6),
+        ) {
+            // Whole numbers, so that many points lie exactly on the segment.
+            let at = |c: &[u8]| DVec3::new(f64::from(c[0]), f64::from(c[1]), f64::from(c[2]));
+            let points: Vec<DVec3> = coordinates.chunks_exact(3).map(at).collect();
+            let (a, b) = (at(&ends[..3]), at(&ends[3..]));
+            prop_assume!(a != b);
+            let mut found = Vec::new();
+            PointTree::new(&points).near_segment(a, b, 1e-9, &mut found);
+            let mut found: Vec<u32> = found.iter().map(|f| f.1).collect();
+            found.sort_unstable();
+            let on = |p: DVec3| p.distance(a) + p.distance(b) <= a.distance(b) + 1e-9;
+            let expected: Vec<u32> = (0..points.len() as u32).filter(|&i| on(points[i as usize])).collect();
+            prop_assert_eq!(found, expected);
+        }
+    }
+}

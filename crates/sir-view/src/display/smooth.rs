@@ -1,0 +1,153 @@
+//! Which surfaces continue each other, and the irradiance that they share.
+//!
+//! Around each piece of an edge the triangles that meet there are sorted by angle. A side continues on the first
+//! side that it faces, if between the two there is nothing but an angle of nearly 180°. So the two halves of a
+//! ceiling are one surface, unless a wall that meets them in this edge lies between; front and back of a sheet
+//! never are; and light does not bleed around a crease.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+use sir_geom::{Rgb, Scene, Side, TriangleId};
+
+/// The largest deviation from 180° at which a surface goes on smoothly \[rad\].
+const CREASE: f64 = PI / 6.0;
+
+/// Triangles whose angles about an edge differ by less than this are one sheet, doubled \[rad\].
+const SAME_SHEET: f64 = 1e-3;
+
+/// A piece of an edge as a part of the rim of one triangle.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct RimPiece {
+    /// The point with the smaller number, of the two ends.
+    low: u32,
+    high: u32,
+    /// Rim nodes, in the numbering over all triangles, at the low and the high end.
+    nodes: [u32; 2],
+    triangle: u32,
+    /// Whether the triangle runs from the low to the high end.
+    forward: bool,
+}
+
+impl RimPiece {
+    /// The piece from one rim node to the next one of a triangle; each is a point and a node.
+    pub(super) fn new(triangle: TriangleId, from: (u32, u32), to: (u32, u32)) -> Self {
+        let forward = from.0 < to.0;
+        let (low, high) = if forward { (from, to) } else { (to, from) };
+        Self { low: low.0, high: high.0, nodes: [low.1, high.1], triangle: triangle.0, forward }
+    }
+}
+
+/// Sets of (rim node, side) that have one irradiance, by union and find, with the sums that make it.
+pub(super) struct Groups {
+    parents: Vec<u32>,
+    sums: Vec<(Rgb, f64)>,
+}
+
+fn slot(node: u32, side: Side) -> usize {
+    2 * node as usize + usize::from(side == Side::Back)
+}
+
+impl Groups {
+    pub(super) fn new(nodes: usize) -> Self {
+        Self { parents: (0..2 * nodes as u32).collect(), sums: vec![(Rgb::ZERO, 0.0); 2 * nodes] }
+    }
+
+    /// Takes the irradiance of a patch into account at a node of its rim.
+    pub(super) fn add(&mut self, node: u32, side: Side, irradiance: Rgb, weight: f64) {
+        let (sum, weights) = &mut self.sums[slot(node, side)];
+        *sum += weight * irradiance;
+        *weights += weight;
+    }
+
+    /// Unites the sides that continue each other, and adds up their sums.
+    pub(super) fn join(&mut self, scene: &Scene, points: &[DVec3], pieces: &mut [RimPiece]) {
+        pieces.sort_unstable();
+        let mut sheets = Vec::new();
+        for around in pieces.chunk_by(|x, y| (x.low, x.high) == (y.low, y.high)) {
+            if around.len() > 1 {
+                let along = points[around[0].high as usize] - points[around[0].low as usize];
+                sort_by_angle(scene, along, around, &mut sheets);
+                self.join_sheets(scene, &sheets);
+            }
+        }
+        for i in 0..self.parents.len() {
+            let root = self.root(i);
+            if root != i {
+                let (sum, weight) = self.sums[i];
+                self.sums[root].0 += sum;
+                self.sums[root].1 += weight;
+            }
+        }
+    }
+
+    fn join_sheets(&mut self, scene: &Scene, sheets: &[(f64, RimPiece)]) {
+        // Seen in the direction of rising angles, a triangle that runs forward shows its front.
+        let rising = |p: &RimPiece| if p.forward { Side::Front } else { Side::Back };
+        let count = sheets.len();
+        for (i, (angle, piece)) in sheets.iter().enumerate() {
+            let mut facing = None;
+            for step in 1..count {
+                let (other_angle, other) = &sheets[(i + step) % count];
+                let wedge = (other_angle - angle).rem_euclid(TAU);
+                if !(SAME_SHEET..=TAU - SAME_SHEET).contains(&wedge) {
+                    continue;
+                }
+                let first = *facing.get_or_insert(wedge);
+                if wedge > first + SAME_SHEET {
+                    break;
+                }
+                if (wedge - PI).abs() <= CREASE {
+                    self.unite(scene, (piece, rising(piece)), (other, rising(other).flip()));
+                }
+            }
+        }
+    }
+
+    fn unite(&mut self, scene: &Scene, (a, side_a): (&RimPiece, Side), (b, side_b): (&RimPiece, Side)) {
+        let is_active = |p: &RimPiece, side| scene.is_active(TriangleId(p.triangle), side);
+        if is_active(a, side_a) && is_active(b, side_b) {
+            for end in 0..2 {
+                let (x, y) = (self.root(slot(a.nodes[end], side_a)), self.root(slot(b.nodes[end], side_b)));
+                // The smallest number is the root, whatever the order of the calls.
+                self.parents[x.max(y)] = x.min(y) as u32;
+            }
+        }
+    }
+
+    fn root(&mut self, mut i: usize) -> usize {
+        while self.parents[i] as usize != i {
+            self.parents[i] = self.parents[self.parents[i] as usize];
+            i = self.parents[i] as usize;
+        }
+        i
+    }
+
+    /// How many numbers of sets there are; most are not in use.
+    pub(super) fn len(&self) -> usize {
+        self.parents.len()
+    }
+
+    /// The number of the set of a node and a side, and the irradiance there.
+    pub(super) fn find(&mut self, node: u32, side: Side) -> (usize, Rgb) {
+        let root = self.root(slot(node, side));
+        let (sum, weight) = self.sums[root];
+        (root, if weight > 0.0 { sum / weight } else { Rgb::ZERO })
+    }
+}
+
+/// The triangles around an edge by the angle of their half-planes \[rad\], counted from the first one.
+fn sort_by_angle(scene: &Scene, along: DVec3, around: &[RimPiece], sheets: &mut Vec<(f64, RimPiece)>) {
+    let inward = |p: &RimPiece| {
+        let m = scene.normal(TriangleId(p.triangle)).cross(along);
+        if p.forward { m } else { -m }
+    };
+    let x = inward(&around[0]);
+    let y = along.normalize_or_zero().cross(x);
+    sheets.clear();
+    sheets.extend(around.iter().map(|p| {
+        let m = inward(p);
+        (m.dot(y).atan2(m.dot(x)), *p)
+    }));
+    sheets.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+}

@@ -1,0 +1,174 @@
+//! Pictures: the radiance that a camera sees.
+
+use std::thread;
+
+use glam::DVec3;
+use sir_accel::{Accel, Hit, Tracer};
+use sir_geom::{Camera, Line, Projection, Rgb, Scene};
+use sir_lines::{Stage, Streams};
+
+use crate::{DisplayMesh, ViewError};
+
+/// A picture of linear radiance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Radiance `L` \[W/(m² sr)\] in linear Rec. 709 bands, row by row from the top left.
+    pub radiance: Vec<[f32; 3]>,
+}
+
+/// Size and effort of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureSettings {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Rays per pixel in each direction: a pixel is the mean of `grid²` rays, one in each cell of a square grid.
+    pub grid: u32,
+    /// Threads to use; the picture is the same for any number.
+    pub threads: usize,
+}
+
+impl PictureSettings {
+    /// The largest width and height that every file format can hold.
+    const MAX: u32 = 65_535;
+
+    fn check(&self) -> Result<(), ViewError> {
+        let fits = |x: u32| (1..=Self::MAX).contains(&x);
+        if fits(self.width) && fits(self.height) {
+            Ok(())
+        } else {
+            Err(ViewError::PictureSize { width: self.width, height: self.height })
+        }
+    }
+}
+
+/// Draws what a camera sees.
+///
+/// Backs of one-sided surfaces are transparent to the camera, though they are opaque to light: one looks into a
+/// closed room from outside as if the walls in front were cut away. Where a ray meets nothing it is black.
+/// The camera's vertical field of view is kept whatever the shape of the picture.
+///
+/// # Errors
+///
+/// If the picture is empty or larger than 65,535 pixels in one direction.
+pub fn render(
+    display: &DisplayMesh<'_>,
+    accel: &Accel,
+    camera: &Camera,
+    settings: PictureSettings,
+) -> Result<Picture, ViewError> {
+    settings.check()?;
+    let PictureSettings { width, height, threads, .. } = settings;
+    let mut radiance = vec![[0.0; 3]; width as usize * height as usize];
+    let rays = CameraRays::new(camera, f64::from(width) / f64::from(height));
+    // Rows are dealt out in turn, since some parts of a picture take longer than others.
+    let mut hands: Vec<Vec<(u32, &mut [[f32; 3]])>> = Vec::new();
+    hands.resize_with(threads.clamp(1, height as usize), Vec::new);
+    let count = hands.len();
+    for (y, row) in (0..).zip(radiance.chunks_exact_mut(width as usize)) {
+        hands[y as usize % count].push((y, row));
+    }
+    thread::scope(|scope| {
+        for hand in hands {
+            scope.spawn(|| {
+                let mut tracer = accel.tracer();
+                for (y, row) in hand {
+                    for (x, pixel) in (0..).zip(row) {
+                        *pixel = shade_pixel(display, &mut tracer, &rays, settings, x, y);
+                    }
+                }
+            });
+        }
+    });
+    Ok(Picture { width, height, radiance })
+}
+
+fn shade_pixel(
+    display: &DisplayMesh<'_>,
+    tracer: &mut Tracer<'_>,
+    rays: &CameraRays,
+    settings: PictureSettings,
+    x: u32,
+    y: u32,
+) -> [f32; 3] {
+    let index = u64::from(y) * u64::from(settings.width) + u64::from(x);
+    let mut stream = Streams::new(0, Stage::PICTURE).line(index);
+    let grid = settings.grid.max(1);
+    let mut sum = Rgb::ZERO;
+    for cell in 0..grid * grid {
+        let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
+        let right = (f64::from(x) + within(cell % grid, stream.unit())) / f64::from(settings.width);
+        let down = (f64::from(y) + within(cell / grid, stream.unit())) / f64::from(settings.height);
+        sum += radiance_along(display, tracer, &rays.ray(right, down));
+    }
+    (sum / f64::from(grid * grid)).as_vec3().to_array()
+}
+
+/// Radiance `B/π` that comes in along a ray.
+fn radiance_along(display: &DisplayMesh<'_>, tracer: &mut Tracer<'_>, ray: &Line) -> Rgb {
+    let Some(hit) = first_visible(display.scene, tracer, ray) else { return Rgb::ZERO };
+    let Some(e) = display.irradiance_at(hit.triangle, hit.point, hit.side) else { return Rgb::ZERO };
+    display.radiosity(hit.triangle, hit.side, e) / std::f64::consts::PI
+}
+
+/// The first side along a ray that is not the back of a one-sided surface.
+pub(crate) fn first_visible(scene: &Scene, tracer: &mut Tracer<'_>, ray: &Line) -> Option<Hit> {
+    let is_visible = |hit: &Hit| scene.is_active(hit.triangle, hit.side);
+    let first = tracer.closest(ray, None)?;
+    if is_visible(&first) {
+        return Some(first);
+    }
+    tracer.all_hits(ray).iter().find(|hit| hit.t >= first.t && is_visible(hit)).copied()
+}
+
+/// The rays of a camera.
+pub(crate) struct CameraRays {
+    eye: DVec3,
+    forward: DVec3,
+    /// From the middle of the picture to its right and upper edge, at distance one from the eye; for a parallel
+    /// projection, in scene units.
+    right: DVec3,
+    up: DVec3,
+    is_parallel: bool,
+}
+
+impl CameraRays {
+    /// `aspect` is width over height.
+    pub(crate) fn new(camera: &Camera, aspect: f64) -> Self {
+        let (right, up) = camera_axes(camera);
+        let (half, is_parallel) = match camera.projection {
+            Projection::Perspective { vertical_fov } => ((0.5 * vertical_fov).tan(), false),
+            Projection::Orthographic { height } => (0.5 * height, true),
+        };
+        Self {
+            eye: camera.eye,
+            forward: camera.forward,
+            right: half * aspect * right,
+            up: half * up,
+            is_parallel,
+        }
+    }
+
+    /// The ray through a point of the picture: `(0, 0)` is the upper left corner, `(1, 1)` the lower right.
+    pub(crate) fn ray(&self, right: f64, down: f64) -> Line {
+        let shift = (2.0 * right - 1.0) * self.right + (1.0 - 2.0 * down) * self.up;
+        if self.is_parallel {
+            Line { origin: self.eye + shift, direction: self.forward }
+        } else {
+            Line { origin: self.eye, direction: (self.forward + shift).normalize() }
+        }
+    }
+}
+
+/// Unit vectors to the right and upwards in the picture of a camera.
+pub(crate) fn camera_axes(camera: &Camera) -> (DVec3, DVec3) {
+    let right = camera.forward.cross(camera.up);
+    // A camera whose `up` is its `forward` may be turned about its axis at will.
+    let right = right.try_normalize().unwrap_or_else(|| camera.forward.any_orthonormal_vector());
+    (right, right.cross(camera.forward))
+}

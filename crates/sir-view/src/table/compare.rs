@@ -1,0 +1,136 @@
+//! How far two solutions of the same patches are apart.
+
+use sir_geom::Rgb;
+
+use super::Table;
+use crate::{ViewError, luminance};
+
+/// The difference of the radiosities in one band, or in luminance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandComparison {
+    /// Area-weighted mean of the radiosity of the first table \[W/m²\].
+    pub mean: f64,
+    /// Root of the area-weighted mean square of the difference, relative to `mean`.
+    pub relative_rms: f64,
+    /// Area-weighted mean of second minus first, relative to `mean`.
+    pub relative_bias: f64,
+}
+
+/// A row in which two tables differ much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorstRow {
+    /// Place of the row in both tables, from 0.
+    pub row: usize,
+    /// Number of the patch.
+    pub patch: u32,
+    /// Number of the triangle in the scene's file.
+    pub triangle: u32,
+    /// Luminance of the radiosity in the first and in the second table \[W/m²\].
+    pub luminance: [f64; 2],
+    /// Second minus first over the standard error of this difference, in the band where that is largest; `None`
+    /// if a table does not state its error there.
+    pub z: Option<f64>,
+}
+
+/// What [`compare`] finds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Rows compared.
+    pub rows: usize,
+    /// Red, green and blue.
+    pub bands: [BandComparison; 3],
+    /// Rec. 709 luminance.
+    pub luminance: BandComparison,
+    /// Largest `|z|` of all rows and bands; `None` if no row states its error in both tables.
+    pub largest_z: Option<f64>,
+    /// The rows that add most to the difference in luminance (area times square of the difference), worst first.
+    pub worst: Vec<WorstRow>,
+}
+
+/// How many of the worst rows are listed.
+const WORST: usize = 10;
+
+/// Largest relative difference of the areas of what shall be the same patch.
+const SAME_AREA: f64 = 1e-6;
+
+/// Compares the radiosities of two tables of the same patches. Differences are relative to the area-weighted
+/// mean radiosity of the first table (zero if both are black, infinite if only the first is).
+///
+/// # Errors
+///
+/// If the tables differ in the number of rows or in the patch or area of one.
+pub fn compare(a: &Table, b: &Table) -> Result<Comparison, ViewError> {
+    check_match(a, b)?;
+    let band = |value: &dyn Fn(Rgb) -> f64| {
+        let (mut area, mut sum, mut difference, mut square) = (0.0, 0.0, 0.0, 0.0);
+        for (x, y) in a.rows.iter().zip(&b.rows) {
+            let d = value(y.radiosity) - value(x.radiosity);
+            area += x.area;
+            sum += x.area * value(x.radiosity);
+            difference += x.area * d;
+            square += x.area * d * d;
+        }
+        let relative = |d: f64| if d == 0.0 { 0.0 } else { d / (sum / area) };
+        BandComparison {
+            mean: if area > 0.0 { sum / area } else { 0.0 },
+            relative_rms: relative((square / area).sqrt()),
+            relative_bias: relative(difference / area),
+        }
+    };
+    let z_scores: Vec<Option<f64>> = (0..a.rows.len()).map(|i| z_score(a, b, i)).collect();
+    let luminances = |i: usize| [luminance(a.rows[i].radiosity), luminance(b.rows[i].radiosity)];
+    let weight = |i: usize| {
+        let [x, y] = luminances(i);
+        a.rows[i].area * (y - x) * (y - x)
+    };
+    let mut order: Vec<usize> = (0..a.rows.len()).filter(|&i| weight(i) > 0.0).collect();
+    order.sort_by(|&i, &j| weight(j).total_cmp(&weight(i)).then(i.cmp(&j)));
+    order.truncate(WORST);
+    Ok(Comparison {
+        rows: a.rows.len(),
+        bands: [band(&|c| c.x), band(&|c| c.y), band(&|c| c.z)],
+        luminance: band(&luminance),
+        largest_z: z_scores.iter().flatten().map(|z| z.abs()).max_by(f64::total_cmp),
+        worst: order
+            .into_iter()
+            .map(|row| WorstRow {
+                row,
+                patch: a.rows[row].patch,
+                triangle: a.rows[row].triangle,
+                luminance: luminances(row),
+                z: z_scores[row],
+            })
+            .collect(),
+    })
+}
+
+fn check_match(a: &Table, b: &Table) -> Result<(), ViewError> {
+    let mismatch = |why| Err(ViewError::Mismatch { why });
+    if a.rows.len() != b.rows.len() {
+        return mismatch(format!("the first has {} rows, the second {}", a.rows.len(), b.rows.len()));
+    }
+    for (number, (x, y)) in (1..).zip(a.rows.iter().zip(&b.rows)) {
+        if x.patch != y.patch {
+            return mismatch(format!(
+                "row {number} is patch {} in the first, {} in the second",
+                x.patch, y.patch
+            ));
+        }
+        if (x.area - y.area).abs() > SAME_AREA * x.area {
+            return mismatch(format!(
+                "patch {} (row {number}) has the area {} in the first, {} in the second",
+                x.patch, x.area, y.area
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The largest difference of a row in standard errors, over the bands in which both tables state an error.
+fn z_score(a: &Table, b: &Table, row: usize) -> Option<f64> {
+    let (x, y) = (&a.rows[row], &b.rows[row]);
+    (0..3)
+        .filter(|&i| x.error[i] > 0.0 && y.error[i] > 0.0)
+        .map(|i| (y.radiosity[i] - x.radiosity[i]) / x.error[i].hypot(y.error[i]))
+        .max_by(|p, q| p.abs().total_cmp(&q.abs()))
+}

@@ -1,0 +1,93 @@
+//! Tables as NumPy arrays.
+//!
+//! The `.npy` format, version 1.0 (NumPy Enhancement Proposal 1): the magic bytes, the version, the length of the
+//! header in two bytes, a Python dictionary as text that names the columns, filled up with spaces to a multiple of
+//! 64, and then the rows, packed, little-endian.
+
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+use super::{COLUMNS, Table, WHOLE_COLUMNS, checked, row};
+use crate::ViewError;
+
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// Bytes of a row.
+const ROW: usize = 4 * WHOLE_COLUMNS + 8 * (COLUMNS.len() - WHOLE_COLUMNS);
+
+/// The part of the header that says what the columns are.
+fn description() -> String {
+    let columns: Vec<String> = COLUMNS
+        .iter()
+        .enumerate()
+        .map(|(i, name)| format!("('{name}', '{}')", if i < WHOLE_COLUMNS { "<u4" } else { "<f8" }))
+        .collect();
+    format!("'descr': [{}]", columns.join(", "))
+}
+
+pub(super) fn write(table: &Table, out: &mut impl Write) -> io::Result<()> {
+    let mut header =
+        format!("{{{}, 'fortran_order': False, 'shape': ({},), }}", description(), table.rows.len());
+    let fixed = MAGIC.len() + 4;
+    let padded = (fixed + header.len() + 1).next_multiple_of(64) - fixed;
+    header.extend(std::iter::repeat_n(' ', padded - 1 - header.len()));
+    header.push('\n');
+    out.write_all(MAGIC)?;
+    out.write_all(&[1, 0])?;
+    out.write_all(&(header.len() as u16).to_le_bytes())?;
+    out.write_all(header.as_bytes())?;
+    for row in &table.rows {
+        out.write_all(&row.patch.to_le_bytes())?;
+        out.write_all(&row.triangle.to_le_bytes())?;
+        for x in row.numbers() {
+            out.write_all(&x.to_le_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn read(path: &Path, mut file: impl Read) -> Result<Table, ViewError> {
+    let not_a_table = |why: &str| ViewError::NotATable { path: path.to_owned(), why: why.to_owned() };
+    let mut start = [0; 10];
+    file.read_exact(&mut start).map_err(ViewError::reading(path))?;
+    if start[6..8] != [1, 0] {
+        return Err(not_a_table("its NumPy format is not version 1.0"));
+    }
+    let mut header = vec![0; usize::from(u16::from_le_bytes([start[8], start[9]]))];
+    file.read_exact(&mut header).map_err(ViewError::reading(path))?;
+    let header = String::from_utf8_lossy(&header).into_owned();
+    if !header.contains(&description()) {
+        return Err(not_a_table(&format!(
+            "its columns are not those that this program writes; expected {}",
+            description()
+        )));
+    }
+    let count = header
+        .split_once("'shape': (")
+        .and_then(|(_, rest)| rest.split_once(','))
+        .and_then(|(count, _)| count.trim().parse::<usize>().ok())
+        .ok_or_else(|| not_a_table("its header does not say how many rows there are"))?;
+    let mut table = Table::default();
+    let mut bytes = [0; ROW];
+    for number in 1..=count {
+        if file.read_exact(&mut bytes).is_err() {
+            return Err(not_a_table(&format!("it ends before row {number} of {count}: it was cut short")));
+        }
+        let mut values = [0.0; COLUMNS.len()];
+        let (whole, numbers) = bytes.split_at(4 * WHOLE_COLUMNS);
+        let whole = whole.chunks_exact(4).map(|b| f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])));
+        let numbers = numbers
+            .chunks_exact(8)
+            .map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]));
+        for (column, value) in whole.chain(numbers).enumerate() {
+            values[column] = checked(column, value).map_err(|why| ViewError::BadValue {
+                path: path.to_owned(),
+                row: number,
+                column: COLUMNS[column].to_owned(),
+                why,
+            })?;
+        }
+        table.rows.push(row(&values));
+    }
+    Ok(table)
+}

@@ -1,0 +1,172 @@
+//! Where to look from when nobody says.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use sir_accel::{Accel, Tracer};
+use sir_geom::{Camera, Scene};
+
+use crate::picture::CameraRays;
+use crate::{DisplayMesh, luminance};
+
+/// Vertical field of view \[rad\]: about 65°, wide enough for rooms.
+const FIELD: f64 = 1.13;
+
+/// Width over height of the probing pictures.
+const ASPECT: f64 = 4.0 / 3.0;
+
+/// Rays of a probing picture across and down.
+const RAYS: (u32, u32) = (20, 15);
+
+/// Places of the eye between two opposite walls, as shares of the distance.
+const ACROSS: [f64; 5] = [0.07, 0.28, 0.5, 0.72, 0.93];
+
+/// Heights of the eye as shares of that of the scene.
+const HEIGHTS: [f64; 2] = [0.4, 0.6];
+
+/// Directions of view around the vertical.
+const TURNS: u32 = 8;
+
+/// A view that shows much of the inside of a scene, for when neither the user nor the file gives one.
+///
+/// Some hundred views are tried, from places inside the box around the scene and from all sides outside of it, each with some
+/// hundred rays. The best one sees lit surfaces far and near, of many materials and triangles, with little of the
+/// picture empty, dark, taken by backs of surfaces or by something right before the eye. `up` is the direction
+/// that is up in the scene; see [`guess_up`].
+#[must_use]
+pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3) -> Camera {
+    let judge = Judge::new(display);
+    let mut tracer = accel.tracer();
+    let mut best: Option<(f64, Camera)> = None;
+    for camera in candidates(display.scene, up) {
+        let score = judge.score(&mut tracer, &camera);
+        if best.as_ref().is_none_or(|(most, _)| score > *most) {
+            best = Some((score, camera));
+        }
+    }
+    let fallback = || Camera {
+        name: String::new(),
+        eye: display.scene.bounding_box().centre(),
+        forward: DVec3::X,
+        up,
+        projection: sir_geom::Projection::Perspective { vertical_fov: FIELD },
+        aspect: None,
+    };
+    let mut camera = best.map_or_else(fallback, |(_, camera)| camera);
+    "default".clone_into(&mut camera.name);
+    camera
+}
+
+/// The direction that is probably up in a scene: +y, unless most of the surfaces that face along an axis face along
+/// z, and the scene is not higher along z than along y: floors, ceilings and tables outweigh walls, and few
+/// rooms are higher than long.
+#[must_use]
+pub fn guess_up(scene: &Scene) -> DVec3 {
+    let (mut along_y, mut along_z) = (0.0, 0.0);
+    for t in scene.triangle_ids() {
+        let (normal, area) = (scene.normal(t), scene.area(t));
+        along_y += if normal.y.abs() > 0.99 { area } else { 0.0 };
+        along_z += if normal.z.abs() > 0.99 { area } else { 0.0 };
+    }
+    let size = scene.bounding_box().size();
+    if along_z > along_y && size.z < size.y { DVec3::Z } else { DVec3::Y }
+}
+
+fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
+    let up = up.normalize_or(DVec3::Y);
+    // Horizontal axes: those of the scene, if up is one of them.
+    let east = if up.x.abs() < 0.9 { DVec3::X.reject_from(up) } else { DVec3::Z.reject_from(up) }.normalize();
+    let north = up.cross(east);
+    let (centre, size) = (scene.bounding_box().centre(), scene.bounding_box().size());
+    let extent = |axis: DVec3| axis.abs().dot(size);
+    let at = |e: f64, n: f64, u: f64| {
+        centre
+            + (e - 0.5) * extent(east) * east
+            + (n - 0.5) * extent(north) * north
+            + (u - 0.5) * extent(up) * up
+    };
+    let mut cameras = Vec::new();
+    let mut add = |eye: DVec3, target: DVec3| cameras.extend(Camera::looking_at(eye, target, up, FIELD));
+    let turned = |k: u32| {
+        let angle = f64::from(k) * std::f64::consts::TAU / f64::from(TURNS);
+        angle.cos() * east + angle.sin() * north
+    };
+    for height in HEIGHTS {
+        for e in ACROSS {
+            for n in ACROSS {
+                let eye = at(e, n, height);
+                add(eye, centre + (eye - centre).dot(up) * 0.5 * up);
+                for k in 0..TURNS {
+                    add(eye, eye + turned(k) - 0.1 * up);
+                }
+            }
+        }
+    }
+    let distance = scene.bounding_sphere().radius / (0.5 * FIELD).sin();
+    for k in 0..TURNS {
+        for height in [0.0, 0.35] {
+            add(centre + distance * (turned(k) + height * up).normalize(), centre);
+        }
+    }
+    cameras
+}
+
+/// Scores views of a scene.
+struct Judge<'a> {
+    display: &'a DisplayMesh<'a>,
+    /// Luminance of a radiosity that counts as well lit.
+    bright: f64,
+    /// Size of the scene.
+    diagonal: f64,
+}
+
+impl<'a> Judge<'a> {
+    fn new(display: &'a DisplayMesh<'a>) -> Self {
+        let scene = display.scene;
+        let (mut sum, mut area) = (0.0, 0.0);
+        for piece in display.pieces() {
+            if scene.exitance(piece.triangle, piece.side) == DVec3::ZERO {
+                let part = display.mesh.patch_area(piece.triangle);
+                sum += part * luminance(display.own_radiosity(&piece)).sqrt();
+                area += part;
+            }
+        }
+        // The mean of square roots is less drawn to a few bright spots than that of the values.
+        let mean = if area > 0.0 { sum / area } else { 0.0 };
+        Self { display, bright: mean * mean, diagonal: scene.bounding_box().size().length() }
+    }
+
+    fn score(&self, tracer: &mut Tracer<'_>, camera: &Camera) -> f64 {
+        let scene = self.display.scene;
+        let rays = CameraRays::new(camera, ASPECT);
+        let (mut lit, mut near, mut depth) = (0.0, 0.0, 0.0);
+        let mut materials: BTreeMap<u32, f64> = BTreeMap::new();
+        let mut triangles: BTreeMap<u32, f64> = BTreeMap::new();
+        for y in 0..RAYS.1 {
+            for x in 0..RAYS.0 {
+                let middle = |k: u32, count: u32| (f64::from(k) + 0.5) / f64::from(count);
+                let ray = rays.ray(middle(x, RAYS.0), middle(y, RAYS.1));
+                let Some(hit) = tracer.closest(&ray, None) else { continue };
+                let Some(e) = self.display.irradiance_at(hit.triangle, hit.point, hit.side) else { continue };
+                let b = luminance(self.display.radiosity(hit.triangle, hit.side, e));
+                lit += if self.bright > 0.0 { (b / self.bright).min(1.0) } else { 1.0 };
+                let far = hit.t / self.diagonal;
+                near += f64::from(u8::from(far < 0.06));
+                depth += far.min(1.0).sqrt();
+                *materials.entry(scene.triangle(hit.triangle).material.0).or_default() += 1.0;
+                *triangles.entry(hit.triangle.0).or_default() += 1.0;
+            }
+        }
+        let count = f64::from(RAYS.0 * RAYS.1);
+        let (lit, near, depth) = (lit / count, near / count, depth / count);
+        lit * depth
+            * (1.0 - near).powi(3)
+            * (1.0 + entropy(&materials, count))
+            * (2.0 + entropy(&triangles, count))
+    }
+}
+
+/// Entropy of shares of `total`: the logarithm of how many things one sees.
+fn entropy(counts: &BTreeMap<u32, f64>, total: f64) -> f64 {
+    counts.values().map(|&c| -(c / total) * (c / total).ln()).sum()
+}
