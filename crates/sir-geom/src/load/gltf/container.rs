@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ::gltf::json::{Root, Value, deserialize};
+use ::gltf::json::{Buffer, Root, Value, deserialize};
 
 use super::super::files::{self, Reference};
 use super::LoadError;
@@ -59,31 +59,29 @@ fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), &'static str> {
     Ok((json, binary))
 }
 
-/// The bytes of all buffers of a document.
+/// The bytes of all buffers of a document. One with neither a URI nor the binary part is empty, which is a fault
+/// only if something refers to it.
 pub(super) fn buffers(
     path: &Path,
     root: &Root,
     mut binary: Option<Vec<u8>>,
 ) -> Result<Vec<Vec<u8>>, LoadError> {
-    let mut buffers = Vec::with_capacity(root.buffers.len());
-    for (i, buffer) in root.buffers.iter().enumerate() {
-        let invalid =
-            |what: String| LoadError::Gltf { path: path.to_owned(), what: format!("buffer {i}: {what}") };
-        let mut bytes = match (&buffer.uri, binary.take_if(|_| i == 0 && buffer.uri.is_none())) {
-            (Some(uri), _) => fetch(path, uri, || format!("buffer {i}"))?,
-            (None, Some(binary)) => binary,
-            (None, None) => {
-                return Err(invalid("neither a URI nor a binary chunk gives its data".to_owned()));
-            }
+    let bytes = |(i, buffer): (usize, &Buffer)| {
+        let found = match &buffer.uri {
+            Some(uri) => Some(fetch(path, uri, || format!("buffer {i}"))?),
+            None if i == 0 => binary.take(),
+            None => None,
         };
+        let Some(mut bytes) = found else { return Ok(Vec::new()) };
         let length = usize::try_from(buffer.byte_length.0).unwrap_or(usize::MAX);
         if bytes.len() < length {
-            return Err(invalid(format!("it should have {length} bytes, but there are {}", bytes.len())));
+            let what = format!("buffer {i}: it should have {length} bytes, but there are {}", bytes.len());
+            return Err(LoadError::Gltf { path: path.to_owned(), what });
         }
         bytes.truncate(length);
-        buffers.push(bytes);
-    }
-    Ok(buffers)
+        Ok(bytes)
+    };
+    root.buffers.iter().enumerate().map(bytes).collect()
 }
 
 /// The bytes that a URI of the file stands for.

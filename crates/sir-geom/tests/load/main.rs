@@ -1,0 +1,10 @@
+//! Reading scene files, from the outside.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "these are tests")]
+
+mod broken;
+mod files;
+mod gltf;
+mod gltf_materials;
+mod obj;
+mod third_party;
