@@ -8,7 +8,7 @@ use sir_geom::{Line, Rgb, Side};
 use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
 
 use crate::sources::{Source, sources};
-use crate::{Balance, Counts, Model, PowerUnit, Quanta, Received, SolveError};
+use crate::{Balance, Counts, Model, PowerUnit, Quanta, Received, Solution, SolveError};
 
 /// The lines of a first shot: what each one carries, and from where.
 #[derive(Clone, Debug)]
@@ -44,6 +44,14 @@ pub struct Shot {
     pub balance: Balance,
     /// What the lines met.
     pub counts: Counts,
+}
+
+impl Shot {
+    /// The direct light alone: the irradiance by the sources, before any reflection.
+    #[must_use]
+    pub fn solution(&self, model: &Model) -> Solution {
+        Solution::new(model, &self.received, self.unit)
+    }
 }
 
 impl<'m> FirstShot<'m> {
