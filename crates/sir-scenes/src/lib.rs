@@ -5,6 +5,8 @@
 //!
 //! * [`furnace`] and [`concentric_spheres`] have a known answer: they tell whether a solver is right.
 //! * [`cornell_box`] was measured in reality: it is the common yardstick of the field.
+//! * [`reading_room`] is a furnished interior lit mostly by light that has been reflected: it is there to be looked
+//!   at.
 //!
 //! All lengths are metres, `y` is up, and no scene has light that can leave it, but for the Cornell box, which is open
 //! at the front.
@@ -13,6 +15,8 @@ mod cornell_box;
 mod error;
 mod exact;
 mod gltf;
+mod model;
+mod reading_room;
 mod spectrum;
 mod stored;
 
@@ -20,4 +24,5 @@ pub use cornell_box::cornell_box;
 pub use error::Error;
 pub use exact::{SphereShell, concentric_spheres, concentric_spheres_answer, furnace, furnace_answer};
 pub use gltf::write_gltf;
+pub use reading_room::reading_room;
 pub use stored::{FURNACE_EXITANCE, FURNACE_REFLECTANCE, INNER_SPHERE, OUTER_SPHERE, Stored, stored};
