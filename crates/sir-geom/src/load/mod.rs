@@ -2,7 +2,7 @@
 //!
 //! A reader takes from a file what a [`Scene`](crate::Scene) has, and says in [`Warning`](crate::Warning)s, one
 //! line per kind, what it passed over. Files come from anywhere, so nothing in them is trusted: whatever is
-//! wrong with one ends in a [`LoadError`], never in a panic or in memory out of proportion to its size.
+//! wrong with one ends in a [`LoadError`], never in a panic or in memory without bound.
 
 mod error;
 mod files;
@@ -62,8 +62,20 @@ impl SidesPolicy {
 
 /// Reads a scene file; the extension of its name (`gltf`, `glb` or `obj`, in any case) tells the format.
 ///
-/// Triangles come in the order of the file: that of its faces in OBJ, and that of a walk through the nodes,
-/// parents before children, in glTF. Textures are replaced by their mean linear colour.
+/// Textures are replaced by their mean linear colour. Only materials that a triangle uses are taken in. What the
+/// file has beyond a scene is passed over with one warning per kind.
+///
+/// # glTF 2.0
+///
+/// The default scene, else the first one, else all nodes; triangles in the order of a walk through the nodes,
+/// parents before children. Base colour is the reflectance, also of metals; the emitted colour times its strength
+/// is a radiance `L`, which gives the exitance `π L`. Cameras are taken in. Buffers and images may be embedded
+/// or lie in files in the scene's folder or below it.
+///
+/// # OBJ
+///
+/// Triangles in the order of the faces, polygons cut into fans from their first corner. `Kd` times the mean of
+/// `map_Kd` is the reflectance; `Ke` times the mean of `map_Ke` a radiance that gives the exitance `π Ke`.
 ///
 /// # Errors
 ///
