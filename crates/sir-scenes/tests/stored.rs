@@ -1,22 +1,92 @@
-//! The files under `scenes/` are what the generator makes.
+//! The files under `scenes/` are what the generator makes, and reading them gives the scenes back.
 
-use std::{fs, path::Path};
+use std::{fs, path::PathBuf};
 
-use sir_scenes::{stored, write_gltf};
+use sir_geom::{LoadOptions, Projection, TriangleId, load};
+use sir_scenes::{Stored, stored, write_gltf};
+
+/// Relative precision of the 32-bit floats of glTF.
+const SINGLE: f64 = f32::EPSILON as f64;
+
+fn committed(stored: &Stored) -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes")).join(stored.path)
+}
 
 #[test]
 fn files_are_what_the_generator_makes() {
-    let repository = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes"));
     let folder = tempfile::tempdir().unwrap();
     for stored in stored().unwrap() {
-        let name = Path::new(stored.path).file_name().unwrap();
-        let path = folder.path().join(name);
+        let path = folder.path().join(committed(&stored).file_name().unwrap());
         write_gltf(&stored.scene, &path).unwrap();
-        let committed = fs::read(repository.join(stored.path)).unwrap();
         assert!(
-            fs::read(&path).unwrap() == committed,
+            fs::read(&path).unwrap() == fs::read(committed(&stored)).unwrap(),
             "{} is not what the generator makes; run `cargo run -p sir-scenes --example make_scenes`",
             stored.path
         );
     }
+}
+
+#[test]
+fn files_are_read_as_the_scenes_that_they_store() {
+    for stored in stored().unwrap() {
+        let (made, name) = (&stored.scene, stored.path);
+        let read = load(&committed(&stored), &LoadOptions::default()).unwrap();
+        assert_eq!(read.warnings, [], "{name}");
+        let read = read.scene;
+
+        assert_eq!(read.materials().len(), made.materials().len(), "{name}");
+        for (a, b) in made.materials().iter().zip(read.materials()) {
+            assert_eq!((&a.name, a.sides), (&b.name, b.sides), "{name}");
+            assert!(a.reflectance.abs_diff_eq(b.reflectance, SINGLE), "{name}: {a:?} {b:?}");
+            assert!(
+                a.exitance.abs_diff_eq(b.exitance, 2.0 * SINGLE * a.exitance.length()),
+                "{name}: {a:?} {b:?}"
+            );
+        }
+
+        // A file lists triangles by material.
+        let mut order: Vec<TriangleId> = made.triangle_ids().collect();
+        order.sort_by_key(|t| made.triangle(*t).material);
+        assert_eq!(read.triangles().len(), order.len(), "{name}");
+        for (a, b) in order.into_iter().zip(read.triangle_ids()) {
+            assert_eq!(made.material(a).name, read.material(b).name, "{name}");
+            for (p, q) in made.corners(a).into_iter().zip(read.corners(b)) {
+                assert!(p.abs_diff_eq(q, SINGLE * p.length()), "{name}: {p} {q}");
+            }
+        }
+        assert!((read.total_area() / made.total_area() - 1.0).abs() < SINGLE, "{name}");
+
+        assert_eq!(read.cameras().len(), made.cameras().len(), "{name}");
+        for (a, b) in made.cameras().iter().zip(read.cameras()) {
+            assert_eq!(a.name, b.name);
+            assert!(a.eye.abs_diff_eq(b.eye, SINGLE * a.eye.length()), "{name}: {a:?} {b:?}");
+            assert!(a.forward.abs_diff_eq(b.forward, 4.0 * SINGLE), "{name}: {a:?} {b:?}");
+            let right = |c: &sir_geom::Camera| c.forward.cross(c.up).normalize();
+            assert!(right(a).abs_diff_eq(right(b), 4.0 * SINGLE), "{name}: {a:?} {b:?}");
+            let (Projection::Perspective { vertical_fov: f }, Projection::Perspective { vertical_fov: g }) =
+                (a.projection, b.projection)
+            else {
+                panic!("{name}: {a:?} {b:?}")
+            };
+            assert!((f - g).abs() < SINGLE, "{name}: {a:?} {b:?}");
+            match (a.aspect, b.aspect) {
+                (Some(f), Some(g)) => assert!((f - g).abs() < 2.0 * SINGLE, "{name}: {a:?} {b:?}"),
+                (f, g) => assert_eq!(f, g, "{name}"),
+            }
+        }
+    }
+}
+
+/// What the rounding of positions is for: no coordinate changes on its way through the file.
+#[test]
+fn reading_room_comes_back_unchanged() {
+    let all = stored().unwrap();
+    let room = all.iter().find(|s| s.path.starts_with("reading-room")).unwrap();
+    let read = load(&committed(room), &LoadOptions::default()).unwrap().scene;
+    let sorted = |scene: &sir_geom::Scene| {
+        let mut v: Vec<_> = scene.vertices().iter().map(|p| p.to_array()).collect();
+        v.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        v
+    };
+    assert!(sorted(&read) == sorted(&room.scene));
 }
