@@ -5,11 +5,12 @@ use std::path::{Component, Path, PathBuf};
 use glam::DVec3;
 use sir_geom::{Camera, SidesPolicy};
 use sir_mesh::Subdivision;
+use sir_view::Exposure;
 
 use crate::diagnostic::Diagnostics;
 use crate::fields::{ABSURD, Reader, did_you_mean, list};
 use crate::order::check_order;
-use crate::pipeline::{Action, CameraChoice, Content, Exposure, Image, Output, Pipeline, Stage};
+use crate::pipeline::{Action, CameraChoice, Content, Image, Output, Pipeline, Stage};
 use crate::ron_tree::{self, Node, Value};
 
 pub(crate) const STAGES: [&str; 5] = ["Load", "Subdivide", "FirstShot", "Multipath", "Save"];

@@ -1,8 +1,12 @@
 //! Why a command fails.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use sir_geom::LoadError;
+use sir_parallel::RunError;
+use sir_radiosity::SolveError;
+use sir_view::ViewError;
 use thiserror::Error;
 
 use crate::diagnostic::Diagnostics;
@@ -14,11 +18,85 @@ pub enum Error {
     #[error(transparent)]
     Pipeline(#[from] Diagnostics),
     /// The pipeline file cannot be read.
-    #[error("cannot read the pipeline {}: {source}", path.display())]
+    #[error("cannot read the pipeline {}", path.display())]
     ReadPipeline {
         /// The file.
         path: PathBuf,
         /// What the operating system says.
         source: io::Error,
     },
+    /// The run directory that was asked for holds a result already.
+    #[error("{} holds a result already; choose another --out, or replace it with --force", directory.display())]
+    Exists {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// The run directory cannot be made.
+    #[error("cannot make the directory {}; choose another with --out", path.display())]
+    Directory {
+        /// The directory.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// The scene cannot be read.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// The light cannot be computed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// A result cannot be written, read or compared.
+    #[error(transparent)]
+    View(#[from] ViewError),
+    /// A directory that was to be compared holds no result.
+    #[error("{} is not a run directory: it has no readable result.json ({why})", directory.display())]
+    NoResult {
+        /// The directory.
+        directory: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// A run that was to be compared has no table.
+    #[error("the run in {} wrote no table; add `Table(path: \"patches.csv\")` to its `Save` and run it again", directory.display())]
+    NoTable {
+        /// The directory.
+        directory: PathBuf,
+    },
+}
+
+impl From<SolveError> for Error {
+    fn from(error: SolveError) -> Self {
+        Self::Run(error.into())
+    }
+}
+
+impl Error {
+    pub(crate) fn directory(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Directory { path: path.to_owned(), source }
+    }
+
+    /// The exit code of the program: 2 for wrong usage or a wrong pipeline, 130 if interrupted, else 1.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Pipeline(_) | Self::ReadPipeline { .. } | Self::Exists { .. } => 2,
+            Self::Run(RunError::Interrupted { .. }) => 130,
+            _ => 1,
+        }
+    }
+
+    /// The message, followed by its causes as far as they say something new.
+    #[must_use]
+    pub fn chain(&self) -> String {
+        let mut text = self.to_string();
+        let mut cause = std::error::Error::source(self);
+        while let Some(error) = cause {
+            let more = error.to_string();
+            if !text.contains(&more) {
+                text = format!("{text}: {more}");
+            }
+            cause = error.source();
+        }
+        text
+    }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use sir_geom::{Camera, SidesPolicy};
 use sir_mesh::Subdivision;
+use sir_view::Exposure;
 
 use crate::decode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -96,24 +97,15 @@ pub enum Content {
 pub struct Image {
     /// Width in pixels. Default 800.
     pub width: u32,
-    /// Height in pixels. Default: what the camera's aspect asks for, else 600.
+    /// Height in pixels. Default: as the shape of the camera asks for, else three
+    /// quarters of the width.
     pub height: Option<u32>,
     /// Samples per pixel along each edge: 4 means 4 × 4 samples. Default 4.
     pub samples: u32,
-    /// What the radiance is multiplied by.
+    /// How bright a PNG picture is made. Default `Auto`.
     pub exposure: Exposure,
     /// From where it is taken.
     pub camera: CameraChoice,
-}
-
-/// Brightness of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Exposure {
-    /// So that the scene is well seen.
-    #[default]
-    Auto,
-    /// Radiance is multiplied by this number, above 0.
-    Factor(f64),
 }
 
 /// The point of view of a picture.

@@ -1,0 +1,127 @@
+//! The command line.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+const EXAMPLES: &str = "\
+Examples:
+  sir check scenes/cornell-box/pipeline.ron      what will it do, and how long will it take?
+  sir run scenes/cornell-box/pipeline.ron        light the scene; the files go to results/cornell-box
+  sir compare results/cornell-box results/cornell-box-2
+
+A pipeline is a text file like this one (docs/pipeline.md tells all):
+  Pipeline(
+      stages: [
+          Load(path: \"room.gltf\"),
+          Subdivide(patches: 20_000),
+          FirstShot(lines: 1_000_000),
+          Multipath(lines: 1_000_000),
+          Save([Image(path: \"view.png\"), Gltf(path: \"result.glb\"), Table(path: \"patches.csv\")]),
+      ],
+  )
+
+Results go to files and to the standard output, progress and warnings to the standard error stream.
+
+Exit codes: 0 done; 1 failed; 2 wrong usage or pipeline; 130 interrupted.";
+
+/// Lights scenes: global-line Monte Carlo radiosity.
+///
+/// Computes how much light every part of every surface of a scene gets, by diffuse reflection between all of them,
+/// and states how accurate the result is.
+#[derive(Debug, Parser)]
+#[command(name = "sir", version, after_long_help = EXAMPLES, after_help = "`sir --help` shows examples and exit codes.")]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a pipeline: light its scene and write the files that it asks for.
+    ///
+    /// Prints the files that it wrote, pictures first, and what each stage did. The run directory also gets a
+    /// result.json with all of this for programs. The same pipeline gives the same files every time; only the times
+    /// in result.json differ.
+    Run(RunArgs),
+    /// Check a pipeline without running it.
+    ///
+    /// Reports all problems of the file at once. If there are none, reads the scene, tries some lines, and
+    /// prints counts, light sources, memory and an estimate of the time. Writes nothing.
+    Check {
+        /// The pipeline file.
+        pipeline: PathBuf,
+    },
+    /// Compare two results: relative RMS, bias and the worst patches.
+    ///
+    /// Both must be of the same scene, cut into the same patches. Differences are relative to the mean radiosity
+    /// of the first; z is the difference of a row in standard errors.
+    Compare {
+        /// A run directory, or a table (.csv or .npy).
+        a: PathBuf,
+        /// Another one.
+        b: PathBuf,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+/// How to run a pipeline.
+#[derive(Debug, clap::Args)]
+pub struct RunArgs {
+    /// The pipeline file.
+    pub pipeline: PathBuf,
+    /// Where to write; default: a new directory results/NAME, where NAME is that of the pipeline.
+    ///
+    /// NAME is the pipeline's file name without extension, or its folder's name if the file is pipeline.ron. If
+    /// there is such a directory, results/NAME-2 is made, and so on. A directory given here is refused if it
+    /// holds a result, unless there is --force.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads to use, 1 to 4096; default: one per processor core. The result does not depend on it.
+    ///
+    /// For now only pictures are drawn by several threads; lines are traced by one.
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<NonZeroUsize>,
+    /// Seed of the random numbers, instead of the pipeline's.
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
+    /// Show no progress; warnings and errors are still shown.
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Print the content of result.json instead of a summary.
+    #[arg(long)]
+    pub json: bool,
+    /// Replace the result in the directory given with --out.
+    #[arg(long)]
+    pub force: bool,
+}
+
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let number = text.parse().ok().filter(|&n| n <= 4096).and_then(NonZeroUsize::new);
+    number.ok_or_else(|| "write a whole number from 1 to 4096".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn threads_are_checked() {
+        for bad in ["0", "-1", "4097", "two"] {
+            assert!(Args::try_parse_from(["sir", "run", "x.ron", "--threads", bad]).is_err(), "{bad}");
+        }
+        let args = Args::try_parse_from(["sir", "run", "x.ron", "--threads", "8"]).unwrap();
+        assert!(matches!(args.command, Command::Run(RunArgs { threads: Some(n), .. }) if n.get() == 8));
+    }
+}

@@ -1,0 +1,203 @@
+//! What a pipeline will do and cost, without doing it.
+
+use std::fmt;
+use std::time::{Duration, Instant};
+
+use sir_geom::{Rgb, Scene};
+use sir_lines::Domain;
+use sir_radiosity::{FirstShot, Model, Multipath, Quanta, SolveError};
+
+use crate::Error;
+use crate::fields::grouped;
+use crate::pipeline::{Action, Content, Pipeline};
+use crate::prepare::{Prepared, prepare};
+use crate::progress::Progress;
+
+/// How long the lines of a stage are tried to learn their rate.
+const PROBE: Duration = Duration::from_millis(300);
+
+/// Lines between two looks at the clock.
+const BLOCK: u64 = 1 << 10;
+
+/// Bytes per side of what pictures and lit meshes are made from: measured, about.
+const DISPLAY_BYTES: usize = 300;
+
+/// What a pipeline will do and cost.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// The scene, ready to be lit.
+    pub prepared: Prepared,
+    /// Memory per part \[bytes\].
+    pub memory: Vec<(&'static str, usize)>,
+    /// Lines and lines per second of each stage that has any. The rate is that of a short try on this machine now.
+    pub stages: Vec<StageEstimate>,
+}
+
+/// What a stage will cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageEstimate {
+    /// Name of the stage.
+    pub name: &'static str,
+    /// Its lines.
+    pub lines: u64,
+    /// Lines per second.
+    pub rate: f64,
+}
+
+/// Reads the scene of a pipeline, makes its patches and tries some lines of each stage. Writes nothing.
+///
+/// # Errors
+///
+/// As [`prepare`](crate::prepare::prepare).
+pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error> {
+    let prepared = prepare(pipeline, progress)?;
+    let memory = memory(&prepared.model, pipeline);
+    let stages = probe(pipeline, &prepared.model)?;
+    Ok(Estimate { prepared, memory, stages })
+}
+
+fn memory(model: &Model, pipeline: &Pipeline) -> Vec<(&'static str, usize)> {
+    let Model { scene, mesh, accel } = model;
+    let sides = mesh.side_count();
+    let per_side = size_of::<Quanta>() + size_of::<[f64; 3]>();
+    let mut memory = vec![
+        ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles())),
+        // See `PatchMesh`: 24 bytes per triangle.
+        ("patches", 24 * scene.triangles().len()),
+        ("acceleration structure", accel.bytes()),
+        ("light", sides * (2 * per_side + 2 * size_of::<Rgb>())),
+    ];
+    if pipeline.outputs().any(|o| o.content != Content::Table) {
+        memory.push(("pictures and lit meshes", sides * DISPLAY_BYTES));
+    }
+    memory
+}
+
+fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, SolveError> {
+    let mut shot = None;
+    let mut estimates = Vec::new();
+    for stage in &pipeline.stages {
+        let name = stage.action.name();
+        match stage.action {
+            Action::FirstShot { lines } => {
+                let first_shot = FirstShot::new(model, lines, pipeline.seed)?;
+                let mut tally = first_shot.tally();
+                let rate = rate(lines, |block| first_shot.trace(block, &mut tally));
+                shot = Some(first_shot.finish(tally)?);
+                estimates.push(StageEstimate { name, lines, rate });
+            }
+            Action::Multipath { lines } => {
+                let Some(shot) = shot.take() else { continue };
+                let domain = Domain::Sphere(model.scene.bounding_sphere());
+                let mut transport = Multipath::new(model, shot, domain, lines, pipeline.seed);
+                let rate = rate(lines, |block| transport.trace(block));
+                estimates.push(StageEstimate { name, lines, rate });
+            }
+            _ => {}
+        }
+    }
+    Ok(estimates)
+}
+
+/// Lines per second of a short try.
+fn rate(lines: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
+    let start = Instant::now();
+    let mut done = 0;
+    while done < lines && start.elapsed() < PROBE {
+        let end = lines.min(done + BLOCK);
+        trace(done..end);
+        done = end;
+    }
+    done as f64 / start.elapsed().as_secs_f64().max(1e-9)
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Prepared { model, sources, load_seconds, build_seconds, .. } = &self.prepared;
+        let scene: &Scene = &model.scene;
+        let count = |n: usize| grouped(n as u64);
+        let size = scene.bounding_box().size();
+        let power: Rgb = sources.iter().map(|s| s.power).sum();
+        writeln!(f, "triangles  {}", count(scene.triangles().len()))?;
+        writeln!(f, "patches    {}", count(model.mesh.patch_count()))?;
+        writeln!(f, "sides      {}", count(model.mesh.side_count()))?;
+        writeln!(f, "area       {:.6} m²", scene.total_area())?;
+        writeln!(f, "extent     {:.4} × {:.4} × {:.4} m", size.x, size.y, size.z)?;
+        writeln!(f, "cameras    {}", scene.cameras().len())?;
+        writeln!(
+            f,
+            "sources    {} triangle sides, {:.6} + {:.6} + {:.6} W (red, green, blue)",
+            count(sources.len()),
+            power.x,
+            power.y,
+            power.z
+        )?;
+        writeln!(f, "memory     {} in all:", bytes(self.memory.iter().map(|(_, b)| b).sum()))?;
+        for (part, size) in &self.memory {
+            writeln!(f, "           {:>9}  {part}", bytes(*size))?;
+        }
+        let tracing: f64 = self.stages.iter().map(|s| s.lines as f64 / s.rate).sum();
+        writeln!(
+            f,
+            "time       {} in all, without outputs:",
+            duration(load_seconds + build_seconds + tracing)
+        )?;
+        writeln!(f, "           {:>9}  Load", duration(*load_seconds))?;
+        writeln!(f, "           {:>9}  patches and acceleration structure", duration(*build_seconds))?;
+        for StageEstimate { name, lines, rate } in &self.stages {
+            let time = duration(*lines as f64 / rate);
+            writeln!(
+                f,
+                "           {time:>9}  {name}: {} lines at {} lines/s",
+                grouped(*lines),
+                grouped(*rate as u64)
+            )?;
+        }
+        Ok(())
+    }
+}
+
+fn bytes(n: usize) -> String {
+    let (mut x, mut unit) = (n as f64, "B");
+    for next in ["kiB", "MiB", "GiB", "TiB"] {
+        if x < 1024.0 {
+            break;
+        }
+        (x, unit) = (x / 1024.0, next);
+    }
+    if unit == "B" { format!("{n} B") } else { format!("{x:.1} {unit}") }
+}
+
+/// A time in a unit that people can grasp.
+pub(crate) fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.1} days", s / 86_400.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_and_times_are_readable() {
+        assert_eq!([0, 1023, 1024, 5 << 20].map(bytes), ["0 B", "1023 B", "1.0 kiB", "5.0 MiB"]);
+        assert_eq!(
+            [0.26, 119.0, 600.0, 7200.0, 172_800.0].map(duration),
+            ["0.3 s", "119.0 s", "10.0 min", "2.0 h", "2.0 days"]
+        );
+    }
+
+    #[test]
+    fn a_rate_counts_every_line_once() {
+        let mut seen = 0;
+        let rate = rate(2500, |block| {
+            assert_eq!(block.start, seen);
+            seen = block.end;
+        });
+        assert!(seen == 2500 && rate > 0.0);
+    }
+}

@@ -1,0 +1,88 @@
+//! Comparing the results of two runs.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use sir_view::{BandComparison, Comparison, Table};
+
+use crate::Error;
+use crate::run::read_report;
+
+/// Compares two results, each a table or a run directory with one. A run's last table counts.
+///
+/// # Errors
+///
+/// If there is no table, it cannot be read, or the two are not of the same patches.
+pub fn compare(a: &Path, b: &Path) -> Result<Comparison, Error> {
+    let read = |path: &Path| -> Result<Table, Error> { Ok(Table::read(&table_of(path)?)?) };
+    Ok(sir_view::compare(&read(a)?, &read(b)?)?)
+}
+
+fn table_of(path: &Path) -> Result<PathBuf, Error> {
+    if !path.is_dir() {
+        return Ok(path.to_owned());
+    }
+    let report = read_report(path)?;
+    let table = report.outputs.iter().rfind(|output| output.kind == "table");
+    table.map(|t| path.join(&t.path)).ok_or_else(|| Error::NoTable { directory: path.to_owned() })
+}
+
+/// A comparison for people.
+#[must_use]
+pub fn text(c: &Comparison) -> String {
+    let [red, green, blue] = c.bands;
+    let mut out =
+        format!("{} rows; differences of the radiosity, second minus first, weighted by area\n\n", c.rows);
+    out += "            mean of first   relative RMS   relative bias\n";
+    for (name, band) in [("luminance", c.luminance), ("red", red), ("green", green), ("blue", blue)] {
+        let BandComparison { mean, relative_rms, relative_bias } = band;
+        out += &format!(
+            "{name:<10} {mean:>14.6} {:>12.3} % {:>13.3} %\n",
+            100.0 * relative_rms,
+            100.0 * relative_bias
+        );
+    }
+    match c.largest_z {
+        Some(z) => out += &format!("\nlargest difference of a row in standard errors: {z:.1}\n"),
+        None => out += "\nthe tables do not both state standard errors\n",
+    }
+    if !c.worst.is_empty() {
+        out += "\nrows that add most to the difference in luminance:\n";
+        out += "       row      patch   triangle          first         second      z\n";
+        for w in &c.worst {
+            let [first, second] = w.luminance;
+            let z = w.z.map_or("-".into(), |z| format!("{z:.1}"));
+            out += &format!(
+                "{:>10} {:>10} {:>10} {first:>14.6} {second:>14.6} {z:>6}\n",
+                w.row, w.patch, w.triangle
+            );
+        }
+    }
+    out
+}
+
+/// A comparison for programs; numbers that are not finite are `null`.
+#[must_use]
+pub fn to_json(c: &Comparison) -> Value {
+    let band = |b: &BandComparison| json!({"mean": b.mean, "relative_rms": b.relative_rms, "relative_bias": b.relative_bias});
+    let worst: Vec<Value> = c
+        .worst
+        .iter()
+        .map(|w| {
+            json!({
+                "row": w.row, "patch": w.patch, "triangle": w.triangle,
+                "luminance": w.luminance, "z": w.z,
+            })
+        })
+        .collect();
+    json!({
+        "version": 1,
+        "rows": c.rows,
+        "luminance": band(&c.luminance),
+        "red": band(&c.bands[0]),
+        "green": band(&c.bands[1]),
+        "blue": band(&c.bands[2]),
+        "largest_z": c.largest_z,
+        "worst": worst,
+    })
+}

@@ -1,0 +1,113 @@
+//! Everything that must work before the first line is traced.
+
+use sir_geom::{Camera, LoadOptions, Scene};
+use sir_mesh::{MeshError, Subdivision};
+use sir_radiosity::{Model, SolveError, Source, sources};
+
+use crate::Error;
+use crate::diagnostic::Diagnostic;
+use crate::fields::did_you_mean;
+use crate::pipeline::{Action, CameraChoice, Content, Pipeline};
+use crate::progress::Progress;
+use crate::report::Stopwatch;
+
+/// A pipeline's scene, ready for lines.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// Scene, patches and acceleration structure.
+    pub model: Model,
+    /// What the reader of the scene changed or left out.
+    pub warnings: Vec<String>,
+    /// The light sources: at least one.
+    pub sources: Vec<Source>,
+    /// Seconds to read the scene.
+    pub load_seconds: f64,
+    /// Seconds to make patches and the acceleration structure.
+    pub build_seconds: f64,
+}
+
+/// Reads the scene of a pipeline, makes its patches, and checks what the pipeline says about the scene.
+///
+/// # Errors
+///
+/// If the scene cannot be read, emits no light, has none of the cameras that pictures ask for, or cannot be
+/// cut as the pipeline says; the latter two are shown with their place in the pipeline.
+pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Error> {
+    let mut options = LoadOptions::default();
+    let mut subdivision = (Subdivision::PerTriangle, 0..0);
+    for stage in &pipeline.stages {
+        match &stage.action {
+            Action::Load { sides, .. } => options.sides = *sides,
+            Action::Subdivide(how) => subdivision = (*how, stage.span.clone()),
+            _ => {}
+        }
+    }
+    let watch = Stopwatch::start();
+    let built = sir_geom::load(pipeline.scene_path(), &options)?;
+    let load_seconds = watch.seconds();
+    let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
+    progress.warn(&warnings);
+
+    let sources = sources(&built.scene);
+    if sources.is_empty() {
+        return Err(SolveError::NoLight.into());
+    }
+    let mut problems = camera_problems(pipeline, &built.scene);
+    let watch = Stopwatch::start();
+    let (how, span) = subdivision;
+    match Model::new(built.scene, how) {
+        Ok(model) if problems.is_empty() => {
+            Ok(Prepared { model, warnings, sources, load_seconds, build_seconds: watch.seconds() })
+        }
+        outcome => {
+            problems.extend(outcome.err().map(|error| mesh_problem(error, span)));
+            Err(pipeline.diagnostics(problems).into())
+        }
+    }
+}
+
+fn mesh_problem(error: MeshError, span: std::ops::Range<usize>) -> Diagnostic {
+    Diagnostic { span, message: error.to_string(), help: "ask for fewer or larger patches".into() }
+}
+
+/// Cameras that pictures ask for and the scene does not have.
+fn camera_problems(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
+    let names: Vec<&str> = scene.cameras().iter().map(|c| c.name.as_str()).collect();
+    let known = match names.len() {
+        0 => "the scene has no camera; leave `camera` out, or describe one with `Camera(eye: …, target: …)`"
+            .into(),
+        n => format!("the scene has {n}, by number from 0: {}", names.join(", ")),
+    };
+    let mut problems = Vec::new();
+    for output in pipeline.outputs() {
+        let Content::Image(image) = &output.content else { continue };
+        match &image.camera {
+            CameraChoice::Number { number, span } if *number >= names.len() => problems.push(Diagnostic {
+                span: span.clone(),
+                message: format!("the scene has no camera number {number}"),
+                help: known.clone(),
+            }),
+            CameraChoice::Name { name, span } if !names.contains(&name.as_str()) => {
+                problems.push(Diagnostic {
+                    span: span.clone(),
+                    message: format!("the scene has no camera \"{name}\""),
+                    help: did_you_mean(name, &names).unwrap_or_else(|| known.clone()),
+                })
+            }
+            _ => {}
+        }
+    }
+    problems
+}
+
+/// The camera of the scene or the pipeline that is meant; `None` if the scene has none and nothing was asked for.
+#[must_use]
+pub(crate) fn chosen_camera(choice: &CameraChoice, scene: &Scene) -> Option<Camera> {
+    let cameras = scene.cameras();
+    match choice {
+        CameraChoice::Default => cameras.first().cloned(),
+        CameraChoice::Number { number, .. } => cameras.get(*number).cloned(),
+        CameraChoice::Name { name, .. } => cameras.iter().find(|c| c.name == *name).cloned(),
+        CameraChoice::Own(camera) => Some(camera.clone()),
+    }
+}

@@ -1,0 +1,108 @@
+//! What a run says while it runs, on the standard error stream.
+
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use sir_parallel::Observer;
+
+use crate::fields::grouped;
+
+/// Time between two lines of progress where there is no terminal.
+const PAUSE: Duration = Duration::from_secs(10);
+
+/// Most warnings that are shown one by one.
+const WARNINGS: usize = 10;
+
+/// How progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Not at all; warnings are not shown either. For callers that read them from the report.
+    Silent,
+    /// Warnings only.
+    Quiet,
+    /// A line at the start and the end of each stage, and every ten seconds in between.
+    Lines,
+    /// A bar with rate and remaining time.
+    Bar,
+}
+
+impl Progress {
+    /// A bar if the standard error stream is a terminal, else lines.
+    #[must_use]
+    pub fn for_stderr() -> Self {
+        if std::io::stderr().is_terminal() { Self::Bar } else { Self::Lines }
+    }
+
+    /// Shows the warnings of the scene's reader.
+    pub(crate) fn warn(self, warnings: &[String]) {
+        if self == Self::Silent {
+            return;
+        }
+        for warning in warnings.iter().take(WARNINGS) {
+            eprintln!("warning: {warning}");
+        }
+        if warnings.len() > WARNINGS {
+            eprintln!("warning: … and {} more, see result.json", warnings.len() - WARNINGS);
+        }
+    }
+
+    /// Says what is being done.
+    pub(crate) fn note(self, text: &str) {
+        if matches!(self, Self::Lines | Self::Bar) {
+            eprintln!("{text}");
+        }
+    }
+
+    /// Begins to watch a stage of `total` lines.
+    pub(crate) fn stage(self, name: &'static str, total: u64) -> StageProgress {
+        self.note(&format!("{name}: {} lines", grouped(total)));
+        let bar = match self {
+            Self::Bar => {
+                let bar = ProgressBar::new(total);
+                let template = "{bar:30} {percent:>3} %  {human_pos} lines  {per_sec}  {eta} left";
+                // A wrong template would be a slip in the line above; indicatif's own style then serves as well.
+                if let Ok(style) = ProgressStyle::with_template(template) {
+                    bar.set_style(style);
+                }
+                bar
+            }
+            _ => ProgressBar::hidden(),
+        };
+        let now = Instant::now();
+        StageProgress { lines: self == Self::Lines, name, bar, start: now, last: now }
+    }
+}
+
+/// Watches one stage.
+pub(crate) struct StageProgress {
+    lines: bool,
+    name: &'static str,
+    bar: ProgressBar,
+    start: Instant,
+    last: Instant,
+}
+
+impl Observer for StageProgress {
+    fn progress(&mut self, done: u64, total: u64) {
+        self.bar.set_position(done);
+        if self.lines && self.last.elapsed() >= PAUSE {
+            self.last = Instant::now();
+            let seconds = self.start.elapsed().as_secs_f64();
+            let rate = done as f64 / seconds;
+            eprintln!(
+                "{}: {:.0} %, {} lines/s, {:.0} s left",
+                self.name,
+                100.0 * done as f64 / total.max(1) as f64,
+                grouped(rate as u64),
+                (total - done) as f64 / rate
+            );
+        }
+    }
+}
+
+impl Drop for StageProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,207 @@
+//! `result.json`: what a run did, for people and programs.
+//!
+//! Two runs of one pipeline with one program give the same report, but for the times. These are in fields called
+//! `time`, and nothing else is in there.
+
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+use sir_geom::Rgb;
+use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Received, Solution};
+
+/// Version of the layout of `result.json`.
+pub const VERSION: u32 = 1;
+
+/// Name of the report in a run directory.
+pub const FILE_NAME: &str = "result.json";
+
+/// The report of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Version of this layout: [`VERSION`].
+    pub version: u32,
+    /// Name and version of the program.
+    pub program: String,
+    /// What was asked for.
+    pub pipeline: PipelineReport,
+    /// Seed of all random numbers, which the command line may have set.
+    pub seed: u64,
+    /// What was lit.
+    pub scene: SceneReport,
+    /// The stages, in order.
+    pub stages: Vec<StageReport>,
+    /// The files, in order. This report is not among them.
+    pub outputs: Vec<OutputReport>,
+    /// Time of the whole run.
+    pub time: Time,
+}
+
+/// The pipeline of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PipelineReport {
+    /// Its file, as it was named.
+    pub path: String,
+    /// What it said.
+    pub text: String,
+}
+
+/// The scene of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneReport {
+    /// Its file.
+    pub path: String,
+    /// Triangles, those without an area left out.
+    pub triangles: usize,
+    /// Patches.
+    pub patches: usize,
+    /// Active sides of patches.
+    pub sides: usize,
+    /// Area of all triangles, one side each \[m²\].
+    pub area: f64,
+    /// Emitted power per band \[W\].
+    pub power: [f64; 3],
+    /// What the reader changed or left out.
+    pub warnings: Vec<String>,
+}
+
+/// One stage of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StageReport {
+    /// Name of the stage, such as `FirstShot`.
+    pub name: String,
+    /// What its lines did, if it has any.
+    #[serde(default, flatten, skip_serializing_if = "Option::is_none")]
+    pub lines: Option<LinesReport>,
+    /// How long it took.
+    pub time: Time,
+}
+
+/// What the lines of a stage did.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LinesReport {
+    /// Lines traced.
+    pub lines: u64,
+    /// Share of the lines that met nothing.
+    pub empty_share: f64,
+    /// Global lines that met an odd number of triangles: none in scenes of closed surfaces.
+    pub odd_lines: u64,
+    /// Triangles met.
+    pub crossings: u64,
+    /// Where the power went.
+    pub balance: BalanceReport,
+    /// Estimated relative error of the irradiance so far, per band: root of the area-weighted mean square of the
+    /// standard errors, over the area-weighted mean irradiance. Zero in a band without light.
+    pub relative_error: [f64; 3],
+    /// SHA-256 of the tallies of received power: the same for the same result.
+    pub tally_hash: String,
+}
+
+/// Energy balance of a stage per band \[W\]: `emitted = absorbed + blocked + escaped + unshot`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BalanceReport {
+    /// Sent out: by the sources in the first shot, by what the first shot left in multipath.
+    pub emitted: [f64; 3],
+    /// Absorbed by the sides that received it.
+    pub absorbed: [f64; 3],
+    /// Absorbed by the backs of one-sided surfaces.
+    pub blocked: [f64; 3],
+    /// Left the scene.
+    pub escaped: [f64; 3],
+    /// Reflected, but not sent out again. After the first shot it is what multipath distributes; after multipath
+    /// it is missing from the result.
+    pub unshot: [f64; 3],
+}
+
+/// A file that a run wrote.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OutputReport {
+    /// Its path in the run directory.
+    pub path: String,
+    /// `image`, `gltf` or `table`.
+    pub kind: String,
+    /// Its size.
+    pub bytes: u64,
+}
+
+/// How long something took.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Time {
+    /// Wall-clock time \[s\].
+    pub seconds: f64,
+    /// Lines per second, if it is a stage with lines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lines_per_second: Option<f64>,
+}
+
+impl Report {
+    /// The report as JSON, as `result.json` has it.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        // Serialising a tree of plain structs fails only for keys that are not text, of which there are none.
+        serde_json::to_string_pretty(self).map(|json| json + "\n").unwrap_or_default()
+    }
+}
+
+impl Time {
+    /// The time of something without lines.
+    #[must_use]
+    pub fn of(seconds: f64) -> Self {
+        Self { seconds, lines_per_second: None }
+    }
+}
+
+impl LinesReport {
+    /// The report of a stage with its balance and counts, whose result so far is `solution` by `received`.
+    #[must_use]
+    pub fn new(
+        model: &Model,
+        unit: PowerUnit,
+        (balance, counts): (Balance, Counts),
+        received: &Received,
+        solution: &Solution,
+    ) -> Self {
+        let watts = |quanta: Quanta| unit.watts(quanta).to_array();
+        Self {
+            lines: counts.lines,
+            empty_share: counts.empty as f64 / counts.lines.max(1) as f64,
+            odd_lines: counts.odd,
+            crossings: counts.crossings,
+            balance: BalanceReport {
+                emitted: watts(balance.emitted),
+                absorbed: watts(balance.absorbed),
+                blocked: watts(balance.blocked),
+                escaped: watts(balance.escaped),
+                unshot: watts(balance.unshot),
+            },
+            relative_error: relative_error(model, solution),
+            tally_hash: received.hash(),
+        }
+    }
+}
+
+/// See [`LinesReport::relative_error`].
+fn relative_error(model: &Model, solution: &Solution) -> [f64; 3] {
+    let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
+    model.mesh.for_each_side(|triangle, _, _, side| {
+        let a = model.mesh.patch_area(triangle);
+        let error = solution.error[side.index()];
+        area += a;
+        sum += a * solution.irradiance[side.index()];
+        square += a * error * error;
+    });
+    std::array::from_fn(|k| if sum[k] > 0.0 { (square[k] * area).sqrt() / sum[k] } else { 0.0 })
+}
+
+/// A running clock.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stopwatch(Instant);
+
+impl Stopwatch {
+    pub(crate) fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    pub(crate) fn seconds(self) -> f64 {
+        self.0.elapsed().as_secs_f64()
+    }
+}

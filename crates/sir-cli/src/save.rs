@@ -1,0 +1,88 @@
+//! Writing what a `Save` stage asks for.
+
+use std::fs;
+use std::path::Path;
+
+use sir_geom::Camera;
+use sir_radiosity::{Model, Solution};
+use sir_view::{DisplayMesh, PictureSettings, Table, default_camera, guess_up, render};
+use sir_view::{write_exr, write_glb, write_png};
+
+use crate::Error;
+use crate::pipeline::{Content, Image, Output};
+use crate::prepare::chosen_camera;
+use crate::progress::Progress;
+use crate::report::OutputReport;
+
+/// Height of a picture whose camera does not say what shape it has, as a share of its width.
+const DEFAULT_SHAPE: f64 = 0.75;
+
+/// Writes all outputs of a stage into a directory.
+pub(crate) fn save(
+    model: &Model,
+    solution: &Solution,
+    outputs: &[Output],
+    directory: &Path,
+    threads: usize,
+    progress: Progress,
+) -> Result<Vec<OutputReport>, Error> {
+    let Model { scene, mesh, accel } = model;
+    let seen = outputs.iter().any(|o| o.content != Content::Table);
+    let display = seen.then(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
+    let mut reports = Vec::new();
+    for output in outputs {
+        let path = directory.join(&output.path);
+        progress.note(&format!("Save: {}", output.path.display()));
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent).map_err(Error::directory(parent))?;
+        }
+        let kind = match (&output.content, &display) {
+            (Content::Image(image), Some(display)) => {
+                let up = guess_up(scene);
+                let camera = chosen_camera(&image.camera, scene);
+                let camera = camera.unwrap_or_else(|| default_camera(display, accel, up));
+                let picture = render(display, accel, &camera, settings(image, &camera, threads))?;
+                if has_extension(&path, "exr") {
+                    write_exr(&path, &picture, &[])?;
+                } else {
+                    write_png(&path, &picture, image.exposure)?;
+                }
+                "image"
+            }
+            (Content::Gltf, Some(display)) => {
+                write_glb(&path, display, sir_view::Exposure::Auto, scene.cameras(), guess_up(scene))?;
+                "gltf"
+            }
+            _ => {
+                let table = Table::new(scene, mesh, &solution.irradiance, &solution.error);
+                if has_extension(&path, "npy") {
+                    table.write_npy(&path)?
+                } else {
+                    table.write_csv(&path)?
+                }
+                "table"
+            }
+        };
+        let bytes = fs::metadata(&path)
+            .map_err(|source| sir_view::ViewError::Io { what: "read", path, source })?
+            .len();
+        let path = output.path.to_string_lossy().into_owned();
+        reports.push(OutputReport { path, kind: kind.into(), bytes });
+    }
+    Ok(reports)
+}
+
+fn settings(image: &Image, camera: &Camera, threads: usize) -> PictureSettings {
+    let shape = camera.aspect.map_or(DEFAULT_SHAPE, |aspect| 1.0 / aspect);
+    let height = (f64::from(image.width) * shape).round().clamp(1.0, 16_384.0);
+    PictureSettings {
+        width: image.width,
+        height: image.height.unwrap_or(height as u32),
+        grid: image.samples,
+        threads,
+    }
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}

@@ -1,0 +1,74 @@
+//! What `sir run` prints when it is done.
+
+use std::path::Path;
+
+use crate::check::duration;
+use crate::fields::grouped;
+use crate::report::{FILE_NAME, LinesReport, Report};
+use crate::run::RunResult;
+
+/// The files of a run, pictures first, and a line for each stage of lines.
+#[must_use]
+pub fn summary(result: &RunResult) -> String {
+    let RunResult { directory, report } = result;
+    let mut files: Vec<&str> = ["image", "gltf", "table"]
+        .iter()
+        .flat_map(|kind| report.outputs.iter().filter(move |o| o.kind == *kind).map(|o| o.path.as_str()))
+        .collect();
+    files.push(FILE_NAME);
+    let mut text = String::new();
+    for file in files {
+        text += &format!("{}\n", absolute(&directory.join(file)));
+    }
+    text += &format!(
+        "\n{} triangles, {} patches; {} in all\n",
+        grouped(report.scene.triangles as u64),
+        grouped(report.scene.patches as u64),
+        duration(report.time.seconds)
+    );
+    for stage in &report.stages {
+        if let Some(lines) = &stage.lines {
+            let rate = stage.time.lines_per_second.unwrap_or_default();
+            text += &format!(
+                "{:<10} {} lines in {}, {} lines/s, {:.1} % empty\n",
+                stage.name,
+                grouped(lines.lines),
+                duration(stage.time.seconds),
+                grouped(rate as u64),
+                100.0 * lines.empty_share,
+            );
+            text += &balance(lines);
+        }
+    }
+    text + &error(report)
+}
+
+/// Where the power of a stage went, as shares of the sum over all bands.
+fn balance(lines: &LinesReport) -> String {
+    let sum = |bands: [f64; 3]| bands.iter().sum::<f64>();
+    let b = &lines.balance;
+    let emitted = sum(b.emitted);
+    let share = |bands| if emitted > 0.0 { 100.0 * sum(bands) / emitted } else { 0.0 };
+    format!(
+        "           {emitted:.6} W sent = {:.2} % absorbed + {:.2} % blocked + {:.2} % escaped + {:.2} % unshot\n",
+        share(b.absorbed),
+        share(b.blocked),
+        share(b.escaped),
+        share(b.unshot),
+    )
+}
+
+/// The error of the last stage of lines.
+fn error(report: &Report) -> String {
+    let last = report.stages.iter().rev().find_map(|s| s.lines.as_ref());
+    last.map_or(String::new(), |lines| {
+        let [r, g, b] = lines.relative_error.map(|e| 100.0 * e);
+        format!(
+            "estimated relative error of a patch's irradiance: {r:.2} % red, {g:.2} % green, {b:.2} % blue\n"
+        )
+    })
+}
+
+fn absolute(path: &Path) -> String {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string()
+}
