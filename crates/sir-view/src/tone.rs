@@ -17,7 +17,7 @@ pub enum Exposure {
 
 /// The linear value that the typical radiance gets: a little more than the photographer's grey card (0.18),
 /// because walls are brighter than that.
-const MIDDLE: f64 = 0.22;
+const MIDDLE: f64 = 0.26;
 
 impl Exposure {
     /// The factor for a picture.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use sir_accel::{Accel, Tracer};
-use sir_geom::{Camera, Scene};
+use sir_geom::{Camera, Scene, TriangleId};
 
 use crate::picture::CameraRays;
 use crate::{DisplayMesh, luminance};
@@ -30,7 +30,8 @@ const TURNS: u32 = 8;
 /// A view that shows much of the inside of a scene, for when neither the user nor the file gives one.
 ///
 /// Some hundred views are tried, from places inside the box around the scene and from all sides outside of it, each with some
-/// hundred rays. The best one sees lit surfaces far and near, of many materials and triangles, with little of the
+/// hundred rays. The best one sees lit surfaces far and near, much of all there is,
+/// of many materials and triangles, with little of the
 /// picture empty, dark, taken by backs of surfaces or by something right before the eye. `up` is the direction
 /// that is up in the scene; see [`guess_up`].
 #[must_use]
@@ -102,6 +103,12 @@ fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
             }
         }
     }
+    // Through an open side, from where it fills the height of the picture.
+    for (axis, size) in
+        [(east, extent(east)), (-east, extent(east)), (north, extent(north)), (-north, extent(north))]
+    {
+        add(centre + (0.5 * size + 0.5 * extent(up) / (0.5 * FIELD).tan()) * axis, centre);
+    }
     let distance = scene.bounding_sphere().radius / (0.5 * FIELD).sin();
     for k in 0..TURNS {
         for height in [0.0, 0.35] {
@@ -118,6 +125,8 @@ struct Judge<'a> {
     bright: f64,
     /// Size of the scene.
     diagonal: f64,
+    /// Area of all surfaces.
+    area: f64,
 }
 
 impl<'a> Judge<'a> {
@@ -133,7 +142,12 @@ impl<'a> Judge<'a> {
         }
         // The mean of square roots is less drawn to a few bright spots than that of the values.
         let mean = if area > 0.0 { sum / area } else { 0.0 };
-        Self { display, bright: mean * mean, diagonal: scene.bounding_box().size().length() }
+        Self {
+            display,
+            bright: mean * mean,
+            diagonal: scene.bounding_box().size().length(),
+            area: scene.total_area(),
+        }
     }
 
     fn score(&self, tracer: &mut Tracer<'_>, camera: &Camera) -> f64 {
@@ -159,7 +173,10 @@ impl<'a> Judge<'a> {
         }
         let count = f64::from(RAYS.0 * RAYS.1);
         let (lit, near, depth) = (lit / count, near / count, depth / count);
+        let seen: f64 = triangles.keys().map(|&t| scene.area(TriangleId(t))).sum();
+        let overview = (seen / self.area).sqrt();
         lit * depth
+            * overview
             * (1.0 - near).powi(3)
             * (1.0 + entropy(&materials, count))
             * (2.0 + entropy(&triangles, count))

@@ -13,7 +13,8 @@ use sir_geom::{Rgb, Scene, Side, TriangleId};
 /// The largest deviation from 180° at which a surface goes on smoothly \[rad\].
 const CREASE: f64 = PI / 6.0;
 
-/// Triangles whose angles about an edge differ by less than this are one sheet, doubled \[rad\].
+/// Triangles whose angles about an edge differ by less than this cover each other \[rad\]; it is the angle up to
+/// which the tracer takes surfaces for parallel.
 const SAME_SHEET: f64 = 1e-3;
 
 /// A piece of an edge as a part of the rim of one triangle.
@@ -67,7 +68,7 @@ impl Groups {
         for around in pieces.chunk_by(|x, y| (x.low, x.high) == (y.low, y.high)) {
             if around.len() > 1 {
                 let along = points[around[0].high as usize] - points[around[0].low as usize];
-                sort_by_angle(scene, along, around, &mut sheets);
+                sheets_around(scene, along, around, &mut sheets);
                 self.join_sheets(scene, &sheets);
             }
         }
@@ -81,31 +82,19 @@ impl Groups {
         }
     }
 
-    fn join_sheets(&mut self, scene: &Scene, sheets: &[(f64, RimPiece)]) {
-        // Seen in the direction of rising angles, a triangle that runs forward shows its front.
-        let rising = |p: &RimPiece| if p.forward { Side::Front } else { Side::Back };
-        let count = sheets.len();
-        for (i, (angle, piece)) in sheets.iter().enumerate() {
-            let mut facing = None;
-            for step in 1..count {
-                let (other_angle, other) = &sheets[(i + step) % count];
-                let wedge = (other_angle - angle).rem_euclid(TAU);
-                if !(SAME_SHEET..=TAU - SAME_SHEET).contains(&wedge) {
-                    continue;
-                }
-                let first = *facing.get_or_insert(wedge);
-                if wedge > first + SAME_SHEET {
-                    break;
-                }
-                if (wedge - PI).abs() <= CREASE {
-                    self.unite(scene, (piece, rising(piece)), (other, rising(other).flip()));
-                }
+    /// Unites what faces each other across the gaps between neighbouring sheets, if that is nearly flat.
+    fn join_sheets(&mut self, scene: &Scene, sheets: &[Sheet]) {
+        for (i, sheet) in sheets.iter().enumerate() {
+            let next = &sheets[(i + 1) % sheets.len()];
+            let gap = (next.angle - sheet.angle).rem_euclid(TAU);
+            if (gap - PI).abs() <= CREASE {
+                self.unite(scene, sheet.rising, next.falling);
             }
         }
     }
 
-    fn unite(&mut self, scene: &Scene, (a, side_a): (&RimPiece, Side), (b, side_b): (&RimPiece, Side)) {
-        let is_active = |p: &RimPiece, side| scene.is_active(TriangleId(p.triangle), side);
+    fn unite(&mut self, scene: &Scene, (a, side_a): (RimPiece, Side), (b, side_b): (RimPiece, Side)) {
+        let is_active = |p: RimPiece, side| scene.is_active(TriangleId(p.triangle), side);
         if is_active(a, side_a) && is_active(b, side_b) {
             for end in 0..2 {
                 let (x, y) = (self.root(slot(a.nodes[end], side_a)), self.root(slot(b.nodes[end], side_b)));
@@ -136,8 +125,53 @@ impl Groups {
     }
 }
 
-/// The triangles around an edge by the angle of their half-planes \[rad\], counted from the first one.
-fn sort_by_angle(scene: &Scene, along: DVec3, around: &[RimPiece], sheets: &mut Vec<(f64, RimPiece)>) {
+/// What lies in one half-plane of an edge: a triangle, or several that cover each other.
+#[derive(Clone, Copy)]
+struct Sheet {
+    /// Angle of the half-plane about the edge \[rad\].
+    angle: f64,
+    /// The uppermost triangle, and its side, as seen from greater angles.
+    rising: (RimPiece, Side),
+    /// The same as seen from smaller angles.
+    falling: (RimPiece, Side),
+}
+
+impl Sheet {
+    fn new(angle: f64, piece: RimPiece) -> Self {
+        // A triangle that runs forward shows its front in the direction of rising angles.
+        let side = if piece.forward { Side::Front } else { Side::Back };
+        Self { angle, rising: (piece, side), falling: (piece, side.flip()) }
+    }
+
+    /// Adds a triangle in the same half-plane. Of those that cover each other light meets only one: the last that
+    /// shows its front, or else the first, which is the rule of [`sir_accel::Hit`]. The others stay dark and must
+    /// not darken what is next to them.
+    fn cover(&mut self, other: &Self) {
+        let upper = |a: (RimPiece, Side), b: (RimPiece, Side)| match (a.1, b.1) {
+            (Side::Front, Side::Back) => a,
+            (Side::Back, Side::Front) => b,
+            (Side::Front, Side::Front) => {
+                if a.0.triangle > b.0.triangle {
+                    a
+                } else {
+                    b
+                }
+            }
+            (Side::Back, Side::Back) => {
+                if a.0.triangle < b.0.triangle {
+                    a
+                } else {
+                    b
+                }
+            }
+        };
+        self.rising = upper(self.rising, other.rising);
+        self.falling = upper(self.falling, other.falling);
+    }
+}
+
+/// The sheets around an edge by angle, counted from the first triangle.
+fn sheets_around(scene: &Scene, along: DVec3, around: &[RimPiece], sheets: &mut Vec<Sheet>) {
     let inward = |p: &RimPiece| {
         let m = scene.normal(TriangleId(p.triangle)).cross(along);
         if p.forward { m } else { -m }
@@ -147,7 +181,16 @@ fn sort_by_angle(scene: &Scene, along: DVec3, around: &[RimPiece], sheets: &mut 
     sheets.clear();
     sheets.extend(around.iter().map(|p| {
         let m = inward(p);
-        (m.dot(y).atan2(m.dot(x)), *p)
+        let angle = m.dot(y).atan2(m.dot(x));
+        // What covers the first triangle must not be torn from it by rounding to below zero.
+        Sheet::new(if angle < -SAME_SHEET { angle + TAU } else { angle }, *p)
     }));
-    sheets.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    sheets.sort_unstable_by(|a, b| a.angle.total_cmp(&b.angle).then(a.rising.0.cmp(&b.rising.0)));
+    sheets.dedup_by(|next, sheet| {
+        let same = next.angle - sheet.angle < SAME_SHEET;
+        if same {
+            sheet.cover(next);
+        }
+        same
+    });
 }
