@@ -12,7 +12,8 @@ pub(crate) const MAX_DIVISIONS: u32 = 65_535;
 pub enum Subdivision {
     /// Every triangle is one patch.
     PerTriangle,
-    /// Every polygon of the file is one patch, whatever the number of triangles it was cut into.
+    /// Every flat polygon of the file is one patch, whatever the number of triangles it was cut into. The triangles
+    /// of a bent one are patches of their own, because a line must not meet a patch twice.
     PerFace,
     /// No patch is larger than this area.
     MaxArea(f64),

@@ -10,7 +10,7 @@
 //! Power lives on *sides* ([`SideId`]): a patch of a one-sided triangle has one, of a two-sided triangle two.
 //! The sides of one triangle are consecutive numbers.
 //!
-//! Instead of cutting, [`Subdivision::PerFace`] makes one patch of all triangles of a polygon, as the classic
+//! Instead of cutting, [`Subdivision::PerFace`] makes one patch of all triangles of a flat polygon, as the classic
 //! radiosity systems with one element per rectangle have it.
 //!
 //! # Example

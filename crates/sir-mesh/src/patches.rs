@@ -87,22 +87,27 @@ impl PatchMesh {
         Ok(mesh)
     }
 
-    /// Makes one patch of the (undivided) triangles of each polygon.
+    /// Makes one patch of the (undivided) triangles of each flat polygon.
     fn merge_faces(&mut self, scene: &Scene) {
-        let mut areas: HashMap<FaceId, f64> = HashMap::new();
-        for (t, record) in scene.triangles().iter().zip(&self.triangles) {
-            *areas.entry(t.face).or_default() += record.area;
+        let mut faces: HashMap<FaceId, Vec<TriangleId>> = HashMap::new();
+        for t in scene.triangle_ids() {
+            faces.entry(scene.triangle(t).face).or_default().push(t);
         }
-        let mut first: HashMap<FaceId, (u32, u32)> = HashMap::new();
         (self.patches, self.sides) = (0, 0);
-        for (t, record) in scene.triangles().iter().zip(&mut self.triangles) {
-            (record.first_patch, record.first_side) = *first.entry(t.face).or_insert_with(|| {
-                let numbers = (self.patches, self.sides);
-                self.patches += 1;
-                self.sides += record.sides;
-                numbers
-            });
-            record.area = areas[&t.face];
+        for t in scene.triangle_ids() {
+            let members = &faces[&scene.triangle(t).face];
+            let first = members[0];
+            if t != first && is_flat(scene, members) {
+                self.triangles[t.index()] = self.triangles[first.index()];
+                continue;
+            }
+            if is_flat(scene, members) {
+                self.triangles[t.index()].area = members.iter().map(|&m| scene.area(m)).sum();
+            }
+            let record = &mut self.triangles[t.index()];
+            (record.first_patch, record.first_side) = (self.patches, self.sides);
+            self.patches += 1;
+            self.sides += record.sides;
         }
     }
 
@@ -192,6 +197,16 @@ impl PatchMesh {
             debug_assert!(next >= r.first_side);
         }
     }
+}
+
+/// Whether triangles lie in one plane and face the same way, but for what rounding of their corners does.
+fn is_flat(scene: &Scene, triangles: &[TriangleId]) -> bool {
+    let normal = scene.normal(triangles[0]);
+    let [origin, ..] = scene.corners(triangles[0]);
+    let corners = || triangles.iter().flat_map(|&t| scene.corners(t));
+    let size = corners().map(|c| c.distance(origin)).fold(0.0, f64::max);
+    triangles.iter().all(|&t| scene.normal(t).dot(normal) > 0.0)
+        && corners().all(|c| (c - origin).dot(normal).abs() <= 1e-6 * size)
 }
 
 #[cfg(test)]

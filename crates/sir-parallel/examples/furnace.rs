@@ -7,7 +7,7 @@ use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_parallel::{Observer, first_shot, multipath};
-use sir_radiosity::Model;
+use sir_radiosity::{Model, MultipathSettings};
 
 /// Prints a line at every tenth of a stage.
 struct Tenths(u64);
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let shot = first_shot(&model, 1_000_000, 1, &mut Tenths(0))?.outcome;
     let domain = Domain::Sphere(model.scene.bounding_sphere());
-    let run = multipath(&model, shot, domain, 1_000_000, 1, &mut Tenths(0))?;
+    let run = multipath(&model, shot, MultipathSettings::new(1_000_000, domain), 1, &mut Tenths(0))?;
     let mean = run.outcome.solution.irradiance.iter().sum::<Rgb>() / model.mesh.side_count() as f64;
     println!("mean irradiance {mean:.4}, exact [2, 5, 10], in {:.2} s", run.time.as_secs_f64());
     Ok(())

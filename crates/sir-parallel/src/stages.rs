@@ -2,8 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use sir_lines::Domain;
-use sir_radiosity::{FirstShot, Model, Multipath, Shot, Transported};
+use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings, Shot, Transported};
 
 use crate::walk::{Observer, RunError, share, walk};
 
@@ -37,7 +36,7 @@ pub fn first_shot(
     Ok(StageRun { outcome: stage.finish(tally)?, time: start.elapsed() })
 }
 
-/// Runs multipath on `lines` lines of a domain.
+/// Runs multipath on the reflected light of a first shot.
 ///
 /// # Errors
 ///
@@ -45,13 +44,12 @@ pub fn first_shot(
 pub fn multipath(
     model: &Model,
     shot: Shot,
-    domain: Domain,
-    lines: u64,
+    settings: MultipathSettings,
     seed: u64,
     observer: &mut dyn Observer,
 ) -> Result<StageRun<Transported>, RunError> {
     let start = Instant::now();
-    let mut stage = Multipath::new(model, shot, domain, lines, seed);
-    walk(share(lines, 0, 1), BLOCK, observer, |block| stage.trace(block))?;
+    let mut stage = Multipath::new(model, shot, settings, seed);
+    walk(share(settings.lines, 0, 1), BLOCK, observer, |block| stage.trace(block))?;
     Ok(StageRun { outcome: stage.finish()?, time: start.elapsed() })
 }

@@ -24,7 +24,7 @@
 //! use sir_geom::{Material, Rgb, SceneBuilder, Side, shapes::{self, Facing}};
 //! use sir_lines::Domain;
 //! use sir_mesh::Subdivision;
-//! use sir_radiosity::{FirstShot, Model, Multipath};
+//! use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings};
 //!
 //! let mut builder = SceneBuilder::new();
 //! let grey = Material::diffuse("grey", Rgb::splat(0.5)).emitting(Rgb::splat(1.0));
@@ -38,7 +38,8 @@
 //! shot.trace(0..lines, &mut tally);
 //!
 //! let domain = Domain::Sphere(model.scene.bounding_sphere());
-//! let mut multipath = Multipath::new(&model, shot.finish(tally)?, domain, lines, seed);
+//! let settings = MultipathSettings::new(lines, domain);
+//! let mut multipath = Multipath::new(&model, shot.finish(tally)?, settings, seed);
 //! multipath.trace(0..lines);
 //! let solution = multipath.finish()?.solution;
 //!
@@ -65,7 +66,7 @@ pub use balance::{Balance, Counts};
 pub use error::SolveError;
 pub use first_shot::{FirstShot, FirstShotTally, Shot};
 pub use model::Model;
-pub use multipath::{Multipath, Transported};
+pub use multipath::{Multipath, MultipathSettings, Transported};
 pub use power::{PowerUnit, Quanta};
 pub use received::Received;
 pub use segments::{End, Segment, segments};

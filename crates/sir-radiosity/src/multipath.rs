@@ -2,6 +2,11 @@
 //!
 //! Sbert, Pueyo, Neumann and Purgathofer (1996), *Global multipath Monte Carlo algorithms for radiosity*; Martínez,
 //! Forés and Martín (2009), section 2.
+//!
+//! As published, every line takes along its share of the reflected direct power, and what has been reflected but not
+//! sent on when the lines end is missing from the result: a share of about `ρ/(1−ρ)/n` for patches that `n` lines
+//! cross. Here the last lines, the *tail*, take no such share and only send on: what is left then falls off
+//! exponentially with their number.
 
 use std::ops::Range;
 
@@ -17,7 +22,7 @@ use crate::{Balance, Counts, Model, PowerUnit, Quanta, Received, Shot, Solution,
 struct SideState {
     /// Power received and reflected, but not sent on.
     unshot: Quanta,
-    /// Reflected direct power that leaves with every line \[quanta\]: its forecast share.
+    /// Reflected direct power that leaves with every line before the tail \[quanta\]: its forecast share.
     emission: [f32; 3],
 }
 
@@ -27,10 +32,33 @@ pub struct Multipath<'m> {
     model: &'m Model,
     sides: Vec<SideState>,
     books: Books,
-    domain: Domain,
     streams: Streams,
     unit: PowerUnit,
-    lines: u64,
+    settings: MultipathSettings,
+}
+
+/// The lines of a transport.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MultipathSettings {
+    /// Number of lines, the tail included.
+    pub lines: u64,
+    /// How many of them, at the end, only send on what was reflected. With none, the method is as published.
+    pub tail: u64,
+    /// Where the lines are drawn from.
+    pub domain: Domain,
+}
+
+impl MultipathSettings {
+    /// This number of lines, of which the last tenth is the tail.
+    #[must_use]
+    pub fn new(lines: u64, domain: Domain) -> Self {
+        Self { lines, tail: lines / 10, domain }
+    }
+
+    /// Lines that take a share of the reflected direct power along.
+    fn emitting(&self) -> u64 {
+        self.lines.saturating_sub(self.tail)
+    }
 }
 
 /// What is written down while power travels.
@@ -58,13 +86,13 @@ pub struct Transported {
 }
 
 impl<'m> Multipath<'m> {
-    /// Prepares the transport of the reflected direct power of a first shot on `lines` lines.
+    /// Prepares the transport of the reflected direct power of a first shot.
     ///
-    /// A side of a patch of area `A` is left by `n = N · 2A/S` lines on average, so each takes `1/n` of its reflected
-    /// direct power along.
+    /// A side of a patch of area `A` is left by `n = N · 2A/S` of the `N` lines before the tail on average, so each
+    /// takes `1/n` of its reflected direct power along.
     #[must_use]
-    pub fn new(model: &'m Model, shot: Shot, domain: Domain, lines: u64, seed: u64) -> Self {
-        let forecast = domain.forecast(lines);
+    pub fn new(model: &'m Model, shot: Shot, settings: MultipathSettings, seed: u64) -> Self {
+        let forecast = settings.domain.forecast(settings.emitting());
         let mut sides = Vec::with_capacity(model.mesh.side_count());
         model.mesh.for_each_side(|triangle, _, _, side| {
             let reflected =
@@ -77,27 +105,22 @@ impl<'m> Multipath<'m> {
         });
         let books = Books { received: shot.received, balance: Balance::default(), counts: Counts::default() };
         let streams = Streams::new(seed, Stage::GLOBAL);
-        Self { model, sides, books, domain, streams, unit: shot.unit, lines }
-    }
-
-    /// Number of lines that the forecast was made for.
-    #[must_use]
-    pub fn lines(&self) -> u64 {
-        self.lines
+        Self { model, sides, books, streams, unit: shot.unit, settings }
     }
 
     /// Traces the next lines. The ranges of successive calls should follow each other.
     pub fn trace(&mut self, lines: Range<u64>) {
-        let Self { model, sides, books, domain, streams, .. } = self;
+        let Self { model, sides, books, streams, settings, .. } = self;
         let mut tracer = model.accel.tracer();
         for index in lines {
-            let line = domain.sample(&mut streams.line(index));
+            let line = settings.domain.sample(&mut streams.line(index));
             let hits = tracer.all_hits(&line);
             books.counts.lines += 1;
             books.counts.empty += u64::from(hits.is_empty());
             books.counts.odd += hits.len() as u64 % 2;
             books.counts.crossings += hits.len() as u64;
-            segments(&model.mesh, hits, |segment| exchange(model, sides, books, segment));
+            let emits = index < settings.emitting();
+            segments(&model.mesh, hits, |segment| exchange(model, sides, books, segment, emits));
         }
     }
 
@@ -121,30 +144,31 @@ impl<'m> Multipath<'m> {
 
 /// Both ends of a segment send what they hold to the other one.
 #[inline]
-fn exchange(model: &Model, sides: &mut [SideState], books: &mut Books, segment: Segment) {
+fn exchange(model: &Model, sides: &mut [SideState], books: &mut Books, segment: Segment, emits: bool) {
+    let mut take = |books: &mut Books, side| take(sides, books, side, emits);
     match (segment.from, segment.to) {
         (End::Side(i, triangle_i), End::Side(j, triangle_j)) => {
-            let (from_i, from_j) = (take(sides, books, i), take(sides, books, j));
+            let (from_i, from_j) = (take(books, i), take(books, j));
             give(model, sides, books, (j, triangle_j), from_i);
             give(model, sides, books, (i, triangle_i), from_j);
         }
         (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
-            let power = take(sides, books, i);
+            let power = take(books, i);
             books.balance.escaped += power;
         }
         (End::Side(i, _), End::Inactive) | (End::Inactive, End::Side(i, _)) => {
-            let power = take(sides, books, i);
+            let power = take(books, i);
             books.balance.blocked += power;
         }
         _ => {}
     }
 }
 
-/// Takes all unshot power of a side and this line's share of its reflected direct power.
+/// Takes all unshot power of a side and, if the line emits, its share of the reflected direct power.
 #[inline]
-fn take(sides: &mut [SideState], books: &mut Books, side: SideId) -> Quanta {
+fn take(sides: &mut [SideState], books: &mut Books, side: SideId, emits: bool) -> Quanta {
     let state = &mut sides[side.index()];
-    let emission = Quanta(state.emission.map(|e| e as i64));
+    let emission = if emits { Quanta(state.emission.map(|e| e as i64)) } else { Quanta::ZERO };
     books.balance.emitted += emission;
     std::mem::take(&mut state.unshot) + emission
 }

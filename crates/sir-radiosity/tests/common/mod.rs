@@ -1,0 +1,150 @@
+//! Solving scenes whose answer is known, and judging the result.
+#![allow(dead_code, reason = "each test uses some of it")]
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use serde_json::Value;
+use sir_geom::shapes::Facing;
+use sir_geom::{Material, MaterialId, Rgb, Scene, SceneBuilder, Side};
+use sir_lines::Domain;
+use sir_mesh::Subdivision;
+use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings, Shot, Transported};
+
+/// The exact answers: see `tests/reference/README.md`.
+pub(crate) fn reference(file: &str) -> Value {
+    let path = format!("{}/tests/reference/{file}", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// The case with this number.
+pub(crate) fn case(file: &Value, id: &str) -> Value {
+    let cases = file["cases"].as_array().unwrap();
+    cases.iter().find(|c| c["id"] == id).unwrap().clone()
+}
+
+pub(crate) fn vector(v: &Value) -> DVec3 {
+    let x = |i: usize| v[i].as_f64().unwrap();
+    DVec3::new(x(0), x(1), x(2))
+}
+
+/// Adds a polygon of a reference file.
+pub(crate) fn add_polygon(builder: &mut SceneBuilder, surface: &Value, material: MaterialId) {
+    let corners = surface["vertices"].as_array().unwrap().iter().map(|p| builder.add_vertex(vector(p)));
+    let corners: Vec<_> = corners.collect();
+    builder.add_polygon(&corners, material);
+}
+
+/// Adds a sphere of flat quadrilaterals five degrees wide, so that polar angles in multiples of five degrees are
+/// edges. `zones` are the polar angles (degrees) where one zone ends and the next begins, with the material of each.
+pub(crate) fn add_sphere(
+    builder: &mut SceneBuilder,
+    radius: f64,
+    facing: Facing,
+    zones: &[(u32, MaterialId)],
+) {
+    const RINGS: u32 = 36;
+    const SEGMENTS: u32 = 72;
+    let at = |ring: u32, segment: u32| {
+        let (theta, phi) =
+            (PI * f64::from(ring) / f64::from(RINGS), 2.0 * PI * f64::from(segment) / f64::from(SEGMENTS));
+        let rho = if ring == 0 || ring == RINGS { 0.0 } else { theta.sin() };
+        radius * DVec3::new(rho * phi.cos(), rho * phi.sin(), theta.cos())
+    };
+    for ring in 0..RINGS {
+        let &(_, material) = zones.iter().find(|&&(end, _)| 5 * ring < end).unwrap();
+        for segment in 0..SEGMENTS {
+            let next = (segment + 1) % SEGMENTS;
+            let mut corners =
+                vec![at(ring, segment), at(ring + 1, segment), at(ring + 1, next), at(ring, next)];
+            // At the poles two corners are one.
+            corners.dedup();
+            if corners.first() == corners.last() {
+                corners.pop();
+            }
+            if facing == Facing::Inward {
+                corners.reverse();
+            }
+            let corners: Vec<_> = corners.into_iter().map(|p| builder.add_vertex(p)).collect();
+            builder.add_polygon(&corners, material);
+        }
+    }
+}
+
+/// A grey surface with exitance `m` and reflectance `rho`.
+pub(crate) fn grey(m: f64, rho: f64) -> Material {
+    Material::diffuse("", Rgb::splat(rho)).emitting(Rgb::splat(m))
+}
+
+pub(crate) fn shoot(model: &Model, lines: u64, seed: u64) -> Shot {
+    let shot = FirstShot::new(model, lines, seed).unwrap();
+    let mut tally = shot.tally();
+    shot.trace(0..lines, &mut tally);
+    shot.finish(tally).unwrap()
+}
+
+/// First shot and multipath with this number of lines each.
+pub(crate) fn solve(model: &Model, lines: u64, seed: u64) -> Transported {
+    let domain = Domain::Sphere(model.scene.bounding_sphere());
+    let settings = MultipathSettings::new(lines, domain);
+    let mut multipath = Multipath::new(model, shoot(model, lines, seed), settings, seed);
+    multipath.trace(0..lines);
+    multipath.finish().unwrap()
+}
+
+/// Radiosity of every material: the area-weighted mean of its fronts.
+pub(crate) fn radiosities(model: &Model, run: &Transported) -> Vec<Rgb> {
+    let materials = model.scene.materials().len();
+    let (mut sums, mut areas) = (vec![Rgb::ZERO; materials], vec![0.0; materials]);
+    model.mesh.for_each_side(|triangle, _, side, id| {
+        if side == Side::Front {
+            let (m, area) =
+                (model.scene.triangle(triangle).material.index(), model.mesh.patch_area(triangle));
+            sums[m] += run.solution.radiosity(model, triangle, side, id) * area;
+            areas[m] += area;
+        }
+    });
+    sums.iter().zip(&areas).map(|(s, a)| *s / *a).collect()
+}
+
+/// A number from independent runs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Estimate {
+    pub(crate) mean: f64,
+    /// Standard error of the mean.
+    pub(crate) sigma: f64,
+}
+
+impl Estimate {
+    pub(crate) fn of(samples: impl IntoIterator<Item = f64>) -> Self {
+        let samples: Vec<f64> = samples.into_iter().collect();
+        let n = samples.len() as f64;
+        let mean = samples.iter().sum::<f64>() / n;
+        let variance = samples.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+        Self { mean, sigma: (variance / n).sqrt() }
+    }
+
+    /// Within four standard errors of the exact value, of which none may exceed 0.3 %.
+    #[track_caller]
+    pub(crate) fn assert_is(self, exact: f64, what: &str) {
+        let z = (self.mean - exact) / self.sigma;
+        let relative = self.sigma / exact;
+        println!("{what}: {:.5} ± {:.3} %, exact {exact:.5}, z = {z:+.2}", self.mean, 100.0 * relative);
+        assert!(relative <= 0.003, "{what}: the standard error is {:.2} %", 100.0 * relative);
+        assert!(z.abs() <= 4.0, "{what}: {:.6} ± {:.6}, exact {exact:.6}", self.mean, self.sigma);
+    }
+}
+
+/// Independent runs of a model: the radiosities of its materials, per run.
+pub(crate) fn runs(model: &Model, lines: u64, count: u64) -> Vec<Vec<Rgb>> {
+    (1..=count).map(|seed| radiosities(model, &solve(model, lines, seed))).collect()
+}
+
+/// One patch per face.
+pub(crate) fn per_face(builder: SceneBuilder) -> Model {
+    Model::new(scene(builder), Subdivision::PerFace).unwrap()
+}
+
+pub(crate) fn scene(builder: SceneBuilder) -> Scene {
+    builder.build().unwrap().scene
+}

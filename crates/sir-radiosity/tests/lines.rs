@@ -1,0 +1,141 @@
+//! What lines cross, and who sees whom along them, against integral geometry and exact view factors.
+
+mod common;
+
+use common::{add_polygon, case, grey, per_face, reference};
+use glam::DVec3;
+use sir_geom::shapes::{self, Facing};
+use sir_geom::{SceneBuilder, Sides};
+use sir_lines::{Domain, Stage, Streams};
+use sir_mesh::Subdivision;
+use sir_radiosity::{End, Model, Segment, segments};
+
+/// Counts, over uniform lines, how often each pair of sides faces each other: `count[i][j]` for light from `i` to
+/// `j`, with one more column for what is not a side.
+fn facing_counts(model: &Model, lines: u64) -> Vec<Vec<u64>> {
+    let n = model.mesh.side_count();
+    let mut count = vec![vec![0u64; n + 1]; n];
+    let domain = Domain::Sphere(model.scene.bounding_sphere());
+    let streams = Streams::new(11, Stage::GLOBAL);
+    let mut tracer = model.accel.tracer();
+    let index = |end: End| match end {
+        End::Side(side, _) => Some(side.index()),
+        _ => None,
+    };
+    for i in 0..lines {
+        segments(
+            &model.mesh,
+            tracer.all_hits(&domain.sample(&mut streams.line(i))),
+            |Segment { from, to }| {
+                for (a, b) in [(from, to), (to, from)] {
+                    if let Some(a) = index(a) {
+                        count[a][index(b).unwrap_or(n)] += 1;
+                    }
+                }
+            },
+        );
+    }
+    count
+}
+
+/// Crossings counted per side agree with the forecast `N · 2A/S`, on both sides of two-sided surfaces: the sum of
+/// squared normalised deviations is χ²-distributed.
+#[test]
+fn counted_crossings_agree_with_the_forecast() {
+    let mut b = SceneBuilder::new();
+    let one = b.add_material(grey(1.0, 0.5));
+    let two = b.add_material(grey(0.0, 0.5).with_sides(Sides::Both));
+    shapes::cuboid(&mut b, DVec3::ZERO, DVec3::new(4.0, 3.0, 5.0), [one; 6], Facing::Inward);
+    shapes::cuboid(&mut b, DVec3::new(1.0, 0.5, 1.0), DVec3::new(1.5, 2.0, 3.0), [two; 6], Facing::Outward);
+    shapes::sphere(&mut b, DVec3::new(3.0, 1.0, 2.0), 0.7, 2, Facing::Outward, |_| one);
+    let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(2_000)).unwrap();
+    let lines = 1_000_000;
+    let count = facing_counts(&model, lines);
+    let forecast = Domain::Sphere(model.scene.bounding_sphere()).forecast(lines);
+    let (mut chi2, mut sides) = (0.0, 0.0);
+    model.mesh.for_each_side(|triangle, _, _, side| {
+        let expected = forecast.crossings(model.mesh.patch_area(triangle));
+        let counted: u64 = count[side.index()].iter().sum();
+        chi2 += (counted as f64 - expected).powi(2) / expected;
+        sides += 1.0;
+    });
+    // Crossings of one patch are binomial with a small probability: nearly Poisson, variance = mean.
+    let z = (chi2 - sides) / f64::sqrt(2.0 * sides);
+    println!("χ² = {chi2:.0} over {sides} sides, z = {z:+.2}");
+    assert!(z.abs() < 4.0);
+}
+
+/// The share of the lines leaving `i` that arrive at `j` is the view factor `F_ij`.
+#[test]
+fn view_factors_of_a_cube() {
+    let exact = reference("radiosity-exact.json");
+    let cube = &case(&exact, "RE-08")["geometry"]["surfaces"];
+    let mut b = SceneBuilder::new();
+    let m = b.add_material(grey(1.0, 0.5));
+    for surface in cube.as_array().unwrap() {
+        add_polygon(&mut b, surface, m);
+    }
+    let model = per_face(b);
+    let count = facing_counts(&model, 1_000_000);
+    let factors = reference("view-factors.json");
+    let value = |id: &str| case(&factors, id)["values"]["F12"].as_f64().unwrap();
+    let (opposite, adjacent) = (value("VF-01"), value("VF-03"));
+    for i in 0..6 {
+        let leaving: u64 = count[i].iter().sum();
+        for j in 0..6 {
+            // Faces are listed as opposite pairs.
+            let expected = if i == j {
+                0.0
+            } else if i / 2 == j / 2 {
+                opposite
+            } else {
+                adjacent
+            };
+            let measured = count[i][j] as f64 / leaving as f64;
+            let sigma = (expected * (1.0 - expected) / leaving as f64).sqrt();
+            assert!(
+                (measured - expected).abs() <= 4.0 * sigma,
+                "F[{i}][{j}] = {measured} ± {sigma}, {expected}"
+            );
+            assert_eq!(count[i][j], count[j][i], "reciprocity holds line by line");
+        }
+        assert_eq!(count[i][6], 0, "nothing escapes a closed cube");
+    }
+}
+
+/// The view factor of concentric spheres, with everything that curved surfaces see of themselves.
+#[test]
+fn view_factors_of_concentric_spheres() {
+    let factors = reference("view-factors.json");
+    for id in ["VF-09", "VF-10"] {
+        let c = case(&factors, id);
+        let radius = |k: &str| c["geometry"]["parameters"][k].as_f64().unwrap();
+        let mut b = SceneBuilder::new();
+        for (k, facing) in [("r1", Facing::Outward), ("r2", Facing::Inward)] {
+            let m = b.add_material(grey(1.0, 0.5));
+            common::add_sphere(&mut b, radius(k), facing, &[(180, m)]);
+        }
+        let model = per_face(b);
+        let sphere_of_side = {
+            let mut spheres = Vec::new();
+            model.mesh.for_each_side(|t, _, _, _| spheres.push(model.scene.triangle(t).material.index()));
+            spheres
+        };
+        let mut count = [[0; 2]; 2];
+        for (i, row) in facing_counts(&model, 1_000_000).iter().enumerate() {
+            for (j, &n) in row.iter().enumerate().take(sphere_of_side.len()) {
+                count[sphere_of_side[i]][sphere_of_side[j]] += n;
+            }
+        }
+        for i in 0..2 {
+            let leaving: u64 = count[i].iter().sum();
+            for j in 0..2 {
+                let expected = c["values"][format!("F{}{}", i + 1, j + 1)].as_f64().unwrap();
+                let measured = count[i][j] as f64 / leaving as f64;
+                // Both ends of a chord that a surface sees of itself are counted: at most twice the variance.
+                let sigma = (2.0 * expected * (1.0 - expected) / leaving as f64).sqrt();
+                assert!((measured - expected).abs() <= 4.0 * sigma, "{id} F{i}{j}: {measured} {expected}");
+            }
+        }
+    }
+}
