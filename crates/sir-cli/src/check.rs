@@ -4,7 +4,6 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use sir_geom::{Rgb, Scene};
-use sir_lines::Domain;
 use sir_radiosity::{FirstShot, Model, Multipath, Quanta, SolveError};
 
 use crate::Error;
@@ -12,6 +11,7 @@ use crate::fields::grouped;
 use crate::pipeline::{Action, Content, Pipeline};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
+use crate::run::multipath_settings;
 
 /// How long the lines of a stage are tried to learn their rate.
 const PROBE: Duration = Duration::from_millis(300);
@@ -86,10 +86,10 @@ fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, Solve
                 shot = Some(first_shot.finish(tally)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
-            Action::Multipath { lines } => {
+            Action::Multipath { lines, tail } => {
                 let Some(shot) = shot.take() else { continue };
-                let domain = Domain::Sphere(model.scene.bounding_sphere());
-                let mut transport = Multipath::new(model, shot, domain, lines, pipeline.seed);
+                let settings = multipath_settings(model, lines, tail);
+                let mut transport = Multipath::new(model, shot, settings, pipeline.seed);
                 let rate = rate(lines, |block| transport.trace(block));
                 estimates.push(StageEstimate { name, lines, rate });
             }

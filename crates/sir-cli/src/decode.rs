@@ -201,7 +201,7 @@ impl<'a> Decoder<'a> {
     }
 
     fn multipath(&mut self, node: Node<'a>) -> Option<Action> {
-        let mut fields = self.reader.fields(node, "Multipath", &["lines", "domain", "replicas"]);
+        let mut fields = self.reader.fields(node, "Multipath", &["lines", "tail", "domain", "replicas"]);
         let lines = self.reader.required(&mut fields, "lines", "1_000_000");
         if let Some(domain) = fields.take("domain") {
             if matches!(domain.name(), "Box" | "Hull") {
@@ -220,7 +220,16 @@ impl<'a> Decoder<'a> {
                 "write `replicas: 1`",
             );
         }
-        Some(Action::Multipath { lines: self.reader.count(&lines?, "lines", (1, ABSURD), "1_000_000")? })
+        let tail = fields.take("tail");
+        let lines = self.reader.count(&lines?, "lines", (1, ABSURD), "1_000_000")?;
+        let tail = match tail {
+            Some(node) => {
+                let example = (lines / 10).to_string();
+                self.reader.count(&node, "tail", (0, lines - 1), &example)?
+            }
+            None => lines / 10,
+        };
+        Some(Action::Multipath { lines, tail })
     }
 
     fn save(&mut self, node: Node<'a>) -> Option<Action> {

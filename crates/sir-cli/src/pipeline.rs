@@ -53,6 +53,8 @@ pub enum Action {
     Multipath {
         /// How many lines, at least 1.
         lines: u64,
+        /// How many of them, at the end, only send on what was reflected: fewer than `lines`. Default a tenth.
+        tail: u64,
     },
     /// Writes files.
     Save(Vec<Output>),

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use sir_geom::Rgb;
 use sir_lines::Domain;
 use sir_parallel::{first_shot, multipath};
-use sir_radiosity::{Model, Shot, Solution};
+use sir_radiosity::{Model, MultipathSettings, Shot, Solution};
 
 use crate::Error;
 use crate::directory::{check_given, make_given, make_new, run_name};
@@ -135,10 +135,10 @@ fn run_stages(
                 lines_report = Some(LinesReport::new(model, shot.unit, facts, &shot.received, &solution));
                 Light::Direct(shot, solution)
             }
-            (Action::Multipath { lines }, Light::Direct(shot, _)) => {
-                let domain = Domain::Sphere(model.scene.bounding_sphere());
+            (Action::Multipath { lines, tail }, Light::Direct(shot, _)) => {
+                let settings = multipath_settings(model, *lines, *tail);
                 let mut observer = progress.stage(name, *lines);
-                let done = multipath(model, shot, domain, *lines, seed, &mut observer)?.outcome;
+                let done = multipath(model, shot, settings, seed, &mut observer)?.outcome;
                 let facts = (done.balance, done.counts);
                 lines_report =
                     Some(LinesReport::new(model, done.unit, facts, &done.received, &done.solution));
@@ -162,6 +162,11 @@ fn run_stages(
         });
     }
     Ok(())
+}
+
+/// The lines of a multipath stage: through the sphere around the scene.
+pub(crate) fn multipath_settings(model: &Model, lines: u64, tail: u64) -> MultipathSettings {
+    MultipathSettings { lines, tail, domain: Domain::Sphere(model.scene.bounding_sphere()) }
 }
 
 fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {

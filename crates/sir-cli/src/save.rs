@@ -5,8 +5,8 @@ use std::path::Path;
 
 use sir_geom::Camera;
 use sir_radiosity::{Model, Solution};
-use sir_view::{DisplayMesh, PictureSettings, Table, default_camera, guess_up, render};
-use sir_view::{write_exr, write_glb, write_png};
+use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, ViewError};
+use sir_view::{default_camera, guess_up, render, write_exr, write_glb, write_png};
 
 use crate::Error;
 use crate::pipeline::{Content, Image, Output};
@@ -26,9 +26,10 @@ pub(crate) fn save(
     threads: usize,
     progress: Progress,
 ) -> Result<Vec<OutputReport>, Error> {
-    let Model { scene, mesh, accel } = model;
+    let Model { scene, mesh, .. } = model;
     let seen = outputs.iter().any(|o| o.content != Content::Table);
     let display = seen.then(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
+    let mut studio = display.as_ref().map(|display| Studio { model, display, threads, last: None });
     let mut reports = Vec::new();
     for output in outputs {
         let path = directory.join(&output.path);
@@ -36,21 +37,18 @@ pub(crate) fn save(
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(Error::directory(parent))?;
         }
-        let kind = match (&output.content, &display) {
-            (Content::Image(image), Some(display)) => {
-                let up = guess_up(scene);
-                let camera = chosen_camera(&image.camera, scene);
-                let camera = camera.unwrap_or_else(|| default_camera(display, accel, up));
-                let picture = render(display, accel, &camera, settings(image, &camera, threads))?;
+        let kind = match (&output.content, &mut studio) {
+            (Content::Image(image), Some(studio)) => {
+                let picture = studio.picture(image)?;
                 if has_extension(&path, "exr") {
-                    write_exr(&path, &picture, &[])?;
+                    write_exr(&path, picture, &[])?;
                 } else {
-                    write_png(&path, &picture, image.exposure)?;
+                    write_png(&path, picture, image.exposure)?;
                 }
                 "image"
             }
-            (Content::Gltf, Some(display)) => {
-                write_glb(&path, display, sir_view::Exposure::Auto, scene.cameras(), guess_up(scene))?;
+            (Content::Gltf, Some(studio)) => {
+                write_glb(&path, studio.display, Exposure::Auto, scene.cameras(), guess_up(scene))?;
                 "gltf"
             }
             _ => {
@@ -63,17 +61,44 @@ pub(crate) fn save(
                 "table"
             }
         };
-        let bytes = fs::metadata(&path)
-            .map_err(|source| sir_view::ViewError::Io { what: "read", path, source })?
-            .len();
+        let bytes = fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len();
         let path = output.path.to_string_lossy().into_owned();
         reports.push(OutputReport { path, kind: kind.into(), bytes });
     }
     Ok(reports)
 }
 
-fn settings(image: &Image, camera: &Camera, threads: usize) -> PictureSettings {
-    let shape = camera.aspect.map_or(DEFAULT_SHAPE, |aspect| 1.0 / aspect);
+/// Takes pictures. The last one is kept, because the same is often wanted as PNG and as EXR.
+struct Studio<'a> {
+    model: &'a Model,
+    display: &'a DisplayMesh<'a>,
+    threads: usize,
+    last: Option<(Option<Camera>, PictureSettings, Picture)>,
+}
+
+impl Studio<'_> {
+    fn picture(&mut self, image: &Image) -> Result<&Picture, Error> {
+        let Model { scene, accel, .. } = self.model;
+        let camera = chosen_camera(&image.camera, scene);
+        let settings = settings(image, camera.as_ref(), self.threads);
+        let picture = match self.last.take() {
+            Some((c, s, picture)) if c == camera && s == settings => picture,
+            _ => match &camera {
+                Some(camera) => render(self.display, accel, camera, settings)?,
+                None => render(
+                    self.display,
+                    accel,
+                    &default_camera(self.display, accel, guess_up(scene)),
+                    settings,
+                )?,
+            },
+        };
+        Ok(&self.last.insert((camera, settings, picture)).2)
+    }
+}
+
+fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -> PictureSettings {
+    let shape = camera.and_then(|c| c.aspect).map_or(DEFAULT_SHAPE, |aspect| 1.0 / aspect);
     let height = (f64::from(image.width) * shape).round().clamp(1.0, 16_384.0);
     PictureSettings {
         width: image.width,

@@ -30,12 +30,13 @@ pub fn summary(result: &RunResult) -> String {
         if let Some(lines) = &stage.lines {
             let rate = stage.time.lines_per_second.unwrap_or_default();
             text += &format!(
-                "{:<10} {} lines in {}, {} lines/s, {:.1} % empty\n",
+                "{:<10} {} lines in {}, {} lines/s, {:.1} % empty, {:.1} % odd\n",
                 stage.name,
                 grouped(lines.lines),
                 duration(stage.time.seconds),
                 grouped(rate as u64),
                 100.0 * lines.empty_share,
+                100.0 * lines.odd_lines as f64 / lines.lines.max(1) as f64,
             );
             text += &balance(lines);
         }

@@ -14,7 +14,7 @@ Pipeline(
         Load(path: "room.obj", sides: Both),
         Subdivide(patches: 20_000),
         FirstShot(lines: 1e6),
-        Multipath(lines: 1_300_000, domain: Sphere, replicas: 1),
+        Multipath(lines: 1_300_000, tail: 0, domain: Sphere, replicas: 1),
         Save([
             Image(path: "view.png", width: 640, height: 480, samples: 2, exposure: Auto, camera: 0),
             Image(path: "own.exr", exposure: Some(1.5), camera: Camera(eye: (1, 2, 3), target: (0, 0, 0.5), up: (0, 0, 1), fov: 60)),
@@ -358,17 +358,22 @@ fn numbers_out_of_range() {
       = help: move `target` away from `eye`, and choose an `up` that is not parallel to the view
     "#);
     insta::assert_snapshot!(stages(&[
-        r#"Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16),"#,
+        r#"Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)"#,
     ]), @r#"
     x.ron:2:45: error: `max_area` must be above zero, but it is 0
-    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16),
+    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)
       |                                             ^
       = help: write for instance `max_area: 0.01`
 
     x.ron:2:66: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 1e16
-    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16),
+    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)
       |                                                                  ^^^^
       = help: write for instance `lines: 1_000_000`
+
+    x.ron:2:99: error: `tail` must be a whole number from 0 to 8, but it is the number 9
+    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)
+      |                                                                                                   ^
+      = help: write for instance `tail: 0`
     "#);
     insta::assert_snapshot!(stages(&[
         r#"Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),"#,

@@ -1,0 +1,74 @@
+//! The reference of the pipeline file says what the program does.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sir_cli::pipeline::{Action, Pipeline};
+
+fn reference() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pipeline.md");
+    fs::read_to_string(path).unwrap()
+}
+
+/// The examples, parsed in a folder that has their scene. All must be valid.
+fn examples() -> Vec<Pipeline> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("room.gltf"), "").unwrap();
+    let text = reference();
+    let blocks = text.split("```ron\n").skip(1).map(|block| block.split("```").next().unwrap());
+    blocks
+        .map(|block| {
+            Pipeline::parse(block, &folder.path().join("pipeline.ron")).unwrap_or_else(|e| panic!("{e}"))
+        })
+        .collect()
+}
+
+#[test]
+fn all_examples_are_valid() {
+    assert_eq!(examples().len(), 3);
+}
+
+#[test]
+fn the_defaults_are_those_of_the_reference() {
+    let all = examples();
+    let actions = |p: &Pipeline| -> Vec<Action> {
+        let mut actions: Vec<Action> = p.stages.iter().map(|s| s.action.clone()).collect();
+        for action in &mut actions {
+            if let Action::Load { path, .. } = action {
+                *path = PathBuf::new();
+            }
+        }
+        actions
+    };
+    assert_eq!(all[1].seed, all[2].seed);
+    assert_eq!(actions(&all[1]), actions(&all[2]));
+}
+
+/// An unknown field is answered with the list of those that exist; each of them must be in the reference, in the
+/// section of its owner.
+#[test]
+fn all_fields_are_documented() {
+    let text = reference();
+    let nonsense = "(stages: [Load(zzzzzzzz: 1), Subdivide(zzzzzzzz: 1), FirstShot(zzzzzzzz: 1), Multipath(zzzzzzzz: 1),
+        Save([Image(zzzzzzzz: 1, camera: Camera(zzzzzzzz: 1)), Gltf(zzzzzzzz: 1), Table(zzzzzzzz: 1)])], zzzzzzzz: 1)";
+    let problems = Pipeline::parse(nonsense, Path::new("x.ron")).unwrap_err();
+    let lists: Vec<&str> = problems
+        .list()
+        .iter()
+        .map(|p| p.help.as_str())
+        .filter(|help| help.contains(" has the fields "))
+        .collect();
+    assert_eq!(lists.len(), 9);
+    for list in lists {
+        let (owner, fields) = list.split_once(" has the fields ").unwrap();
+        let section = match owner {
+            "`Camera`" => "| field of `Camera`".to_owned(),
+            _ => format!("# {owner}"),
+        };
+        let start = text.find(&section).unwrap_or_else(|| panic!("no section {section}"));
+        let end = text[start + 2..].find("\n#").map_or(text.len(), |end| start + 2 + end);
+        for field in fields.split('`').skip(1).step_by(2) {
+            assert!(text[start..end].contains(&format!("\n| `{field}` |")), "{owner} lacks {field}");
+        }
+    }
+}

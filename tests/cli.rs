@@ -1,0 +1,111 @@
+//! The program `sir`: exit codes, and what goes to which stream.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const ROOM: &str = "mtllib room.mtl
+v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2
+usemtl wall\nf 1 2 3 4\nf 6 5 8 7\nf 5 1 4 8\nf 2 6 7 3\nf 5 6 2 1
+usemtl lamp\nf 4 3 7 8\n";
+const MATERIALS: &str = "newmtl wall\nKd 0.5 0.5 1\nnewmtl lamp\nKd 0.2 0.2 0.2\nKe 1 1 1\n";
+const PIPELINE: &str = r#"(stages: [
+    Load(path: "room.obj"),
+    FirstShot(lines: 2_000),
+    Multipath(lines: 2_000),
+    Save([Table(path: "patches.csv"), Image(path: "view.png", width: 16, height: 12, samples: 1)]),
+])"#;
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [("room.obj", ROOM), ("room.mtl", MATERIALS), ("room.ron", PIPELINE)] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+fn sir(folder: &Path, args: &[&str]) -> (i32, String, String) {
+    let Output { status, stdout, stderr } =
+        Command::new(env!("CARGO_BIN_EXE_sir")).args(args).current_dir(folder).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code().unwrap(), text(stdout), text(stderr))
+}
+
+#[test]
+fn a_run_prints_its_files_and_leaves_progress_to_the_error_stream() {
+    let folder = folder();
+    let (code, stdout, stderr) = sir(folder.path(), &["run", "room.ron"]);
+    assert_eq!(code, 0, "{stderr}");
+    let first = stdout.lines().next().unwrap();
+    assert!(first.ends_with("results/room/view.png") && Path::new(first).is_absolute(), "{first}");
+    assert!(Path::new(first).is_file());
+    for part in ["FirstShot", "lines/s", "absorbed", "result.json"] {
+        assert!(stdout.contains(part), "{stdout}");
+    }
+    assert!(stderr.contains("warning: ") && stderr.contains("Multipath: 2_000 lines"), "{stderr}");
+    assert!(stderr.lines().count() < 20, "{stderr}");
+}
+
+#[test]
+fn quiet_and_json_are_for_programs() {
+    let folder = folder();
+    let (code, stdout, stderr) = sir(
+        folder.path(),
+        &["run", "room.ron", "--quiet", "--json", "--seed", "9", "--out", "o", "--threads", "2"],
+    );
+    assert_eq!(code, 0, "{stderr}");
+    assert!(stderr.lines().all(|line| line.starts_with("warning: ")), "{stderr}");
+    let report: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!((&report["version"], &report["seed"]), (&1.into(), &9.into()));
+    assert_eq!(fs::read_to_string(folder.path().join("o/result.json")).unwrap(), stdout);
+
+    let (code, stdout, _) = sir(folder.path(), &["compare", "o", "o/patches.csv", "--json"]);
+    assert_eq!(code, 0);
+    let comparison: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!(comparison["luminance"]["relative_rms"], 0.0);
+    let (code, stdout, _) = sir(folder.path(), &["compare", "o", "o"]);
+    assert!(code == 0 && stdout.contains("relative RMS"), "{stdout}");
+}
+
+#[test]
+fn wrong_usage_and_wrong_pipelines_exit_with_2() {
+    let folder = folder();
+    fs::write(folder.path().join("bad.ron"), "(stages: [FirstShot(line: 3)])").unwrap();
+    for (args, part) in [
+        (&["run"][..], "Usage"),
+        (&["walk"], "Usage"),
+        (&["run", "room.ron", "--threads", "0"], "whole number from 1"),
+        (&["run", "none.ron"], "error: cannot read the pipeline none.ron: "),
+        (&["run", "bad.ron"], "bad.ron:1:21: error: unknown field `line` in `FirstShot`"),
+        (&["check", "bad.ron"], "help: did you mean `lines`?"),
+    ] {
+        let (code, stdout, stderr) = sir(folder.path(), args);
+        assert_eq!((code, stdout.as_str()), (2, ""), "{args:?}: {stderr}");
+        assert!(stderr.contains(part), "{args:?}: {stderr}");
+    }
+    assert!(!folder.path().join("results").exists());
+    assert_eq!(sir(folder.path(), &["run", "room.ron", "--out", "o"]).0, 0);
+    assert_eq!(sir(folder.path(), &["run", "room.ron", "--out", "o"]).0, 2);
+    assert_eq!(sir(folder.path(), &["run", "room.ron", "--out", "o", "--force"]).0, 0);
+}
+
+#[test]
+fn failures_exit_with_1() {
+    let folder = folder();
+    let (code, _, stderr) = sir(folder.path(), &["compare", "room.obj", "nothing.csv"]);
+    assert_eq!(code, 1, "{stderr}");
+    fs::write(folder.path().join("room.obj"), "f 1 2 3\n").unwrap();
+    let (code, stdout, stderr) = sir(folder.path(), &["run", "room.ron"]);
+    assert_eq!((code, stdout.as_str()), (1, ""));
+    assert!(stderr.lines().last().unwrap().starts_with("error: room.obj"), "{stderr}");
+    assert!(!folder.path().join("results").exists());
+}
+
+#[test]
+fn help_has_examples_and_exit_codes() {
+    let (code, stdout, _) = sir(Path::new("."), &["--help"]);
+    assert_eq!(code, 0);
+    for part in ["sir run ", "sir check ", "sir compare ", "Exit codes", "Load(path: "] {
+        assert!(stdout.contains(part), "{stdout}");
+    }
+}
