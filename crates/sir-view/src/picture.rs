@@ -67,9 +67,8 @@ pub fn render(
     let mut radiance = vec![[0.0; 3]; width as usize * height as usize];
     let rays = CameraRays::new(camera, f64::from(width) / f64::from(height));
     // Rows are dealt out in turn, since some parts of a picture take longer than others.
-    let mut hands: Vec<Vec<(u32, &mut [[f32; 3]])>> = Vec::new();
-    hands.resize_with(threads.clamp(1, height as usize), Vec::new);
-    let count = hands.len();
+    let count = threads.clamp(1, height as usize);
+    let mut hands: Vec<Vec<_>> = (0..count).map(|_| Vec::new()).collect();
     for (y, row) in (0..).zip(radiance.chunks_exact_mut(width as usize)) {
         hands[y as usize % count].push((y, row));
     }

@@ -172,14 +172,21 @@ impl<'a> Judge<'a> {
             }
         }
         let count = f64::from(RAYS.0 * RAYS.1);
-        let (lit, near, depth) = (lit / count, near / count, depth / count);
+        let hits: f64 = triangles.values().sum();
+        if hits == 0.0 {
+            return 0.0;
+        }
+        let (lit, near, depth) = (lit / hits, near / hits, depth / hits);
+        let filled = (hits / count).sqrt();
         let seen: f64 = triangles.keys().map(|&t| scene.area(TriangleId(t))).sum();
         let overview = (seen / self.area).sqrt();
-        lit * depth
+        filled
+            * lit
+            * depth
             * overview
             * (1.0 - near).powi(3)
-            * (1.0 + entropy(&materials, count))
-            * (2.0 + entropy(&triangles, count))
+            * (1.0 + entropy(&materials, hits))
+            * (2.0 + entropy(&triangles, hits))
     }
 }
 

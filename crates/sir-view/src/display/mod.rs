@@ -38,8 +38,8 @@ pub struct Piece<'a> {
 
 /// A conforming triangulation of all active sides of the patches of a scene, with irradiance at its vertices.
 ///
-/// Neighbouring triangles share their vertices wherever they touch along an edge, whatever the number of parts
-/// that their edges are cut in, and whatever T-junctions the file has. So nothing cracks.
+/// Triangles share their vertices wherever their edges touch, whatever the number of parts that the edges are cut
+/// in, and whatever T-junctions the file has. So nothing cracks.
 ///
 /// A vertex has the mean irradiance of the patches around it that belong to one smooth surface, which are those
 /// that continue each other across an edge with nothing between them, bent by less than 30°. The mean is weighted by the angle at the vertex over

@@ -1,0 +1,111 @@
+//! Pictures of scenes whose look is known.
+
+use glam::DVec3;
+use sir_accel::Accel;
+use sir_geom::shapes::{self, Facing};
+use sir_geom::{Camera, Material, Projection, Rgb, Scene, SceneBuilder, Sides};
+use sir_mesh::{PatchMesh, Subdivision};
+use sir_view::{DisplayMesh, Picture, PictureSettings, default_camera, guess_up, render};
+
+const SIZE: DVec3 = DVec3::new(4.0, 2.5, 3.0);
+
+/// A room with a box in it, all of one material.
+fn room(sides: Sides) -> Scene {
+    let mut builder = SceneBuilder::new();
+    let m = builder.add_material(Material::diffuse("m", Rgb::new(0.5, 0.4, 0.3)).with_sides(sides));
+    shapes::cuboid(&mut builder, DVec3::ZERO, SIZE, [m; 6], Facing::Inward);
+    shapes::cuboid(&mut builder, DVec3::ONE, DVec3::new(1.5, 1.4, 1.3), [m; 6], Facing::Outward);
+    builder.build().unwrap().scene
+}
+
+fn settings(threads: usize) -> PictureSettings {
+    PictureSettings { width: 160, height: 120, grid: 2, threads }
+}
+
+/// A picture of the room in which the irradiance is π everywhere.
+fn uniform(scene: &Scene, camera: &Camera, threads: usize) -> Picture {
+    let mesh = PatchMesh::new(scene, Subdivision::MaxArea(0.07)).unwrap();
+    let irradiance = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
+    let display = DisplayMesh::new(scene, &mesh, &irradiance);
+    render(&display, &Accel::new(scene), camera, settings(threads)).unwrap()
+}
+
+fn assert_even(picture: &Picture) {
+    for (i, pixel) in picture.radiance.iter().enumerate() {
+        for (got, expected) in pixel.iter().zip([0.5, 0.4, 0.3]) {
+            assert!((got - expected).abs() < 1e-5, "pixel {i}: {pixel:?}");
+        }
+    }
+}
+
+#[test]
+fn even_light_gives_an_even_picture_without_cracks() {
+    let scene = room(Sides::Front);
+    let inside = Camera::looking_at(DVec3::new(3.7, 2.0, 0.2), DVec3::ONE, DVec3::Y, 1.2).unwrap();
+    assert_even(&uniform(&scene, &inside, 1));
+}
+
+#[test]
+fn one_looks_through_the_backs_of_walls() {
+    let scene = room(Sides::Front);
+    // Narrow enough for the room to fill the picture.
+    let outside = Camera::looking_at(DVec3::new(-9.0, 4.0, -8.0), 0.5 * SIZE, DVec3::Y, 0.1).unwrap();
+    assert_even(&uniform(&scene, &outside, 1));
+    let parallel = Camera { projection: Projection::Orthographic { height: 1.5 }, ..outside };
+    assert_even(&uniform(&scene, &parallel, 1));
+}
+
+#[test]
+fn rays_that_meet_nothing_are_black() {
+    let scene = room(Sides::Front);
+    let away = Camera::looking_at(DVec3::splat(-1.0), DVec3::splat(-2.0), DVec3::Y, 1.0).unwrap();
+    assert!(uniform(&scene, &away, 1).radiance.iter().all(|p| *p == [0.0; 3]));
+}
+
+#[test]
+fn the_number_of_threads_does_not_matter() {
+    let scene = room(Sides::Both);
+    let camera = Camera::looking_at(DVec3::new(3.0, 5.0, -4.0), DVec3::ONE, DVec3::Y, 1.5).unwrap();
+    assert_eq!(uniform(&scene, &camera, 1), uniform(&scene, &camera, 5));
+}
+
+#[test]
+fn an_empty_picture_is_refused() {
+    let scene = room(Sides::Front);
+    let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
+    let irradiance = vec![Rgb::ONE; mesh.side_count()];
+    let display = DisplayMesh::new(&scene, &mesh, &irradiance);
+    let camera = Camera::looking_at(DVec3::ONE, DVec3::ZERO, DVec3::Y, 1.0).unwrap();
+    let none = PictureSettings { width: 0, ..settings(1) };
+    let error = render(&display, &Accel::new(&scene), &camera, none).unwrap_err().to_string();
+    assert!(error.contains("0 × 120"), "{error}");
+}
+
+#[test]
+fn the_default_camera_stands_in_a_lit_closed_room() {
+    for sides in [Sides::Front, Sides::Both] {
+        let scene = room(sides);
+        let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.5)).unwrap();
+        let mut irradiance = Vec::new();
+        // Dark outside and inside of the box, as the solver would have it.
+        mesh.for_each_side(|_, _, side, _| {
+            irradiance.push(if side == sir_geom::Side::Front { Rgb::ONE } else { Rgb::ZERO });
+        });
+        let display = DisplayMesh::new(&scene, &mesh, &irradiance);
+        let accel = Accel::new(&scene);
+        let camera = default_camera(&display, &accel, DVec3::Y);
+        let inside = |p: DVec3| p.cmpgt(DVec3::ZERO).all() && p.cmplt(SIZE).all();
+        assert!(inside(camera.eye), "{camera:?}");
+        let picture = render(&display, &accel, &camera, settings(1)).unwrap();
+        assert!(picture.radiance.iter().all(|p| p[0] > 0.1), "all that is seen is lit");
+    }
+}
+
+#[test]
+fn up_is_where_floors_and_ceilings_face() {
+    assert_eq!(guess_up(&room(Sides::Front)), DVec3::Y);
+    let mut builder = SceneBuilder::new();
+    let m = builder.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::new(4.0, 3.0, 2.5), [m; 6], Facing::Inward);
+    assert_eq!(guess_up(&builder.build().unwrap().scene), DVec3::Z);
+}
