@@ -1,5 +1,7 @@
 //! What the display mesh promises: no T-junctions, no lost area, no bleeding, smooth where it should be.
 
+#![allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
+
 use std::collections::BTreeSet;
 
 use glam::DVec3;

@@ -1,5 +1,7 @@
 //! Files, read back by other means than they were written with.
 
+#![allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
+
 use std::fs;
 
 use glam::DVec3;

@@ -1,5 +1,7 @@
 //! Pictures of scenes whose look is known.
 
+#![allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
+
 use glam::DVec3;
 use sir_accel::Accel;
 use sir_geom::shapes::{self, Facing};
