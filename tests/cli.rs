@@ -1,5 +1,7 @@
 //! The program `sir`: exit codes, and what goes to which stream.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};

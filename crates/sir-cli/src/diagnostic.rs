@@ -4,6 +4,9 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+/// The most characters of a line that are shown.
+const WIDTH: usize = 160;
+
 /// A place in a text: line and column, both from 1, columns counted in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Position {
@@ -89,31 +92,27 @@ impl fmt::Display for Diagnostics {
             }
             let at = self.position(problem);
             writeln!(f, "{}:{}:{}: error: {}", self.path.display(), at.line, at.column, problem.message)?;
-            // A tab is as wide as a terminal likes; a space keeps the marks in their place.
-            let line: String =
-                self.text.lines().nth(at.line - 1).unwrap_or_default().chars().map(printable).collect();
-            let rest = line.chars().count().saturating_sub(at.column - 1);
+            let line = self.text.lines().nth(at.line - 1).unwrap_or_default();
+            let (line, indent) = excerpt(line, at.column - 1);
+            let rest = line.chars().count().saturating_sub(indent);
             let marked = String::from_utf8_lossy(&self.text.as_bytes()[problem.span.clone()]);
             let marks = marked.lines().next().unwrap_or_default().chars().count().min(rest).max(1);
             let number = at.line.to_string();
             writeln!(f, "{number} | {line}")?;
-            writeln!(
-                f,
-                "{:width$} | {:indent$}{}",
-                "",
-                "",
-                "^".repeat(marks),
-                width = number.len(),
-                indent = at.column - 1
-            )?;
+            writeln!(f, "{:width$} | {:indent$}{}", "", "", "^".repeat(marks), width = number.len())?;
             writeln!(f, "{:width$} = help: {}", "", problem.help, width = number.len())?;
         }
         Ok(())
     }
 }
 
-fn printable(c: char) -> char {
-    if c.is_control() { ' ' } else { c }
+/// The part of a line that is shown, around the character at `column`, and the place of that character in it.
+fn excerpt(line: &str, column: usize) -> (String, usize) {
+    // A tab is as wide as a terminal likes; a space keeps the marks in their place.
+    let printable = |c: char| if c.is_control() { ' ' } else { c };
+    let start = if line.chars().count() > WIDTH { column.saturating_sub(WIDTH / 2) } else { 0 };
+    let shown: String = line.chars().skip(start).take(WIDTH).map(printable).collect();
+    (shown, column - start)
 }
 
 #[cfg(test)]
@@ -132,6 +131,16 @@ mod tests {
         }
         assert_eq!(Position { line: 9, column: 9 }.byte_in(text), text.len());
         assert_eq!(Position::of(text, 99), Position { line: 3, column: 5 });
+    }
+
+    #[test]
+    fn of_a_long_line_a_part_is_shown() {
+        let line = "x".repeat(5000);
+        for column in [0, 79, 80, 2500, 4999, 5000] {
+            let (shown, place) = excerpt(&line, column);
+            assert!(shown.chars().count() <= WIDTH && place <= shown.chars().count(), "{column}");
+        }
+        assert_eq!(excerpt("\tab", 2), (" ab".to_owned(), 2));
     }
 
     #[test]

@@ -32,6 +32,7 @@ pub mod args;
 pub mod check;
 pub mod compare;
 mod decode;
+mod decode_outputs;
 pub mod diagnostic;
 mod directory;
 mod error;

@@ -6,9 +6,7 @@ use crate::fields::Reader;
 /// been missed once is not reported again.
 pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[(&'static str, &str)], list: &str) {
     let Some(&(_, last)) = stages.last() else {
-        if reader.problems.is_empty() {
-            reader.problem(list, "the pipeline has no stages", "begin with `Load(path: \"scene.gltf\")`");
-        }
+        reader.problem(list, "the pipeline has no stages", "begin with `Load(path: \"scene.gltf\")`");
         return;
     };
     let (mut scene, mut first_shot) = (false, false);

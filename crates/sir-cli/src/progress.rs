@@ -70,7 +70,7 @@ impl Progress {
             _ => ProgressBar::hidden(),
         };
         let now = Instant::now();
-        StageProgress { lines: self == Self::Lines, name, bar, start: now, last: now }
+        StageProgress { lines: self == Self::Lines, name, bar, start: now, last: now, done: 0 }
     }
 }
 
@@ -81,11 +81,13 @@ pub(crate) struct StageProgress {
     bar: ProgressBar,
     start: Instant,
     last: Instant,
+    done: u64,
 }
 
 impl Observer for StageProgress {
     fn progress(&mut self, done: u64, total: u64) {
         self.bar.set_position(done);
+        self.done = done;
         if self.lines && self.last.elapsed() >= PAUSE {
             self.last = Instant::now();
             let seconds = self.start.elapsed().as_secs_f64();
@@ -104,5 +106,9 @@ impl Observer for StageProgress {
 impl Drop for StageProgress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+        if self.lines {
+            let seconds = self.start.elapsed().as_secs_f64();
+            eprintln!("{}: {} lines in {seconds:.1} s", self.name, grouped(self.done));
+        }
     }
 }

@@ -59,13 +59,6 @@ pub struct RunResult {
     pub report: Report,
 }
 
-/// The light so far.
-enum Light {
-    None,
-    Direct(Shot, Solution),
-    Full(Solution),
-}
-
 /// Runs a pipeline and writes its files and `result.json`. Nothing is written before the scene has been read.
 ///
 /// # Errors
@@ -113,46 +106,42 @@ fn run_stages(
 ) -> Result<(), Error> {
     let model = &prepared.model;
     let seed = report.seed;
-    let mut light = Light::None;
+    // What the first shot leaves to multipath, and the light so far.
+    let mut shot: Option<Shot> = None;
+    let mut solution: Option<Solution> = None;
     for stage in &pipeline.stages {
         let name = stage.action.name();
         let watch = Stopwatch::start();
-        let mut lines_report = None;
         let mut seconds = None;
-        light = match (&stage.action, light) {
-            (Action::Load { .. }, light) => {
-                seconds = Some(prepared.load_seconds);
-                light
+        let mut lines_report = None;
+        match &stage.action {
+            Action::Load { .. } => seconds = Some(prepared.load_seconds),
+            Action::Subdivide(_) => seconds = Some(prepared.build_seconds),
+            Action::FirstShot { lines } => {
+                let done = first_shot(model, *lines, seed, &mut progress.stage(name, *lines))?.outcome;
+                let direct = done.solution(model);
+                let facts = (done.balance, done.counts);
+                lines_report = Some(LinesReport::new(model, done.unit, facts, &done.received, &direct));
+                shot = Some(done);
+                solution = Some(direct);
             }
-            (Action::Subdivide(_), light) => {
-                seconds = Some(prepared.build_seconds);
-                light
-            }
-            (Action::FirstShot { lines }, _) => {
-                let shot = first_shot(model, *lines, seed, &mut progress.stage(name, *lines))?.outcome;
-                let solution = shot.solution(model);
-                let facts = (shot.balance, shot.counts);
-                lines_report = Some(LinesReport::new(model, shot.unit, facts, &shot.received, &solution));
-                Light::Direct(shot, solution)
-            }
-            (Action::Multipath { lines, tail }, Light::Direct(shot, _)) => {
+            Action::Multipath { lines, tail } => {
+                // The decoder lets multipath follow nothing but a first shot.
+                let Some(shot) = shot.take() else { continue };
                 let settings = multipath_settings(model, *lines, *tail);
                 let mut observer = progress.stage(name, *lines);
                 let done = multipath(model, shot, settings, seed, &mut observer)?.outcome;
                 let facts = (done.balance, done.counts);
                 lines_report =
                     Some(LinesReport::new(model, done.unit, facts, &done.received, &done.solution));
-                Light::Full(done.solution)
+                solution = Some(done.solution);
             }
-            (Action::Save(outputs), light) => {
-                if let Light::Direct(_, solution) | Light::Full(solution) = &light {
+            Action::Save(outputs) => {
+                if let Some(solution) = &solution {
                     report.outputs.extend(save(model, solution, outputs, directory, threads, progress)?);
                 }
-                light
             }
-            // The decoder lets multipath follow nothing but a first shot.
-            (Action::Multipath { .. }, light) => light,
-        };
+        }
         let seconds = seconds.unwrap_or_else(|| watch.seconds());
         let lines_per_second = lines_report.as_ref().map(|l| l.lines as f64 / seconds.max(1e-9));
         report.stages.push(StageReport {

@@ -1,5 +1,7 @@
 //! What a pipeline file with mistakes is answered with.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::fs;
 use std::path::Path;
 

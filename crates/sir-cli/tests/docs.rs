@@ -1,5 +1,7 @@
 //! The reference of the pipeline file says what the program does.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -42,6 +44,18 @@ fn the_defaults_are_those_of_the_reference() {
     };
     assert_eq!(all[1].seed, all[2].seed);
     assert_eq!(actions(&all[1]), actions(&all[2]));
+}
+
+/// The pipelines of the scenes that come with the project.
+#[test]
+fn pipelines_of_the_project_are_valid() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let folders = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path());
+    let pipelines: Vec<PathBuf> = folders.map(|f| f.join("pipeline.ron")).filter(|p| p.is_file()).collect();
+    assert!(!pipelines.is_empty());
+    for path in pipelines {
+        Pipeline::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    }
 }
 
 /// An unknown field is answered with the list of those that exist; each of them must be in the reference, in the
