@@ -65,9 +65,9 @@ impl Palette {
             dark_tile: paint("dark tile", 0.10, 0.11, 0.11),
             oak: paint("oak", 0.40, 0.23, 0.11),
             walnut: paint("walnut", 0.25, 0.12, 0.055),
-            leather: paint("desk leather", 0.07, 0.19, 0.11),
+            leather: paint("desk leather", 0.05, 0.15, 0.085),
             seat: paint("seat leather", 0.34, 0.07, 0.045),
-            rug: paint("rug", 0.52, 0.045, 0.04),
+            rug: paint("rug", 0.46, 0.04, 0.037),
             rug_border: paint("rug border", 0.60, 0.40, 0.13),
             brass: paint("brass", 0.62, 0.44, 0.17),
             lamp_shade: paint("lamp shade", 0.04, 0.34, 0.14),
@@ -88,8 +88,8 @@ impl Palette {
             let exitance = PI * radiance * Rgb::new(r, g, b);
             builder.add_material(Material::diffuse(name, Rgb::splat(0.3)).emitting(exitance))
         };
-        palette.sky = light("sky", 2.0, 0.55, 0.82, 1.25);
-        palette.cove_lamp = light("cove lamp", 16.0, 1.30, 0.84, 0.42);
+        palette.sky = light("sky", 2.6, 0.58, 0.84, 1.22);
+        palette.cove_lamp = light("cove lamp", 14.0, 1.30, 0.84, 0.42);
         palette.niche_lamp = light("niche lamp", 22.0, 1.35, 0.78, 0.34);
         palette.bulb = light("bulb", 120.0, 1.30, 0.86, 0.46);
         palette
