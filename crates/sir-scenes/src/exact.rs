@@ -101,4 +101,24 @@ mod tests {
         assert!(b1.abs_diff_eq(Rgb::splat(400.0 / 3.0), 1e-9), "{b1}");
         assert!(b2.abs_diff_eq(Rgb::splat(200.0 / 3.0), 1e-9), "{b2}");
     }
+
+    #[test]
+    fn polyhedra_keep_the_ratio_of_the_areas() {
+        let inner = SphereShell { radius: 1.0, reflectance: Rgb::splat(0.5), exitance: Rgb::splat(100.0) };
+        let outer = SphereShell { radius: 2.0, reflectance: Rgb::splat(0.8), exitance: Rgb::ZERO };
+        let scene = concentric_spheres(inner, outer, 3).unwrap().scene;
+        let area = |name: &str| -> f64 {
+            scene.triangle_ids().filter(|t| scene.material(*t).name == name).map(|t| scene.area(t)).sum()
+        };
+        assert!((area("outer sphere") / area("inner sphere") - 4.0).abs() < 1e-12);
+        assert!(scene.exitance(sir_geom::TriangleId(0), sir_geom::Side::Front) == inner.exitance);
+    }
+
+    #[test]
+    fn furnace_is_a_cube_that_glows_everywhere() {
+        let scene = furnace(3.0, Rgb::splat(0.5), Rgb::ONE).unwrap().scene;
+        assert!((scene.total_area() - 54.0).abs() < 1e-12);
+        let glows = |t| scene.exitance(t, sir_geom::Side::Front) == Rgb::ONE;
+        assert!(scene.triangle_ids().all(glows));
+    }
 }
