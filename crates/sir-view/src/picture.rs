@@ -7,7 +7,7 @@ use sir_accel::{Accel, Hit, Tracer};
 use sir_geom::{Camera, Line, Projection, Rgb, Scene};
 use sir_lines::{Stage, Streams};
 
-use crate::{DisplayMesh, ViewError};
+use crate::{DisplayMesh, Exposure, ViewError};
 
 /// A picture of linear radiance.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +18,10 @@ pub struct Picture {
     pub height: u32,
     /// Radiance `L` \[W/(m² sr)\] in linear Rec. 709 bands, row by row from the top left.
     pub radiance: Vec<[f32; 3]>,
+    /// The same for a screen: a mean of the rays of a pixel in which those much brighter than what is typical for
+    /// the scene count less. It differs from `radiance` only where lamps are partly seen: a pixel a tenth of which
+    /// is lamp would be as white as the lamp, and the edge a staircase.
+    pub shown: Vec<[f32; 3]>,
 }
 
 /// Size and effort of a picture.
@@ -64,12 +68,17 @@ pub fn render(
 ) -> Result<Picture, ViewError> {
     settings.check()?;
     let PictureSettings { width, height, threads, .. } = settings;
-    let mut radiance = vec![[0.0; 3]; width as usize * height as usize];
-    let rays = CameraRays::new(camera, f64::from(width) / f64::from(height));
+    let shader = Shader {
+        display,
+        rays: CameraRays::new(camera, f64::from(width) / f64::from(height)),
+        settings,
+        knee: 1.0 / Exposure::Auto.factor_for_mesh(display),
+    };
+    let mut pixels = vec![Pixel::default(); width as usize * height as usize];
     // Rows are dealt out in turn, since some parts of a picture take longer than others.
     let count = threads.clamp(1, height as usize);
     let mut hands: Vec<Vec<_>> = (0..count).map(|_| Vec::new()).collect();
-    for (y, row) in (0..).zip(radiance.chunks_exact_mut(width as usize)) {
+    for (y, row) in (0..).zip(pixels.chunks_exact_mut(width as usize)) {
         hands[y as usize % count].push((y, row));
     }
     thread::scope(|scope| {
@@ -78,34 +87,54 @@ pub fn render(
                 let mut tracer = accel.tracer();
                 for (y, row) in hand {
                     for (x, pixel) in (0..).zip(row) {
-                        *pixel = shade_pixel(display, &mut tracer, &rays, settings, x, y);
+                        *pixel = shader.pixel(&mut tracer, x, y);
                     }
                 }
             });
         }
     });
-    Ok(Picture { width, height, radiance })
+    let (radiance, shown) = pixels.into_iter().map(|p| (p.radiance, p.shown)).unzip();
+    Ok(Picture { width, height, radiance, shown })
 }
 
-fn shade_pixel(
-    display: &DisplayMesh<'_>,
-    tracer: &mut Tracer<'_>,
-    rays: &CameraRays,
+#[derive(Clone, Copy, Default)]
+struct Pixel {
+    radiance: [f32; 3],
+    shown: [f32; 3],
+}
+
+struct Shader<'a> {
+    display: &'a DisplayMesh<'a>,
+    rays: CameraRays,
     settings: PictureSettings,
-    x: u32,
-    y: u32,
-) -> [f32; 3] {
-    let index = u64::from(y) * u64::from(settings.width) + u64::from(x);
-    let mut stream = Streams::new(0, Stage::PICTURE).line(index);
-    let grid = settings.grid.max(1);
-    let mut sum = Rgb::ZERO;
-    for cell in 0..grid * grid {
-        let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
-        let right = (f64::from(x) + within(cell % grid, stream.unit())) / f64::from(settings.width);
-        let down = (f64::from(y) + within(cell / grid, stream.unit())) / f64::from(settings.height);
-        sum += radiance_along(display, tracer, &rays.ray(right, down));
+    /// Radiance above which a ray counts less for the screen.
+    knee: f64,
+}
+
+impl Shader<'_> {
+    fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Pixel {
+        let PictureSettings { width, height, grid, .. } = self.settings;
+        let index = u64::from(y) * u64::from(width) + u64::from(x);
+        let mut stream = Streams::new(0, Stage::PICTURE).line(index);
+        let grid = grid.max(1);
+        let (mut sum, mut compressed) = (Rgb::ZERO, Rgb::ZERO);
+        for cell in 0..grid * grid {
+            let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
+            let right = (f64::from(x) + within(cell % grid, stream.unit())) / f64::from(width);
+            let down = (f64::from(y) + within(cell / grid, stream.unit())) / f64::from(height);
+            let radiance = radiance_along(self.display, tracer, &self.rays.ray(right, down));
+            sum += radiance;
+            compressed += radiance / (1.0 + radiance.max_element() / self.knee);
+        }
+        let count = f64::from(grid * grid);
+        let (mean, compressed) = (sum / count, compressed / count);
+        // The inverse of the compression; its result cannot exceed the mean but by rounding.
+        let shown = compressed / (1.0 - compressed.max_element() / self.knee).max(1e-12);
+        Pixel {
+            radiance: mean.as_vec3().to_array(),
+            shown: shown.min(Rgb::splat(mean.max_element())).as_vec3().to_array(),
+        }
     }
-    (sum / f64::from(grid * grid)).as_vec3().to_array()
 }
 
 /// Radiance `B/π` that comes in along a ray.

@@ -25,8 +25,8 @@ pub fn write_png(path: &Path, picture: &Picture, exposure: Exposure) -> Result<(
 }
 
 fn encode(picture: &Picture, factor: f64) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(3 * picture.radiance.len());
-    for (i, pixel) in (0..).zip(&picture.radiance) {
+    let mut bytes = Vec::with_capacity(3 * picture.shown.len());
+    for (i, pixel) in (0..).zip(&picture.shown) {
         let dither = threshold(i % picture.width, i / picture.width);
         let shown = tone_map(factor * rgb(pixel));
         bytes.extend(shown.to_array().map(|band| (255.0 * srgb(band) + dither) as u8));
@@ -47,11 +47,8 @@ mod tests {
 
     #[test]
     fn a_png_is_read_back_with_the_right_values() {
-        let picture = Picture {
-            width: 64,
-            height: 64,
-            radiance: (0..64 * 64).map(|i| [0.1, if i < 2048 { 0.0 } else { 1e6 }, 0.1004]).collect(),
-        };
+        let shown = (0..64 * 64).map(|i| [0.1, if i < 2048 { 0.0 } else { 1e6 }, 0.1004]).collect();
+        let picture = Picture { width: 64, height: 64, radiance: vec![[0.0; 3]; 64 * 64], shown };
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a.png");
         write_png(&path, &picture, Exposure::Factor(1.0)).unwrap();

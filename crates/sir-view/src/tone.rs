@@ -139,11 +139,10 @@ mod tests {
 
     #[test]
     fn lamps_and_black_do_not_change_the_automatic_exposure() {
-        let picture = |lamp: usize, black: usize| Picture {
-            width: 100,
-            height: 1,
-            radiance: [vec![[500.0; 3]; lamp], vec![[0.0; 3]; black], vec![[2.0; 3]; 100 - lamp - black]]
-                .concat(),
+        let picture = |lamp: usize, black: usize| {
+            let rest = 100 - lamp - black;
+            let radiance = [vec![[500.0; 3]; lamp], vec![[0.0; 3]; black], vec![[2.0; 3]; rest]].concat();
+            Picture { width: 100, height: 1, shown: radiance.clone(), radiance }
         };
         let plain = Exposure::Auto.factor_for_picture(&picture(0, 0));
         assert!((plain * 2.0 / MIDDLE - 1.0).abs() < 1e-12);

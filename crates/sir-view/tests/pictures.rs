@@ -58,6 +58,40 @@ fn one_looks_through_the_backs_of_walls() {
 }
 
 #[test]
+fn the_edge_of_a_lamp_is_soft_on_the_screen_and_exact_in_numbers() {
+    let mut builder = SceneBuilder::new();
+    let wall = builder.add_material(Material::diffuse("wall", Rgb::splat(0.5)));
+    let lamp = builder.add_material(Material::diffuse("lamp", Rgb::ZERO).emitting(Rgb::splat(1000.0)));
+    // Most of the wall lies to the left of the picture, which is [0, 9]².
+    for (left, right, m) in [(-20.0, 4.25, wall), (4.25, 9.0, lamp)] {
+        let (corner, right) = (left * DVec3::X, right * DVec3::X);
+        shapes::quad(&mut builder, [corner, right, right + 9.0 * DVec3::Y, corner + 9.0 * DVec3::Y], m);
+    }
+    let scene = builder.build().unwrap().scene;
+    let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
+    let irradiance = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
+    let display = DisplayMesh::new(&scene, &mesh, &irradiance);
+    let camera = Camera {
+        projection: Projection::Orthographic { height: 9.0 },
+        ..Camera::looking_at(DVec3::new(4.5, 4.5, 1.0), DVec3::new(4.5, 4.5, 0.0), DVec3::Y, 1.0).unwrap()
+    };
+    let settings = PictureSettings { width: 9, height: 9, grid: 4, threads: 1 };
+    let picture = render(&display, &Accel::new(&scene), &camera, settings).unwrap();
+    let lamp = 1000.0 / std::f32::consts::PI;
+    for row in 0..9 {
+        let at = |x: usize| (picture.radiance[9 * row + x][0], picture.shown[9 * row + x][0]);
+        for (x, expected) in [(3, 0.5), (5, lamp)] {
+            let (radiance, shown) = at(x);
+            assert!((radiance / expected - 1.0).abs() < 1e-5 && (shown / expected - 1.0).abs() < 1e-3);
+        }
+        // The edge lies a quarter into this pixel: three columns of rays of four meet the lamp.
+        let (radiance, shown) = at(4);
+        assert!((radiance / (0.25 * 0.5 + 0.75 * lamp) - 1.0).abs() < 1e-5);
+        assert!(shown > 1.0 && shown < 0.1 * lamp, "{shown}");
+    }
+}
+
+#[test]
 fn rays_that_meet_nothing_are_black() {
     let scene = room(Sides::Front);
     let away = Camera::looking_at(DVec3::splat(-1.0), DVec3::splat(-2.0), DVec3::Y, 1.0).unwrap();
