@@ -73,11 +73,13 @@ fn quiet_and_json_are_for_programs() {
 fn wrong_usage_and_wrong_pipelines_exit_with_2() {
     let folder = folder();
     fs::write(folder.path().join("bad.ron"), "(stages: [FirstShot(line: 3)])").unwrap();
+    fs::write(folder.path().join("picture.png"), b"\x89PNG\xff").unwrap();
     for (args, part) in [
         (&["run"][..], "Usage"),
         (&["walk"], "Usage"),
         (&["run", "room.ron", "--threads", "0"], "whole number from 1"),
         (&["run", "none.ron"], "error: cannot read the pipeline none.ron: "),
+        (&["run", "picture.png"], "error: picture.png is not a text file"),
         (&["run", "bad.ron"], "bad.ron:1:21: error: unknown field `line` in `FirstShot`"),
         (&["check", "bad.ron"], "help: did you mean `lines`?"),
     ] {

@@ -19,8 +19,8 @@ const PROBE: Duration = Duration::from_millis(300);
 /// Lines between two looks at the clock.
 const BLOCK: u64 = 1 << 10;
 
-/// Bytes per side of what pictures and lit meshes are made from: measured, about.
-const DISPLAY_BYTES: usize = 300;
+/// Bytes per side of what pictures and lit meshes are made from: measured on two million sides, rounded up.
+const DISPLAY_BYTES: usize = 200;
 
 /// What a pipeline will do and cost.
 #[derive(Clone, Debug)]
@@ -29,6 +29,8 @@ pub struct Estimate {
     pub prepared: Prepared,
     /// Memory per part \[bytes\].
     pub memory: Vec<(&'static str, usize)>,
+    /// Most memory in use at one time \[bytes\].
+    pub peak_memory: usize,
     /// Lines and lines per second of each stage that has any. The rate is that of a short try on this machine now.
     pub stages: Vec<StageEstimate>,
 }
@@ -48,29 +50,32 @@ pub struct StageEstimate {
 ///
 /// # Errors
 ///
-/// As [`prepare`](crate::prepare::prepare).
+/// As [`prepare`].
 pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error> {
     let prepared = prepare(pipeline, progress)?;
-    let memory = memory(&prepared.model, pipeline);
+    let (memory, peak_memory) = memory(&prepared.model, pipeline);
     let stages = probe(pipeline, &prepared.model)?;
-    Ok(Estimate { prepared, memory, stages })
+    Ok(Estimate { prepared, memory, peak_memory, stages })
 }
 
-fn memory(model: &Model, pipeline: &Pipeline) -> Vec<(&'static str, usize)> {
+fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
     let Model { scene, mesh, accel } = model;
     let sides = mesh.side_count();
-    let per_side = size_of::<Quanta>() + size_of::<[f64; 3]>();
-    let mut memory = vec![
+    let tally = size_of::<Quanta>() + size_of::<[f64; 3]>();
+    let solution = 2 * size_of::<Rgb>();
+    let shown = pipeline.outputs().any(|o| o.content != Content::Table);
+    let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles())),
         // See `PatchMesh`: 24 bytes per triangle.
         ("patches", 24 * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
-        ("light", sides * (2 * per_side + 2 * size_of::<Rgb>())),
+        // What was received, what is still to be sent, and the solution.
+        ("computing the light", sides * (2 * tally + solution)),
+        ("pictures and lit meshes", if shown { sides * (solution + DISPLAY_BYTES) } else { 0 }),
     ];
-    if pipeline.outputs().any(|o| o.content != Content::Table) {
-        memory.push(("pictures and lit meshes", sides * DISPLAY_BYTES));
-    }
-    memory
+    // The last two are not needed at the same time.
+    let [scene, patches, accel, light, display] = [0, 1, 2, 3, 4].map(|i: usize| memory[i].1);
+    (memory, scene + patches + accel + light.max(display))
 }
 
 fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, SolveError> {
@@ -132,7 +137,7 @@ impl fmt::Display for Estimate {
             power.y,
             power.z
         )?;
-        writeln!(f, "memory     {} in all:", bytes(self.memory.iter().map(|(_, b)| b).sum()))?;
+        writeln!(f, "memory     {} at most:", bytes(self.peak_memory))?;
         for (part, size) in &self.memory {
             writeln!(f, "           {:>9}  {part}", bytes(*size))?;
         }

@@ -25,6 +25,12 @@ pub enum Error {
         /// What the operating system says.
         source: io::Error,
     },
+    /// What was given as a pipeline file is no text.
+    #[error("{} is not a text file, but a pipeline is one; `sir --help` shows an example", path.display())]
+    NotText {
+        /// The file.
+        path: PathBuf,
+    },
     /// The run directory that was asked for holds a result already.
     #[error("{} holds a result already; choose another --out, or replace it with --force", directory.display())]
     Exists {
@@ -79,7 +85,7 @@ impl Error {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Pipeline(_) | Self::ReadPipeline { .. } | Self::Exists { .. } => 2,
+            Self::Pipeline(_) | Self::ReadPipeline { .. } | Self::NotText { .. } | Self::Exists { .. } => 2,
             Self::Run(RunError::Interrupted { .. }) => 130,
             _ => 1,
         }

@@ -7,7 +7,7 @@
 //!
 //! * *All mistakes of a file at once, each at its place.* serde stops at the first error, so the file is parsed to a
 //!   tree whose nodes know their place, and decoded by hand with a list of problems ([`diagnostic`]). A
-//!   [`Pipeline`](pipeline::Pipeline) is valid by construction: the order of its stages, its numbers and its paths
+//!   [`Pipeline`] is valid by construction: the order of its stages, its numbers and its paths
 //!   have been checked, and nothing is written before its scene has been read.
 //! * *Results to files and standard output, everything else to the standard error stream.* A run directory is complete if
 //!   and only if it holds a `result.json` ([`report`]), which is written last; files appear whole or not at all.

@@ -141,8 +141,9 @@ impl Pipeline {
     ///
     /// All problems of the file, or why it cannot be read.
     pub fn read(path: &Path) -> Result<Self, crate::Error> {
-        let text = std::fs::read_to_string(path)
+        let bytes = std::fs::read(path)
             .map_err(|source| crate::Error::ReadPipeline { path: path.to_owned(), source })?;
+        let text = String::from_utf8(bytes).map_err(|_| crate::Error::NotText { path: path.to_owned() })?;
         Ok(Self::parse(&text, path)?)
     }
 

@@ -128,6 +128,8 @@ fn run_stages(
             Action::Multipath { lines, tail } => {
                 // The decoder lets multipath follow nothing but a first shot.
                 let Some(shot) = shot.take() else { continue };
+                // The direct light has been saved if it was wanted, and takes much memory.
+                drop(solution.take());
                 let settings = multipath_settings(model, *lines, *tail);
                 let mut observer = progress.stage(name, *lines);
                 let done = multipath(model, shot, settings, seed, &mut observer)?.outcome;
