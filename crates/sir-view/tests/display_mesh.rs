@@ -169,6 +169,29 @@ fn light_goes_around_a_bend_but_not_around_a_crease() {
 }
 
 #[test]
+fn a_cut_beyond_a_crease_does_not_bend_the_light() {
+    // The floor is two triangles; three walls side by side cut its edge in three.
+    let scene = scene(|b, m| {
+        rectangle(b, m, DVec3::ZERO, 3.0 * DVec3::X, 2.0 * DVec3::Y);
+        for x in [0.0, 1.0, 2.0] {
+            rectangle(b, m, DVec3::new(x + 1.0, 0.0, 0.0), -DVec3::X, DVec3::Z);
+        }
+    });
+    let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
+    let irradiance = field(&scene, &mesh, |t, _, _| if t.0 == 1 { 2.0 } else { 0.0 });
+    let display = DisplayMesh::new(&scene, &mesh, &irradiance);
+    let floor: Vec<_> = display.pieces_of(TriangleId(0)).flat_map(|p| p.triangles).flatten().collect();
+    let along_edge = |x: f64| {
+        let there = floor.iter().find(|&&&v| position(&display, v).distance(x * DVec3::X) < 1e-9).unwrap();
+        f64::from(display.vertices()[**there as usize].irradiance[0])
+    };
+    let (start, end) = (along_edge(0.0), along_edge(3.0));
+    assert!(start > 0.5 && end == 0.0);
+    assert!((along_edge(1.0) - 2.0 / 3.0 * start).abs() < 1e-6);
+    assert!((along_edge(2.0) - 1.0 / 3.0 * start).abs() < 1e-6);
+}
+
+#[test]
 fn a_wall_between_two_halves_of_a_ceiling_keeps_their_light_apart() {
     for (wall, mixed) in [(false, true), (true, false)] {
         let scene = scene(|b, m| {

@@ -175,7 +175,6 @@ impl<'a> DisplayMesh<'a> {
 
     fn emit(&mut self, seams: &Seams, rims: &mut Rims) {
         self.positions.clone_from(&seams.points);
-        let mut of_group: Vec<Option<u32>> = vec![None; rims.groups.len()];
         let mut outline = Outline::default();
         let mut polygon = Vec::new();
         let (mut nodes, mut inner) = (Vec::new(), Vec::new());
@@ -190,21 +189,16 @@ impl<'a> DisplayMesh<'a> {
             for (&side, vertices) in sides.iter().zip(&mut vertices_of_sides) {
                 inner.clear();
                 inner.resize(outline.positions.len() - rim_len, (Rgb::ZERO, 0.0));
-                weigh(self.scene, self.mesh, &outline, t, &mut polygon, |node, patch, weight| {
+                weigh(self.scene, self.mesh, &outline, t, &mut polygon, |corner, patch, weight| {
                     if let (Some(i), Some(id)) =
-                        ((node as usize).checked_sub(rim_len), self.mesh.side_of(t, patch, side))
+                        ((corner.node as usize).checked_sub(rim_len), self.mesh.side_of(t, patch, side))
                     {
                         let (sum, weights) = &mut inner[i];
                         *sum += weight * self.irradiance[id.index()];
                         *weights += weight;
                     }
                 });
-                for (node, &point) in (rims.first_nodes[t.index()]..).zip(outline.rim()) {
-                    let (group, irradiance) = rims.groups.find(node, side);
-                    let number =
-                        *of_group[group].get_or_insert_with(|| push(&mut self.vertices, point, irradiance));
-                    vertices.push(number);
-                }
+                self.add_rim(rims, &outline, t, side, vertices);
                 for (point, &(sum, weight)) in (first_inner..).zip(&inner) {
                     vertices.push(push(&mut self.vertices, point, sum / weight));
                 }
@@ -225,6 +219,38 @@ impl<'a> DisplayMesh<'a> {
         }
         self.piece_starts.push(self.triangles.len() as u32);
         self.first_pieces.push(self.piece_starts.len() as u32 - 1);
+    }
+
+    /// Appends the vertices on the rim of a side of a triangle, in the order of its nodes, to `vertices`.
+    fn add_rim(
+        &mut self,
+        rims: &mut Rims,
+        outline: &Outline,
+        t: TriangleId,
+        side: Side,
+        vertices: &mut Vec<u32>,
+    ) {
+        let mut cuts = Vec::new();
+        for (node, &point) in (0..).zip(outline.rim()) {
+            let (group, irradiance) = rims.groups.find(rims.first_nodes[t.index()] + node, side);
+            let known = rims.vertices[group];
+            let number = known.or_else(|| irradiance.map(|e| push(&mut self.vertices, point, e)));
+            rims.vertices[group] = number;
+            if number.is_none() {
+                cuts.push((node, group));
+            }
+            vertices.push(number.unwrap_or_default());
+        }
+        // Where an edge of a patch is cut for the sake of what lies beyond a crease, its light goes on straight.
+        for (node, group) in cuts {
+            let [a, b] = outline.ends_around(node);
+            let [from, at, to] = [a, node, b].map(|i| outline.positions[i as usize]);
+            let share = from.distance(at) / (from.distance(at) + at.distance(to));
+            let [e, f] = [a, b].map(|i| rgb(self.vertices[vertices[i as usize] as usize].irradiance));
+            let number = push(&mut self.vertices, outline.rim()[node as usize], e.lerp(f, share));
+            rims.vertices[group] = Some(number);
+            vertices[node as usize] = number;
+        }
     }
 
     /// The position of the centre of a polygon that needs one.
@@ -263,6 +289,8 @@ struct Rims {
     first_nodes: Vec<u32>,
     groups: Groups,
     pieces: Vec<RimPiece>,
+    /// Vertices of the groups as far as they were made.
+    vertices: Vec<Option<u32>>,
 }
 
 impl Rims {
@@ -282,7 +310,9 @@ impl Rims {
             first_nodes.push(count);
             count += len;
         }
-        Self { first_nodes, groups: Groups::new(count as usize), pieces }
+        let groups = Groups::new(count as usize);
+        let vertices = vec![None; groups.len()];
+        Self { first_nodes, groups, pieces, vertices }
     }
 
     fn gather(&mut self, scene: &Scene, mesh: &PatchMesh, seams: &Seams, irradiance: &[Rgb]) {
@@ -291,11 +321,12 @@ impl Rims {
         for (t, &first) in scene.triangle_ids().zip(&self.first_nodes) {
             outline.set(scene, mesh, seams, t);
             let rim = outline.rim().len() as u32;
-            weigh(scene, mesh, &outline, t, &mut polygon, |node, patch, weight| {
-                if node < rim {
+            weigh(scene, mesh, &outline, t, &mut polygon, |corner, patch, weight| {
+                if corner.node < rim {
                     for &side in active_sides(scene, t) {
                         if let Some(id) = mesh.side_of(t, patch, side) {
-                            self.groups.add(first + node, side, irradiance[id.index()], weight);
+                            let e = irradiance[id.index()];
+                            self.groups.add(first + corner.node, side, e, weight, corner.corner.is_some());
                         }
                     }
                 }
@@ -312,7 +343,7 @@ fn weigh(
     outline: &Outline,
     triangle: TriangleId,
     polygon: &mut Vec<Corner>,
-    mut add: impl FnMut(u32, PatchId, f64),
+    mut add: impl FnMut(Corner, PatchId, f64),
 ) {
     let corners = scene.corners(triangle);
     let n = f64::from(mesh.divisions(triangle));
@@ -335,7 +366,7 @@ fn weigh(
                 Some(i) => at_corner[usize::from(i)],
                 None => std::f64::consts::PI / centre.distance(outline.positions[c.node as usize]),
             };
-            add(c.node, patch, weight);
+            add(*c, patch, weight);
         }
     }
 }

@@ -92,6 +92,12 @@ impl Outline {
         &self.rim
     }
 
+    /// The corners of patches on the rim before and after a node of it, both of the same patch.
+    pub(super) fn ends_around(&self, node: u32) -> [u32; 2] {
+        let next = self.parts.partition_point(|&part| part <= node);
+        [self.parts[next.saturating_sub(1)], self.parts.get(next).copied().unwrap_or(0)]
+    }
+
     /// The polygon of a patch, counter-clockwise seen from the front. Has fewer than three nodes if the patch is
     /// smaller than the tolerance of the mesh.
     pub(super) fn polygon(

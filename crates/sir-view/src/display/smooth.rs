@@ -42,7 +42,22 @@ impl RimPiece {
 /// Sets of (rim node, side) that have one irradiance, by union and find, with the sums that make it.
 pub(super) struct Groups {
     parents: Vec<u32>,
-    sums: Vec<(Rgb, f64)>,
+    sums: Vec<Sum>,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    irradiance: Rgb,
+    weight: f64,
+    has_corner: bool,
+}
+
+impl std::ops::AddAssign for Sum {
+    fn add_assign(&mut self, other: Self) {
+        self.irradiance += other.irradiance;
+        self.weight += other.weight;
+        self.has_corner |= other.has_corner;
+    }
 }
 
 fn slot(node: u32, side: Side) -> usize {
@@ -51,14 +66,13 @@ fn slot(node: u32, side: Side) -> usize {
 
 impl Groups {
     pub(super) fn new(nodes: usize) -> Self {
-        Self { parents: (0..2 * nodes as u32).collect(), sums: vec![(Rgb::ZERO, 0.0); 2 * nodes] }
+        Self { parents: (0..2 * nodes as u32).collect(), sums: vec![Sum::default(); 2 * nodes] }
     }
 
-    /// Takes the irradiance of a patch into account at a node of its rim.
-    pub(super) fn add(&mut self, node: u32, side: Side, irradiance: Rgb, weight: f64) {
-        let (sum, weights) = &mut self.sums[slot(node, side)];
-        *sum += weight * irradiance;
-        *weights += weight;
+    /// Takes the irradiance of a patch into account at a node of its rim, which is a corner of the patch or lies on
+    /// an edge of it.
+    pub(super) fn add(&mut self, node: u32, side: Side, irradiance: Rgb, weight: f64, is_corner: bool) {
+        self.sums[slot(node, side)] += Sum { irradiance: weight * irradiance, weight, has_corner: is_corner };
     }
 
     /// Unites the sides that continue each other, and adds up their sums.
@@ -75,9 +89,8 @@ impl Groups {
         for i in 0..self.parents.len() {
             let root = self.root(i);
             if root != i {
-                let (sum, weight) = self.sums[i];
-                self.sums[root].0 += sum;
-                self.sums[root].1 += weight;
+                let sum = self.sums[i];
+                self.sums[root] += sum;
             }
         }
     }
@@ -117,11 +130,12 @@ impl Groups {
         self.parents.len()
     }
 
-    /// The number of the set of a node and a side, and the irradiance there.
-    pub(super) fn find(&mut self, node: u32, side: Side) -> (usize, Rgb) {
+    /// The number of the set of a node and a side, and the irradiance there; `None` if no patch of the set has a
+    /// corner there, so that the node only cuts its edge in two.
+    pub(super) fn find(&mut self, node: u32, side: Side) -> (usize, Option<Rgb>) {
         let root = self.root(slot(node, side));
-        let (sum, weight) = self.sums[root];
-        (root, if weight > 0.0 { sum / weight } else { Rgb::ZERO })
+        let sum = self.sums[root];
+        (root, sum.has_corner.then(|| sum.irradiance / sum.weight))
     }
 }
 
