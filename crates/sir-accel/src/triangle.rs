@@ -57,21 +57,21 @@ impl GridTriangle {
         let moment = line.direction.cross(oa);
         let e_ab = moment.dot(ab);
         let e_ca = -moment.dot(ac);
+        let certain = f64::from(self.certain);
+        let (low, high) = (e_ab.min(e_ca), e_ab.max(e_ca));
+        if low < -certain && high > certain {
+            return None;
+        }
         let all = line.direction.dot(ab.cross(ac));
         let e_bc = all - e_ab - e_ca;
-        let certain = f64::from(self.certain);
-        let positive = e_ab > certain && e_bc > certain && e_ca > certain;
-        let negative = e_ab < -certain && e_bc < -certain && e_ca < -certain;
-        let side = if positive {
+        let (low, high) = (low.min(e_bc), high.max(e_bc));
+        let side = if low > certain {
             Side::Back
-        } else if negative {
+        } else if high < -certain {
             Side::Front
+        } else if low < -certain && high > certain {
+            return None;
         } else {
-            let some_positive = e_ab > certain || e_bc > certain || e_ca > certain;
-            let some_negative = e_ab < -certain || e_bc < -certain || e_ca < -certain;
-            if some_positive && some_negative {
-                return None;
-            }
             self.exact_crossing(line)?
         };
         // Weights are clamped so that a crossing is a point of the triangle whatever rounding does: this keeps
