@@ -7,7 +7,7 @@ use sir_accel::{Accel, Hit, Tracer};
 use sir_geom::{Camera, Line, Projection, Rgb, Scene};
 use sir_lines::{Stage, Streams};
 
-use crate::{DisplayMesh, Exposure, ViewError};
+use crate::{DisplayMesh, Exposure, ViewError, luminance};
 
 /// A picture of linear radiance.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,22 +117,20 @@ impl Shader<'_> {
         let index = u64::from(y) * u64::from(width) + u64::from(x);
         let mut stream = Streams::new(0, Stage::PICTURE).line(index);
         let grid = grid.max(1);
-        let (mut sum, mut compressed) = (Rgb::ZERO, Rgb::ZERO);
+        let (mut sum, mut weighted, mut weights) = (Rgb::ZERO, Rgb::ZERO, 0.0);
         for cell in 0..grid * grid {
             let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
             let right = (f64::from(x) + within(cell % grid, stream.unit())) / f64::from(width);
             let down = (f64::from(y) + within(cell / grid, stream.unit())) / f64::from(height);
             let radiance = radiance_along(self.display, tracer, &self.rays.ray(right, down));
             sum += radiance;
-            compressed += radiance / (1.0 + radiance.max_element() / self.knee);
+            let weight = 1.0 / (1.0 + luminance(radiance) / self.knee);
+            weighted += weight * radiance;
+            weights += weight;
         }
-        let count = f64::from(grid * grid);
-        let (mean, compressed) = (sum / count, compressed / count);
-        // The inverse of the compression; its result cannot exceed the mean but by rounding.
-        let shown = compressed / (1.0 - compressed.max_element() / self.knee).max(1e-12);
         Pixel {
-            radiance: mean.as_vec3().to_array(),
-            shown: shown.min(Rgb::splat(mean.max_element())).as_vec3().to_array(),
+            radiance: (sum / f64::from(grid * grid)).as_vec3().to_array(),
+            shown: (weighted / weights).as_vec3().to_array(),
         }
     }
 }

@@ -24,6 +24,16 @@ fn settings(threads: usize) -> PictureSettings {
     PictureSettings { width: 160, height: 120, grid: 2, threads }
 }
 
+/// Whatever a ray counts for, a mean of rays lies between them in every band.
+fn assert_between(picture: &Picture, ends: [[f32; 3]; 2]) {
+    for pixel in &picture.shown {
+        for band in 0..3 {
+            let (low, high) = (ends[0][band].min(ends[1][band]), ends[0][band].max(ends[1][band]));
+            assert!((low - 1e-6..=high + 1e-6).contains(&pixel[band]), "{pixel:?}");
+        }
+    }
+}
+
 /// A picture of the room in which the irradiance is π everywhere.
 fn uniform(scene: &Scene, camera: &Camera, threads: usize) -> Picture {
     let mesh = PatchMesh::new(scene, Subdivision::MaxArea(0.07)).unwrap();
@@ -89,6 +99,29 @@ fn the_edge_of_a_lamp_is_soft_on_the_screen_and_exact_in_numbers() {
         assert!((radiance / (0.25 * 0.5 + 0.75 * lamp) - 1.0).abs() < 1e-5);
         assert!(shown > 1.0 && shown < 0.1 * lamp, "{shown}");
     }
+}
+
+#[test]
+fn edges_between_colours_are_neither_darker_nor_brighter_than_both() {
+    let mut builder = SceneBuilder::new();
+    let paints = [Rgb::new(0.6, 0.3, 0.1), Rgb::new(0.5, 0.6, 0.7), Rgb::splat(0.001)];
+    let paints = paints.map(|p| builder.add_material(Material::diffuse("paint", p)));
+    // The third one, dark and outside of the picture, is most of the scene.
+    for (left, right, m) in [(0.0, 4.3, paints[0]), (4.3, 9.0, paints[1]), (9.0, 900.0, paints[2])] {
+        let (corner, right) = (left * DVec3::X, right * DVec3::X);
+        shapes::quad(&mut builder, [corner, right, right + 9.0 * DVec3::Y, corner + 9.0 * DVec3::Y], m);
+    }
+    let scene = builder.build().unwrap().scene;
+    let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
+    let irradiance = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
+    let display = DisplayMesh::new(&scene, &mesh, &irradiance);
+    let camera = Camera {
+        projection: Projection::Orthographic { height: 9.0 },
+        ..Camera::looking_at(DVec3::new(4.5, 4.5, 1.0), DVec3::new(4.5, 4.5, 0.0), DVec3::Y, 1.0).unwrap()
+    };
+    let settings = PictureSettings { width: 9, height: 9, grid: 4, threads: 1 };
+    let picture = render(&display, &Accel::new(&scene), &camera, settings).unwrap();
+    assert_between(&picture, [[0.6, 0.3, 0.1], [0.5, 0.6, 0.7]]);
 }
 
 #[test]
