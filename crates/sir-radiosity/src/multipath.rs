@@ -130,15 +130,18 @@ impl<'m> Multipath<'m> {
     ///
     /// If a tally overflowed.
     pub fn finish(self) -> Result<Transported, SolveError> {
-        let Books { received, mut balance, counts } = self.books;
-        for side in &self.sides {
+        let Self { model, sides, books, unit, .. } = self;
+        let Books { received, mut balance, counts } = books;
+        for side in &sides {
             balance.unshot += side.unshot;
         }
+        // The solution needs room.
+        drop(sides);
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "multipath" });
         }
-        let solution = Solution::new(self.model, &received, self.unit);
-        Ok(Transported { solution, received, unit: self.unit, balance, counts })
+        let solution = Solution::new(model, &received, unit);
+        Ok(Transported { solution, received, unit, balance, counts })
     }
 }
 
