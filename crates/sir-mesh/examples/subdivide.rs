@@ -1,0 +1,29 @@
+//! What subdivisions of a room look like in numbers: `cargo run -p sir-mesh --example subdivide`.
+#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+
+use glam::DVec3;
+use sir_geom::shapes::{self, Facing};
+use sir_geom::{Material, Rgb, SceneBuilder};
+use sir_mesh::{PatchMesh, Subdivision};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut builder = SceneBuilder::new();
+    let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
+    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::new(4.0, 3.0, 5.0), [grey; 6], Facing::Inward);
+    shapes::sphere(&mut builder, DVec3::new(2.0, 1.0, 2.0), 0.8, 3, Facing::Outward, |_| grey);
+    let scene = builder.build()?.scene;
+    println!("{} triangles, {:.2} m²", scene.triangles().len(), scene.total_area());
+    for subdivision in [
+        Subdivision::PerTriangle,
+        Subdivision::PerFace,
+        Subdivision::MaxArea(0.01),
+        Subdivision::MaxEdge(0.1),
+        Subdivision::Patches(614_778),
+    ] {
+        let mesh = PatchMesh::new(&scene, subdivision)?;
+        let areas = scene.triangle_ids().map(|t| mesh.patch_area(t));
+        let (least, most) = areas.fold((f64::INFINITY, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
+        println!("{subdivision:?}: {} patches of {least:.2e} to {most:.2e} m²", mesh.patch_count());
+    }
+    Ok(())
+}

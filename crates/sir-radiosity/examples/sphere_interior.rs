@@ -1,0 +1,46 @@
+//! The inside of a sphere has the same irradiance everywhere, whatever emits: ΣΦ / (A (1 − ρ)). This solves one that
+//! emits from its top only: `cargo run --release -p sir-radiosity --example sphere_interior`.
+#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+
+use glam::DVec3;
+use sir_geom::shapes::{self, Facing};
+use sir_geom::{Material, Rgb, SceneBuilder};
+use sir_lines::Domain;
+use sir_mesh::Subdivision;
+use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings, sources};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let reflectance = 0.7;
+    let mut builder = SceneBuilder::new();
+    let wall = Material::diffuse("wall", Rgb::splat(reflectance));
+    let lamp = builder.add_material(wall.clone().emitting(Rgb::splat(100.0)));
+    let wall = builder.add_material(wall);
+    shapes::sphere(&mut builder, DVec3::ZERO, 1.0, 3, Facing::Inward, |middle| {
+        if middle.y > 0.8 { lamp } else { wall }
+    });
+    let model = Model::new(builder.build()?.scene, Subdivision::PerTriangle)?;
+
+    let (seed, lines) = (1, 2_000_000);
+    let shot = FirstShot::new(&model, lines, seed)?;
+    let mut tally = shot.tally();
+    shot.trace(0..lines, &mut tally);
+    let domain = Domain::Sphere(model.scene.bounding_sphere());
+    let settings = MultipathSettings::new(lines, domain);
+    let mut multipath = Multipath::new(&model, shot.finish(tally)?, settings, seed);
+    multipath.trace(0..lines);
+    let done = multipath.finish()?;
+
+    let power: f64 = sources(&model.scene).iter().map(|s| s.power.x).sum();
+    let exact = power / (model.scene.total_area() * (1.0 - reflectance));
+    let sides = model.mesh.side_count() as f64;
+    let mean = done.solution.irradiance.iter().map(|e| e.x).sum::<f64>() / sides;
+    let square = done.solution.irradiance.iter().map(|e| (e.x - exact).powi(2)).sum::<f64>() / sides;
+    let error = done.solution.error.iter().map(|e| e.x * e.x).sum::<f64>() / sides;
+    println!("irradiance: mean {mean:.3} W/m², exact {exact:.3} W/m²");
+    println!(
+        "rms deviation of a patch: {:.2} %, its standard error: {:.2} %",
+        100.0 * square.sqrt() / exact,
+        100.0 * error.sqrt() / exact
+    );
+    Ok(())
+}
