@@ -1,0 +1,131 @@
+//! The arrows between the crates point downward, and only along the lines of the design.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Every crate of the workspace with the crates that it may use, from the bottom to the top.
+const LAYERS: [(&str, &[&str]); 10] = [
+    ("sir-geom", &[]),
+    ("sir-mesh", &["sir-geom"]),
+    ("sir-lines", &["sir-geom"]),
+    ("sir-scenes", &["sir-geom"]),
+    // Rays do not know where lines come from, nor that triangles are cut into patches.
+    ("sir-accel", &["sir-geom"]),
+    ("sir-radiosity", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel"]),
+    ("sir-parallel", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
+    ("sir-view", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
+    (
+        "sir-cli",
+        &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel", "sir-view"],
+    ),
+    (
+        "sir",
+        &[
+            "sir-geom",
+            "sir-mesh",
+            "sir-lines",
+            "sir-accel",
+            "sir-radiosity",
+            "sir-parallel",
+            "sir-view",
+            "sir-cli",
+        ],
+    ),
+];
+
+/// Crates of others that one crate hides from the rest.
+const HIDDEN: [(&str, &str); 2] = [("obvhs", "sir-accel"), ("mpi", "sir-parallel")];
+
+/// A crate and what it depends on, dev-dependencies left out: tests may look upward.
+type Arrows = Vec<(String, Vec<String>)>;
+
+/// What is wrong with these arrows, one sentence each.
+fn problems(arrows: &Arrows) -> Vec<String> {
+    let mut problems = Vec::new();
+    for (name, _) in LAYERS {
+        if !arrows.iter().any(|(found, _)| found == name) {
+            problems.push(format!("{name} is in the list of layers, but not in the workspace"));
+        }
+    }
+    for (name, dependencies) in arrows {
+        let Some((_, allowed)) = LAYERS.iter().find(|(listed, _)| listed == name) else {
+            problems.push(format!("{name} is not in the list of layers; give it its place there"));
+            continue;
+        };
+        for dependency in dependencies {
+            let ours = dependency == "sir" || dependency.starts_with("sir-");
+            if ours && !allowed.contains(&dependency.as_str()) {
+                problems.push(format!("{name} must not depend on {dependency}"));
+            }
+            for (hidden, owner) in HIDDEN {
+                if dependency == hidden && name != owner {
+                    problems.push(format!("{name} must not depend on {hidden}, which is {owner}'s"));
+                }
+            }
+        }
+    }
+    problems
+}
+
+/// The workspace as cargo sees it.
+fn workspace() -> Arrows {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--no-deps", "--offline", "--format-version", "1", "--manifest-path"])
+        .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let text = |value: &Value| value.as_str().unwrap().to_owned();
+    let used = |package: &Value| {
+        let all = package["dependencies"].as_array().unwrap();
+        all.iter().filter(|d| d["kind"] != "dev").map(|d| text(&d["name"])).collect()
+    };
+    metadata["packages"].as_array().unwrap().iter().map(|p| (text(&p["name"]), used(p))).collect()
+}
+
+#[test]
+fn crates_depend_only_on_those_below() {
+    let arrows = workspace();
+    assert!(arrows.iter().any(|(name, used)| name == "sir" && used.contains(&"sir-cli".to_owned())));
+    let problems = problems(&arrows);
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn layers_are_listed_from_the_bottom_to_the_top() {
+    for (i, (name, allowed)) in LAYERS.iter().enumerate() {
+        for dependency in *allowed {
+            assert!(LAYERS[..i].iter().any(|(below, _)| below == dependency), "{name} → {dependency}");
+        }
+    }
+}
+
+#[test]
+fn wrong_arrows_are_found() {
+    let made_up = |changes: &[(&str, &[&str])]| -> Vec<String> {
+        let mut arrows: Arrows = LAYERS.iter().map(|(name, _)| ((*name).to_owned(), Vec::new())).collect();
+        for (name, used) in changes {
+            arrows.retain(|(known, _)| known != name);
+            arrows.push(((*name).to_owned(), used.iter().map(|&d| d.to_owned()).collect()));
+        }
+        problems(&arrows)
+    };
+    assert_eq!(made_up(&[("sir-radiosity", &["glam", "sir-accel"]), ("sir-accel", &["obvhs"])]), [""; 0]);
+    for (name, used, expected) in [
+        ("sir-geom", "sir-mesh", "sir-geom must not depend on sir-mesh"),
+        ("sir-accel", "sir-lines", "sir-accel must not depend on sir-lines"),
+        ("sir-radiosity", "sir-parallel", "sir-radiosity must not depend on sir-parallel"),
+        ("sir-cli", "sir", "sir-cli must not depend on sir"),
+        ("sir-cli", "sir-new", "sir-cli must not depend on sir-new"),
+        ("sir-view", "obvhs", "sir-view must not depend on obvhs, which is sir-accel's"),
+        ("sir-new", "glam", "sir-new is not in the list of layers; give it its place there"),
+    ] {
+        assert_eq!(made_up(&[(name, &[used])]), [expected]);
+    }
+    let all_but_one: Arrows = LAYERS[1..].iter().map(|(name, _)| ((*name).to_owned(), Vec::new())).collect();
+    assert_eq!(problems(&all_but_one), ["sir-geom is in the list of layers, but not in the workspace"]);
+}
