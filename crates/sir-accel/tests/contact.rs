@@ -1,4 +1,5 @@
 //! Surfaces in contact are put in order by their rule, in both directions.
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use glam::DVec3;
 use sir_accel::Accel;

@@ -6,7 +6,7 @@ use sir_geom::SidesPolicy;
 use sir_mesh::Subdivision;
 
 use crate::diagnostic::Diagnostics;
-use crate::fields::{ABSURD, Reader, did_you_mean, list};
+use crate::fields::{ABSURD, Reader, did_you_mean, list, resembling};
 use crate::order::check_order;
 use crate::pipeline::{Action, Pipeline, Stage};
 use crate::ron_tree::{self, Node, Value};
@@ -67,18 +67,21 @@ impl<'a> Decoder<'a> {
         let mut order = Vec::new();
         let mut all_known = true;
         for stage in nodes {
+            let place = stage.name();
             let Some(name) = self.name_of(&stage, "stage", &STAGES) else {
-                all_known = false;
+                match resembling(place, &STAGES) {
+                    Some(meant) => order.push((*meant, place)),
+                    None => all_known = false,
+                }
                 continue;
             };
-            let place = stage.name();
             order.push((name, place));
             let span = self.reader.span(place);
             if let Some(action) = self.action(name, stage) {
                 stages.push(Stage { action, span });
             }
         }
-        // What a misspelt stage would have made is not known.
+        // What an unknown stage would have made is not known.
         if all_known {
             check_order(&mut self.reader, &order, node.text);
         }

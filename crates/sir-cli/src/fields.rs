@@ -220,10 +220,15 @@ fn float(literal: &str) -> Option<f64> {
 
 /// "did you mean …", if `name` resembles one of `candidates`.
 pub(crate) fn did_you_mean<S: AsRef<str>>(name: &str, candidates: &[S]) -> Option<String> {
+    resembling(name, candidates).map(|best| format!("did you mean `{}`?", best.as_ref()))
+}
+
+/// The one of `candidates` that `name` is a misspelling of.
+pub(crate) fn resembling<'c, S: AsRef<str>>(name: &str, candidates: &'c [S]) -> Option<&'c S> {
     let lower = name.to_lowercase();
-    let near = |c: &str| strsim::damerau_levenshtein(&lower, &c.to_lowercase());
-    let best = candidates.iter().map(AsRef::as_ref).min_by_key(|c| near(c))?;
-    (near(best) <= 1 + best.len() / 4 && !name.is_empty()).then(|| format!("did you mean `{best}`?"))
+    let near = |c: &S| strsim::damerau_levenshtein(&lower, &c.as_ref().to_lowercase());
+    let best = candidates.iter().min_by_key(|c| near(c))?;
+    (near(best) <= 1 + best.as_ref().len() / 4 && !name.is_empty()).then_some(best)
 }
 
 /// `a`, `b` and `c`.

@@ -1,4 +1,5 @@
 //! Closed scenes and difficult lines.
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};

@@ -1,5 +1,6 @@
 //! Solving scenes whose answer is known, and judging the result.
 #![allow(dead_code, reason = "each test uses some of it")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
 
 use std::f64::consts::PI;
 
