@@ -1,8 +1,12 @@
 //! Everything that must work before the first line is traced.
 
+use std::path::Path;
+
+use glam::DVec3;
 use sir_geom::{Camera, LoadOptions, Scene};
 use sir_mesh::{MeshError, Subdivision};
 use sir_radiosity::{Model, SolveError, Source, sources};
+use sir_view::guess_up;
 
 use crate::Error;
 use crate::diagnostic::Diagnostic;
@@ -16,6 +20,8 @@ use crate::report::Stopwatch;
 pub struct Prepared {
     /// Scene, patches and acceleration structure.
     pub model: Model,
+    /// Which way is up: known of glTF files, guessed of others.
+    pub up: DVec3,
     /// What the reader of the scene changed or left out.
     pub warnings: Vec<String>,
     /// The light sources: at least one.
@@ -57,13 +63,21 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     let (how, span) = subdivision;
     match Model::new(built.scene, how) {
         Ok(model) if problems.is_empty() => {
-            Ok(Prepared { model, warnings, sources, load_seconds, build_seconds: watch.seconds() })
+            let build_seconds = watch.seconds();
+            let up = up(pipeline.scene_path(), &model.scene);
+            Ok(Prepared { model, up, warnings, sources, load_seconds, build_seconds })
         }
         outcome => {
             problems.extend(outcome.err().map(|error| mesh_problem(error, span)));
             Err(pipeline.diagnostics(problems).into())
         }
     }
+}
+
+fn up(path: &Path, scene: &Scene) -> DVec3 {
+    // By the standard, +y is up in glTF; OBJ does not say.
+    let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
+    if is_obj { guess_up(scene) } else { DVec3::Y }
 }
 
 fn mesh_problem(error: MeshError, span: std::ops::Range<usize>) -> Diagnostic {

@@ -140,7 +140,7 @@ fn run_stages(
             }
             Action::Save(outputs) => {
                 if let Some(solution) = &solution {
-                    report.outputs.extend(save(model, solution, outputs, directory, threads, progress)?);
+                    report.outputs.extend(save(prepared, solution, outputs, directory, threads, progress)?);
                 }
             }
         }

@@ -6,11 +6,11 @@ use std::path::Path;
 use sir_geom::Camera;
 use sir_radiosity::{Model, Solution};
 use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, ViewError};
-use sir_view::{default_camera, guess_up, render, write_exr, write_glb, write_png};
+use sir_view::{default_camera, render, write_exr, write_glb, write_png};
 
 use crate::Error;
 use crate::pipeline::{Content, Image, Output};
-use crate::prepare::chosen_camera;
+use crate::prepare::{Prepared, chosen_camera};
 use crate::progress::Progress;
 use crate::report::OutputReport;
 
@@ -19,17 +19,17 @@ const DEFAULT_SHAPE: f64 = 0.75;
 
 /// Writes all outputs of a stage into a directory.
 pub(crate) fn save(
-    model: &Model,
+    prepared: &Prepared,
     solution: &Solution,
     outputs: &[Output],
     directory: &Path,
     threads: usize,
     progress: Progress,
 ) -> Result<Vec<OutputReport>, Error> {
-    let Model { scene, mesh, .. } = model;
+    let Model { scene, mesh, .. } = &prepared.model;
     let seen = outputs.iter().any(|o| o.content != Content::Table);
     let display = seen.then(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
-    let mut studio = display.as_ref().map(|display| Studio { model, display, threads, last: None });
+    let mut studio = display.as_ref().map(|display| Studio { prepared, display, threads, last: None });
     let mut reports = Vec::new();
     for output in outputs {
         let path = directory.join(&output.path);
@@ -48,7 +48,7 @@ pub(crate) fn save(
                 "image"
             }
             (Content::Gltf, Some(studio)) => {
-                write_glb(&path, studio.display, Exposure::Auto, scene.cameras(), guess_up(scene))?;
+                write_glb(&path, studio.display, Exposure::Auto, scene.cameras(), prepared.up)?;
                 "gltf"
             }
             _ => {
@@ -70,7 +70,7 @@ pub(crate) fn save(
 
 /// Takes pictures. The last one is kept, because the same is often wanted as PNG and as EXR.
 struct Studio<'a> {
-    model: &'a Model,
+    prepared: &'a Prepared,
     display: &'a DisplayMesh<'a>,
     threads: usize,
     last: Option<(Option<Camera>, PictureSettings, Picture)>,
@@ -78,7 +78,7 @@ struct Studio<'a> {
 
 impl Studio<'_> {
     fn picture(&mut self, image: &Image) -> Result<&Picture, Error> {
-        let Model { scene, accel, .. } = self.model;
+        let Model { scene, accel, .. } = &self.prepared.model;
         let camera = chosen_camera(&image.camera, scene);
         let settings = settings(image, camera.as_ref(), self.threads);
         let picture = match self.last.take() {
@@ -88,7 +88,7 @@ impl Studio<'_> {
                 None => render(
                     self.display,
                     accel,
-                    &default_camera(self.display, accel, guess_up(scene)),
+                    &default_camera(self.display, accel, self.prepared.up),
                     settings,
                 )?,
             },
