@@ -30,6 +30,7 @@ const LAYERS: [(&str, &[&str]); 10] = [
             "sir-accel",
             "sir-radiosity",
             "sir-parallel",
+            "sir-scenes",
             "sir-view",
             "sir-cli",
         ],
