@@ -1,7 +1,12 @@
 //! Whole pipelines, from the file to the files: the same bytes each time, light neither lost nor made, known answers,
 //! and snapshots that show which numbers a change moves.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "helpers of tests fail and talk like tests"
+)]
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

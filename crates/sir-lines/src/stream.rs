@@ -87,18 +87,15 @@ mod tests {
     fn neighbouring_lines_seeds_and_stages_are_uncorrelated() {
         let n = 20_000;
         let draw = |seed, stage, i| Streams::new(seed, stage).line(i).unit();
-        let pairs: [fn(u64) -> ((u64, Stage, u64), (u64, Stage, u64)); 3] = [
-            |i| ((1, Stage::GLOBAL, i), (1, Stage::GLOBAL, i + 1)),
-            |i| ((i, Stage::GLOBAL, 0), (i + 1, Stage::GLOBAL, 0)),
-            |i| ((1, Stage::GLOBAL, i), (1, Stage::FIRST_SHOT, i)),
+        const GLOBAL: Stage = Stage::GLOBAL;
+        let pairs: [fn(u64) -> [(u64, Stage, u64); 2]; 3] = [
+            |i| [(1, GLOBAL, i), (1, GLOBAL, i + 1)],
+            |i| [(i, GLOBAL, 0), (i + 1, GLOBAL, 0)],
+            |i| [(1, GLOBAL, i), (1, Stage::FIRST_SHOT, i)],
         ];
         for pair in pairs {
-            let sum: f64 = (0..n)
-                .map(|i| {
-                    let (a, b) = pair(i);
-                    (draw(a.0, a.1, a.2) - 0.5) * (draw(b.0, b.1, b.2) - 0.5)
-                })
-                .sum();
+            let centred = |(seed, stage, i)| draw(seed, stage, i) - 0.5;
+            let sum: f64 = (0..n).map(|i| pair(i).map(centred).iter().product::<f64>()).sum();
             // A product of two centred uniform numbers has the standard deviation 1/12.
             let z = sum * 12.0 / f64::from(n as u32).sqrt();
             assert!(z.abs() < 4.0, "correlated: z = {z}");

@@ -6,7 +6,7 @@
 //! of gifts were random too. And who got more than usual passes it on to all but itself: what it gets later is
 //! less than usual, so that for equal view factors `F` a deviation shrinks by `1 + ρF`.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! What lines cross, and who sees whom along them, against integral geometry and exact view factors.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
 
 mod common;
 
