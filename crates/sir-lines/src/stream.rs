@@ -86,16 +86,13 @@ mod tests {
     #[test]
     fn neighbouring_lines_seeds_and_stages_are_uncorrelated() {
         let n = 20_000;
-        let draw = |seed, stage, i| Streams::new(seed, stage).line(i).unit();
-        const GLOBAL: Stage = Stage::GLOBAL;
-        let pairs: [fn(u64) -> [(u64, Stage, u64); 2]; 3] = [
-            |i| [(1, GLOBAL, i), (1, GLOBAL, i + 1)],
-            |i| [(i, GLOBAL, 0), (i + 1, GLOBAL, 0)],
-            |i| [(1, GLOBAL, i), (1, Stage::FIRST_SHOT, i)],
-        ];
-        for pair in pairs {
-            let centred = |(seed, stage, i)| draw(seed, stage, i) - 0.5;
-            let sum: f64 = (0..n).map(|i| pair(i).map(centred).iter().product::<f64>()).sum();
+        let centred = |seed, stage, i| Streams::new(seed, stage).line(i).unit() - 0.5;
+        let (global, local) = (Stage::GLOBAL, Stage::FIRST_SHOT);
+        let lines = |i| centred(1, global, i) * centred(1, global, i + 1);
+        let seeds = |i| centred(i, global, 0) * centred(i + 1, global, 0);
+        let stages = |i| centred(1, global, i) * centred(1, local, i);
+        for product in [&lines as &dyn Fn(u64) -> f64, &seeds, &stages] {
+            let sum: f64 = (0..n).map(product).sum();
             // A product of two centred uniform numbers has the standard deviation 1/12.
             let z = sum * 12.0 / f64::from(n as u32).sqrt();
             assert!(z.abs() < 4.0, "correlated: z = {z}");
