@@ -1,0 +1,208 @@
+//! Scenes of others against the radiosities that an independent path tracer found for them.
+//!
+//! The scenes and tables are no part of the project. They are read from where the variable `SIR_TEST_DATA` says, or
+//! from a folder `shared` beside the repository; without them the tests say so and pass.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sir::geom::{LoadOptions, Rgb, Side, load};
+use sir::lines::Domain;
+use sir::mesh::Subdivision;
+use sir::parallel::{Silent, first_shot, multipath};
+use sir::radiosity::{Model, MultipathSettings};
+
+/// The folder of a scene.
+fn scene_folder(name: &str) -> Option<PathBuf> {
+    let data = match std::env::var_os("SIR_TEST_DATA") {
+        Some(folder) => PathBuf::from(folder),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
+    };
+    let folder = data.join("scenes").join(name);
+    let found = folder.is_dir();
+    if !found {
+        println!("skipped: no third-party data in {}", data.display());
+    }
+    found.then_some(folder)
+}
+
+/// A radiosity per band and its standard error \[W/m²\].
+#[derive(Clone, Copy, Debug)]
+struct Estimate {
+    mean: Rgb,
+    se: Rgb,
+}
+
+impl Estimate {
+    /// From independent results.
+    fn of(samples: &[Rgb]) -> Self {
+        let n = samples.len() as f64;
+        let mean = samples.iter().sum::<Rgb>() / n;
+        let variance = samples.iter().map(|&x| (x - mean) * (x - mean)).sum::<Rgb>() / (n * (n - 1.0));
+        Self { mean, se: variance.map(f64::sqrt) }
+    }
+
+    /// The difference to another estimate in units of its standard error. Zero where both are exact and equal.
+    fn z(self, other: Self) -> Rgb {
+        let (off, se) = (self.mean - other.mean, (self.se * self.se + other.se * other.se).map(f64::sqrt));
+        Rgb::from_array(std::array::from_fn(|k| if off[k] == 0.0 { 0.0 } else { off[k] / se[k] }))
+    }
+}
+
+/// A reference table: by the name in its first column, `B_r,B_g,B_b,se_r,se_g,se_b` from the fourth column on.
+/// It states six digits; their rounding is part of the error.
+fn reference(path: &Path) -> BTreeMap<String, Estimate> {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    assert!(lines.next().unwrap().contains(",area,B_r,B_g,B_b,se_r,se_g,se_b"));
+    lines
+        .map(|line| {
+            let fields: Vec<&str> = line.split(',').collect();
+            let rgb = |i: usize| Rgb::from_array(std::array::from_fn(|k| fields[i + k].parse().unwrap()));
+            (fields[0].to_owned(), Estimate { mean: rgb(3), se: rgb(6) + 3e-6 * rgb(3) })
+        })
+        .collect()
+}
+
+/// How to compute the light of a scene.
+struct Effort {
+    patches: u64,
+    /// Lines of the first shot and of multipath, per run.
+    lines: (u64, u64),
+    /// How many of the latter, at the end, only send on what is left. Patches with the reflectance `ρ` that each are
+    /// crossed by `n` of them keep about `exp(−(1−ρ) n)` of it, which is missing from the result.
+    tail: u64,
+    /// Independent runs.
+    seeds: u64,
+}
+
+/// Mean radiosity of the fronts of every triangle, one list per run.
+fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
+    let (local, global) = effort.lines;
+    let domain = Domain::Sphere(model.scene.bounding_sphere());
+    let one = |seed| {
+        let shot = first_shot(model, local, seed, &mut Silent).unwrap().outcome;
+        let settings = MultipathSettings { lines: global, tail: effort.tail, domain };
+        let solution = multipath(model, shot, settings, seed, &mut Silent).unwrap().outcome.solution;
+        let mut radiosity = vec![Rgb::ZERO; model.scene.triangles().len()];
+        model.mesh.for_each_side(|t, _, side, id| {
+            if side == Side::Front {
+                let share = 1.0 / model.mesh.patches_of(t).len() as f64;
+                radiosity[t.index()] += share * solution.radiosity(model, t, side, id);
+            }
+        });
+        radiosity
+    };
+    (1..=effort.seeds).map(one).collect()
+}
+
+fn model(path: &Path, effort: &Effort) -> Model {
+    let scene = load(path, &LoadOptions::default()).unwrap().scene;
+    Model::new(scene, Subdivision::Patches(effort.patches)).unwrap()
+}
+
+/// Differences in units of their standard errors, and what to call them.
+#[derive(Default)]
+struct Deviations(Vec<(String, f64)>);
+
+impl Deviations {
+    fn add(&mut self, what: &str, ours: Estimate, theirs: Estimate) {
+        let z = ours.z(theirs);
+        for k in 0..3 {
+            let (a, b) = (ours.mean[k], theirs.mean[k]);
+            let text = format!(
+                "{what} {}: {a:.6} ± {:.6}, {b:.6} ± {:.6}",
+                ["red", "green", "blue"][k],
+                ours.se[k],
+                theirs.se[k]
+            );
+            self.0.push((text, z[k]));
+        }
+    }
+
+    fn rms(&self) -> f64 {
+        (self.0.iter().map(|(_, z)| z * z).sum::<f64>() / self.0.len() as f64).sqrt()
+    }
+}
+
+/// No difference is beyond four standard errors, and all together are as large as chance makes them: with errors
+/// from a dozen runs or fewer (Student's t) and bands that go together, up to 1.3 in the root mean square.
+#[track_caller]
+fn assert_agrees(mut deviations: Deviations) {
+    let rms = deviations.rms();
+    deviations.0.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    for (what, z) in deviations.0.iter().take(12) {
+        println!("z {z:+.2}  {what}");
+    }
+    println!("rms of {} z: {rms:.3}", deviations.0.len());
+    let (worst, z) = &deviations.0[0];
+    assert!(z.abs() <= 4.0, "z {z:+.2}  {worst}");
+    assert!(rms < 1.3, "the root mean square of all z is {rms:.3}");
+}
+
+/// Triangles of the Cornell box that lie on each other.
+const COPIES: [(usize, usize); 4] = [(16, 20), (17, 21), (30, 32), (31, 33)];
+
+/// Cornell box by Cardenas and McGuire: every triangle.
+///
+/// Patches of the floor that reach below a box take some of its light there, so that the lower parts of its sides
+/// are too dark: by 2 % with 20 000 patches, by 1 % with 80 000, in proportion to `h log(1/h)` for patches of the
+/// width `h`. Those of this test are small enough for that to be within the error bars.
+#[test]
+fn cornell_box() {
+    let Some(folder) = scene_folder("cornell-mcguire") else { return };
+    let effort = Effort { patches: 160_000, lines: (200_000, 2_400_000), tail: 1_800_000, seeds: 12 };
+    let model = model(&folder.join("CornellBox-Original.obj"), &effort);
+    let runs = solve(&model, &effort);
+    let reference = reference(&folder.join("reference-radiosity.csv"));
+    let estimate = |t: usize| Estimate::of(&runs.iter().map(|run| run[t]).collect::<Vec<_>>());
+    let mut deviations = Deviations::default();
+    for (name, theirs) in &reference {
+        let t: usize = name.parse().unwrap();
+        // The light falls on one of two triangles in the same place.
+        let ours = match COPIES.iter().find(|&&(a, b)| a == t || b == t) {
+            None => estimate(t),
+            Some(&(a, b)) if estimate(a).mean.x > estimate(b).mean.x => estimate(a),
+            Some(&(_, b)) => estimate(b),
+        };
+        deviations.add(name, ours, *theirs);
+    }
+    assert_eq!(deviations.0.len(), 3 * 36);
+    assert_agrees(deviations);
+}
+
+/// A scene's materials: the area-weighted mean of the fronts of their triangles.
+fn by_material(folder: &Path, file: &str, effort: &Effort) -> Deviations {
+    let model = model(&folder.join(file), effort);
+    let mut means: BTreeMap<&str, Vec<Rgb>> = BTreeMap::new();
+    let mut areas: BTreeMap<&str, f64> = BTreeMap::new();
+    for t in model.scene.triangle_ids() {
+        *areas.entry(&model.scene.material(t).name).or_default() += model.scene.area(t);
+    }
+    for run in solve(&model, effort) {
+        let mut sums: BTreeMap<&str, Rgb> = BTreeMap::new();
+        for t in model.scene.triangle_ids() {
+            *sums.entry(&model.scene.material(t).name).or_default() += model.scene.area(t) * run[t.index()];
+        }
+        for (name, sum) in sums {
+            means.entry(name).or_default().push(sum / areas[name]);
+        }
+    }
+    let mut deviations = Deviations::default();
+    for (name, theirs) in reference(&folder.join("reference-radiosity-by-material.csv")) {
+        deviations.add(&name, Estimate::of(&means[name.as_str()]), theirs);
+    }
+    deviations
+}
+
+/// A small office, of the RenderPark distribution.
+#[test]
+#[ignore = "takes a minute"]
+fn leuven_office() {
+    let Some(folder) = scene_folder("mgf-leuven-office") else { return };
+    let effort = Effort { patches: 40_000, lines: (1_000_000, 10_000_000), tail: 5_000_000, seeds: 8 };
+    assert_agrees(by_material(&folder, "leuven-office.obj", &effort));
+}
