@@ -3,7 +3,7 @@
 //! The scenes and tables are no part of the project. They are read from where the variable `SIR_TEST_DATA` says, or
 //! from a folder `shared` beside the repository; without them the tests say so and pass.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
 
 use std::collections::BTreeMap;
 use std::fs;
