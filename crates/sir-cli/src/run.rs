@@ -134,8 +134,9 @@ fn run_stages(
                 let mut observer = progress.stage(name, *lines);
                 let done = multipath(model, shot, settings, seed, &mut observer)?.outcome;
                 let facts = (done.balance, done.counts);
-                lines_report =
-                    Some(LinesReport::new(model, done.unit, facts, &done.received, &done.solution));
+                let lines = LinesReport::new(model, done.unit, facts, &done.received, &done.solution);
+                progress.warn(&unshot_warning(&lines));
+                lines_report = Some(lines);
                 solution = Some(done.solution);
             }
             Action::Save(outputs) => {
@@ -158,6 +159,21 @@ fn run_stages(
 /// The lines of a multipath stage: through the sphere around the scene.
 pub(crate) fn multipath_settings(model: &Model, lines: u64, tail: u64) -> MultipathSettings {
     MultipathSettings { lines, tail, domain: Domain::Sphere(model.scene.bounding_sphere()) }
+}
+
+/// What to say if so much light was not sent on that the result is visibly too dark.
+fn unshot_warning(lines: &LinesReport) -> Vec<String> {
+    let balance = &lines.balance;
+    let shares = balance.unshot.iter().zip(&balance.emitted).filter(|(_, e)| **e > 0.0).map(|(u, e)| u / e);
+    let share = shares.fold(0.0, f64::max);
+    if share <= 1e-3 {
+        return Vec::new();
+    }
+    vec![format!(
+        "{:.1} % of the light that surfaces reflect was not sent on and is missing from the result; give `Multipath` \
+         more lines or a longer `tail`, or make fewer patches",
+        100.0 * share
+    )]
 }
 
 fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {

@@ -5,8 +5,8 @@
 //!
 //! As published, every line takes along its share of the reflected direct power, and what has been reflected but not
 //! sent on when the lines end is missing from the result: a share of about `ρ/(1−ρ)/n` for patches that `n` lines
-//! cross. Here the last lines, the *tail*, take no such share and only send on: what is left then falls off
-//! exponentially with their number.
+//! cross. Here the last lines, the *tail*, take no such share and only send on: what is left then falls off like
+//! `exp(−(1−ρ) m)` with the number `m` of them that cross a patch.
 
 use std::ops::Range;
 
