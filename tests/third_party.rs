@@ -200,7 +200,6 @@ fn by_material(folder: &Path, file: &str, effort: &Effort) -> Deviations {
 
 /// A small office, of the RenderPark distribution.
 #[test]
-#[ignore = "takes a minute"]
 fn leuven_office() {
     let Some(folder) = scene_folder("mgf-leuven-office") else { return };
     let effort = Effort { patches: 40_000, lines: (1_000_000, 10_000_000), tail: 5_000_000, seeds: 8 };

@@ -114,7 +114,7 @@ fn view_factors_of_concentric_spheres() {
         let mut b = SceneBuilder::new();
         for (k, facing) in [("r1", Facing::Outward), ("r2", Facing::Inward)] {
             let m = b.add_material(grey(1.0, 0.5));
-            common::add_sphere(&mut b, radius(k), facing, &[(180, m)]);
+            common::add_sphere(&mut b, radius(k), 1, facing, &[(180, m)]);
         }
         let model = per_face(b);
         let sphere_of_side = {
