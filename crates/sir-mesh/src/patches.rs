@@ -93,15 +93,14 @@ impl PatchMesh {
         for t in scene.triangle_ids() {
             faces.entry(scene.triangle(t).face).or_default().push(t);
         }
+        faces.retain(|_, members| is_flat(scene, members));
         (self.patches, self.sides) = (0, 0);
         for t in scene.triangle_ids() {
-            let members = &faces[&scene.triangle(t).face];
-            let first = members[0];
-            if t != first && is_flat(scene, members) {
-                self.triangles[t.index()] = self.triangles[first.index()];
-                continue;
-            }
-            if is_flat(scene, members) {
+            if let Some(members) = faces.get(&scene.triangle(t).face) {
+                if t != members[0] {
+                    self.triangles[t.index()] = self.triangles[members[0].index()];
+                    continue;
+                }
                 self.triangles[t.index()].area = members.iter().map(|&m| scene.area(m)).sum();
             }
             let record = &mut self.triangles[t.index()];

@@ -20,7 +20,6 @@ pub struct FirstShot<'m> {
     allocation: Allocation,
     streams: Streams,
     unit: PowerUnit,
-    lines: u64,
 }
 
 /// What some of the lines of a first shot have brought so far.
@@ -75,13 +74,7 @@ impl<'m> FirstShot<'m> {
         let offset = Streams::new(seed, Stage::ALLOCATION).line(0).unit();
         let allocation = Allocation::new(&weights, lines, offset);
         let streams = Streams::new(seed, Stage::FIRST_SHOT);
-        Ok(Self { model, sources, per_line, allocation, streams, unit, lines })
-    }
-
-    /// Number of lines.
-    #[must_use]
-    pub fn lines(&self) -> u64 {
-        self.lines
+        Ok(Self { model, sources, per_line, allocation, streams, unit })
     }
 
     /// An empty tally.

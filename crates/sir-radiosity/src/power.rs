@@ -1,6 +1,6 @@
 //! Power as whole numbers.
 
-use std::ops::{Add, AddAssign, Neg, Sub};
+use std::ops::{Add, AddAssign, Sub};
 
 use sir_geom::Rgb;
 
@@ -47,13 +47,6 @@ impl Sub for Quanta {
     #[inline]
     fn sub(self, other: Self) -> Self {
         self.zip(other, i64::saturating_sub)
-    }
-}
-
-impl Neg for Quanta {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self::ZERO - self
     }
 }
 

@@ -5,7 +5,7 @@
 use glam::DVec3;
 use sir_accel::Accel;
 use sir_geom::shapes::{self, Facing};
-use sir_geom::{Camera, Material, Projection, Rgb, Scene, SceneBuilder, Sides};
+use sir_geom::{Camera, Material, MaterialId, Projection, Rgb, Scene, SceneBuilder, Sides};
 use sir_mesh::{PatchMesh, Subdivision};
 use sir_view::{DisplayMesh, Picture, PictureSettings, default_camera, guess_up, render};
 
@@ -72,21 +72,8 @@ fn the_edge_of_a_lamp_is_soft_on_the_screen_and_exact_in_numbers() {
     let mut builder = SceneBuilder::new();
     let wall = builder.add_material(Material::diffuse("wall", Rgb::splat(0.5)));
     let lamp = builder.add_material(Material::diffuse("lamp", Rgb::ZERO).emitting(Rgb::splat(1000.0)));
-    // Most of the wall lies to the left of the picture, which is [0, 9]².
-    for (left, right, m) in [(-20.0, 4.25, wall), (4.25, 9.0, lamp)] {
-        let (corner, right) = (left * DVec3::X, right * DVec3::X);
-        shapes::quad(&mut builder, [corner, right, right + 9.0 * DVec3::Y, corner + 9.0 * DVec3::Y], m);
-    }
-    let scene = builder.build().unwrap().scene;
-    let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
-    let irradiance = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
-    let display = DisplayMesh::new(&scene, &mesh, &irradiance);
-    let camera = Camera {
-        projection: Projection::Orthographic { height: 9.0 },
-        ..Camera::looking_at(DVec3::new(4.5, 4.5, 1.0), DVec3::new(4.5, 4.5, 0.0), DVec3::Y, 1.0).unwrap()
-    };
-    let settings = PictureSettings { width: 9, height: 9, grid: 4, threads: 1 };
-    let picture = render(&display, &Accel::new(&scene), &camera, settings).unwrap();
+    // Most of the wall lies to the left of the picture.
+    let picture = picture_of_strips(builder, &[(-20.0, 4.25, wall), (4.25, 9.0, lamp)]);
     let lamp = 1000.0 / std::f32::consts::PI;
     for row in 0..9 {
         let at = |x: usize| (picture.radiance[9 * row + x][0], picture.shown[9 * row + x][0]);
@@ -101,15 +88,15 @@ fn the_edge_of_a_lamp_is_soft_on_the_screen_and_exact_in_numbers() {
     }
 }
 
-#[test]
-fn edges_between_colours_are_neither_darker_nor_brighter_than_both() {
-    let mut builder = SceneBuilder::new();
-    let paints = [Rgb::new(0.6, 0.3, 0.1), Rgb::new(0.5, 0.6, 0.7), Rgb::splat(0.001)];
-    let paints = paints.map(|p| builder.add_material(Material::diffuse("paint", p)));
-    // The third one, dark and outside of the picture, is most of the scene.
-    for (left, right, m) in [(0.0, 4.3, paints[0]), (4.3, 9.0, paints[1]), (9.0, 900.0, paints[2])] {
+/// A picture of [0, 9]² in nine by nine pixels, of upright strips from `left` to `right` under the irradiance π.
+fn picture_of_strips(mut builder: SceneBuilder, strips: &[(f64, f64, MaterialId)]) -> Picture {
+    for &(left, right, material) in strips {
         let (corner, right) = (left * DVec3::X, right * DVec3::X);
-        shapes::quad(&mut builder, [corner, right, right + 9.0 * DVec3::Y, corner + 9.0 * DVec3::Y], m);
+        shapes::quad(
+            &mut builder,
+            [corner, right, right + 9.0 * DVec3::Y, corner + 9.0 * DVec3::Y],
+            material,
+        );
     }
     let scene = builder.build().unwrap().scene;
     let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
@@ -120,7 +107,17 @@ fn edges_between_colours_are_neither_darker_nor_brighter_than_both() {
         ..Camera::looking_at(DVec3::new(4.5, 4.5, 1.0), DVec3::new(4.5, 4.5, 0.0), DVec3::Y, 1.0).unwrap()
     };
     let settings = PictureSettings { width: 9, height: 9, grid: 4, threads: 1 };
-    let picture = render(&display, &Accel::new(&scene), &camera, settings).unwrap();
+    render(&display, &Accel::new(&scene), &camera, settings).unwrap()
+}
+
+#[test]
+fn edges_between_colours_are_neither_darker_nor_brighter_than_both() {
+    let mut builder = SceneBuilder::new();
+    let paints = [Rgb::new(0.6, 0.3, 0.1), Rgb::new(0.5, 0.6, 0.7), Rgb::splat(0.001)];
+    let paints = paints.map(|p| builder.add_material(Material::diffuse("paint", p)));
+    // The third one, dark and outside of the picture, is most of the scene.
+    let strips = [(0.0, 4.3, paints[0]), (4.3, 9.0, paints[1]), (9.0, 900.0, paints[2])];
+    let picture = picture_of_strips(builder, &strips);
     assert_between(&picture, [[0.6, 0.3, 0.1], [0.5, 0.6, 0.7]]);
 }
 

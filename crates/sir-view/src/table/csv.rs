@@ -3,7 +3,7 @@
 use std::io::{self, BufRead, Write};
 use std::path::Path;
 
-use super::{COLUMNS, Table, checked, row};
+use super::{COLUMNS, Table, bad_value, checked, row};
 use crate::ViewError;
 
 pub(super) fn write(table: &Table, out: &mut impl Write) -> io::Result<()> {
@@ -49,12 +49,7 @@ pub(super) fn read(path: &Path, file: impl BufRead) -> Result<Table, ViewError> 
                     Err(_) => Err(format!("\"{field}\" is not a number")),
                 },
             };
-            values[column] = value.map_err(|why| ViewError::BadValue {
-                path: path.to_owned(),
-                row: number,
-                column: COLUMNS[column].to_owned(),
-                why,
-            })?;
+            values[column] = value.map_err(|why| bad_value(path, number, column, why))?;
         }
         table.rows.push(row(&values));
     }

@@ -183,6 +183,11 @@ fn checked(column: usize, value: f64) -> Result<f64, String> {
     }
 }
 
+/// What to say of a value that may not stand in a row and column of a table file.
+fn bad_value(path: &Path, row: usize, column: usize, why: String) -> ViewError {
+    ViewError::BadValue { path: path.to_owned(), row, column: COLUMNS[column].to_owned(), why }
+}
+
 /// A row from values in the order of the columns, all of them checked.
 fn row(values: &[f64; COLUMNS.len()]) -> Row {
     let mut numbers = [0.0; COLUMNS.len() - WHOLE_COLUMNS];

@@ -7,7 +7,7 @@
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-use super::{COLUMNS, Table, WHOLE_COLUMNS, checked, row};
+use super::{COLUMNS, Table, WHOLE_COLUMNS, bad_value, checked, row};
 use crate::ViewError;
 
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
@@ -80,12 +80,7 @@ pub(super) fn read(path: &Path, mut file: impl Read) -> Result<Table, ViewError>
             .chunks_exact(8)
             .map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]));
         for (column, value) in whole.chain(numbers).enumerate() {
-            values[column] = checked(column, value).map_err(|why| ViewError::BadValue {
-                path: path.to_owned(),
-                row: number,
-                column: COLUMNS[column].to_owned(),
-                why,
-            })?;
+            values[column] = checked(column, value).map_err(|why| bad_value(path, number, column, why))?;
         }
         table.rows.push(row(&values));
     }
