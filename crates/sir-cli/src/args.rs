@@ -2,6 +2,7 @@
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 
@@ -10,6 +11,8 @@ Examples:
   sir check scenes/cornell-box/pipeline.ron      what will it do, and how long will it take?
   sir run scenes/cornell-box/pipeline.ron        light the scene; the files go to results/cornell-box
   sir compare results/cornell-box results/cornell-box-2
+  sir resume results/cornell-box                 go on where it was stopped, by Ctrl-C or a power cut
+  mpirun -n 4 sir run room.ron                   on several machines, if built with --features mpi
 
 A pipeline is a text file like this one (docs/pipeline.md tells all):
   Pipeline(
@@ -47,6 +50,17 @@ pub enum Command {
     /// result.json with all of this for programs. The same pipeline gives the same files every time; only the times
     /// in result.json differ.
     Run(RunArgs),
+    /// Go on with a run that was interrupted.
+    ///
+    /// A run saves its state every few minutes, and when it is stopped by Ctrl-C or SIGTERM. The result has the same
+    /// bytes as that of a run which was never stopped, on any number of threads and ranks.
+    Resume {
+        /// The run directory.
+        directory: PathBuf,
+        /// How to go about it.
+        #[command(flatten)]
+        how: HowArgs,
+    },
     /// Check a pipeline without running it.
     ///
     /// Reports all problems of the file at once. If there are none, reads the scene, tries some lines, and
@@ -82,23 +96,37 @@ pub struct RunArgs {
     /// holds a result, unless there is --force.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Threads to use, 1 to 4096; default: one per processor core. The result does not depend on it.
-    ///
-    /// For now only pictures are drawn by several threads; lines are traced by one.
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub threads: Option<NonZeroUsize>,
     /// Seed of the random numbers, instead of the pipeline's.
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
+    /// Replace the result in the directory given with --out.
+    #[arg(long)]
+    pub force: bool,
+    /// How to go about it.
+    #[command(flatten)]
+    pub how: HowArgs,
+}
+
+/// How to go about a run. None of this changes the result.
+#[derive(Debug, clap::Args)]
+pub struct HowArgs {
+    /// Threads of each process, 1 to 4096; default: one per processor core. The result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<NonZeroUsize>,
+    /// Seconds from one checkpoint to the next, from which `sir resume` can go on.
+    #[arg(long, value_name = "SECONDS", default_value = "300", value_parser = seconds)]
+    pub checkpoint_every: Duration,
     /// Show no progress; warnings and errors are still shown.
     #[arg(long, short)]
     pub quiet: bool,
     /// Print the content of result.json instead of a summary.
     #[arg(long)]
     pub json: bool,
-    /// Replace the result in the directory given with --out.
-    #[arg(long)]
-    pub force: bool,
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let number = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    number.ok_or_else(|| "write a number of seconds, 0 or more".into())
 }
 
 fn threads(text: &str) -> Result<NonZeroUsize, String> {
@@ -122,6 +150,14 @@ mod tests {
             assert!(Args::try_parse_from(["sir", "run", "x.ron", "--threads", bad]).is_err(), "{bad}");
         }
         let args = Args::try_parse_from(["sir", "run", "x.ron", "--threads", "8"]).unwrap();
-        assert!(matches!(args.command, Command::Run(RunArgs { threads: Some(n), .. }) if n.get() == 8));
+        assert!(
+            matches!(args.command, Command::Run(RunArgs { how, .. }) if how.threads == NonZeroUsize::new(8))
+        );
+        for bad in ["-1", "soon", "1e300"] {
+            assert!(
+                Args::try_parse_from(["sir", "resume", "x", "--checkpoint-every", bad]).is_err(),
+                "{bad}"
+            );
+        }
     }
 }

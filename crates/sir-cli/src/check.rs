@@ -1,17 +1,18 @@
 //! What a pipeline will do and cost, without doing it.
 
 use std::fmt;
+use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
 
 use sir_geom::{Rgb, Scene};
-use sir_radiosity::{FirstShot, Model, Multipath, Quanta, SolveError};
+use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, SolveError};
 
 use crate::Error;
 use crate::fields::grouped;
 use crate::pipeline::{Action, Content, Pipeline};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
-use crate::run::multipath_settings;
+use crate::run::domain;
 
 /// How long the lines of a stage are tried to learn their rate.
 const PROBE: Duration = Duration::from_millis(300);
@@ -31,7 +32,8 @@ pub struct Estimate {
     pub memory: Vec<(&'static str, usize)>,
     /// Most memory in use at one time \[bytes\].
     pub peak_memory: usize,
-    /// Lines and lines per second of each stage that has any. The rate is that of a short try on this machine now.
+    /// Lines and lines per second of each stage that has any: the rate of one thread in a short try on this machine now,
+    /// times its processor cores.
     pub stages: Vec<StageEstimate>,
 }
 
@@ -61,16 +63,16 @@ pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error>
 fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
     let Model { scene, mesh, accel } = model;
     let sides = mesh.side_count();
-    let tally = size_of::<Quanta>() + size_of::<[f64; 3]>();
+    // Power, its variance, what is unshot, what was noted, and a record of 64 bytes in the ledger.
+    let tracing = 2 * size_of::<Quanta>() + 2 * size_of::<[f32; 3]>() + 64;
     let solution = 2 * size_of::<Rgb>();
     let shown = pipeline.outputs().any(|o| o.content != Content::Table);
     let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles())),
-        // See `PatchMesh`: 24 bytes per triangle.
-        ("patches", 24 * scene.triangles().len()),
+        // See `PatchMesh`: 28 bytes per triangle.
+        ("patches", 28 * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
-        // What was received, what is still to be sent, and the solution.
-        ("computing the light", sides * (2 * tally + solution)),
+        ("computing the light", sides * tracing),
         ("pictures and lit meshes", if shown { sides * (solution + DISPLAY_BYTES) } else { 0 }),
     ];
     // The last two are not needed at the same time.
@@ -86,16 +88,17 @@ fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, Solve
         match stage.action {
             Action::FirstShot { lines } => {
                 let first_shot = FirstShot::new(model, lines, pipeline.seed)?;
-                let mut tally = first_shot.tally();
-                let rate = rate(lines, |block| first_shot.trace(block, &mut tally));
-                shot = Some(first_shot.finish(tally)?);
+                let (tally, mut books) = (first_shot.tally(), Books::default());
+                let rate = rate(lines, |block| first_shot.trace(block, &tally, &mut books));
+                shot = Some(first_shot.finish(tally, books)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
-            Action::Multipath { lines, tail } => {
+            Action::Multipath { lines, .. } => {
                 let Some(shot) = shot.take() else { continue };
-                let settings = multipath_settings(model, lines, tail);
-                let mut transport = Multipath::new(model, shot, settings, pipeline.seed);
-                let rate = rate(lines, |block| transport.trace(block));
+                // Both transports trace the same lines at about the same rate.
+                let transport = Batches::new(model, shot, lines, domain(model), pipeline.seed);
+                let mut books = Books::default();
+                let rate = rate(lines, |block| transport.trace(block, &mut books));
                 estimates.push(StageEstimate { name, lines, rate });
             }
             _ => {}
@@ -104,7 +107,7 @@ fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, Solve
     Ok(estimates)
 }
 
-/// Lines per second of a short try.
+/// Lines per second of a short try, if all cores do the same.
 fn rate(lines: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
     let start = Instant::now();
     let mut done = 0;
@@ -113,7 +116,8 @@ fn rate(lines: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
         trace(done..end);
         done = end;
     }
-    done as f64 / start.elapsed().as_secs_f64().max(1e-9)
+    let threads = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    threads as f64 * done as f64 / start.elapsed().as_secs_f64().max(1e-9)
 }
 
 impl fmt::Display for Estimate {

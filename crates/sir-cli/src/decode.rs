@@ -8,10 +8,13 @@ use sir_mesh::Subdivision;
 use crate::diagnostic::Diagnostics;
 use crate::fields::{ABSURD, Reader, did_you_mean, list, resembling};
 use crate::order::check_order;
-use crate::pipeline::{Action, Pipeline, Stage};
+use crate::pipeline::{Action, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
 
 const STAGES: [&str; 5] = ["Load", "Subdivide", "FirstShot", "Multipath", "Save"];
+
+/// Most replicas: a table of them must fit into memory.
+const MOST_REPLICAS: u64 = 1_000_000;
 
 /// Reads the text of a pipeline file, or tells all that is wrong with it.
 pub(crate) fn decode(text: &str, path: &Path) -> Result<Pipeline, Diagnostics> {
@@ -211,7 +214,8 @@ impl<'a> Decoder<'a> {
     }
 
     fn multipath(&mut self, node: Node<'a>) -> Option<Action> {
-        let mut fields = self.reader.fields(node, "Multipath", &["lines", "tail", "domain", "replicas"]);
+        const FIELDS: [&str; 5] = ["lines", "transport", "replicas", "tail", "domain"];
+        let mut fields = self.reader.fields(node, "Multipath", &FIELDS);
         let lines = self.reader.required(&mut fields, "lines", "1_000_000");
         if let Some(domain) = fields.take("domain") {
             if matches!(domain.name(), "Box" | "Hull") {
@@ -221,25 +225,31 @@ impl<'a> Decoder<'a> {
                 self.reader.choice(&domain, "domain", &["Sphere"]);
             }
         }
-        if let Some(replicas) = fields.take("replicas")
-            && self.reader.count(&replicas, "replicas", (1, ABSURD), "1").is_some_and(|n| n > 1)
-        {
-            self.reader.problem(
-                replicas.text,
-                "more than one replica is not available yet",
-                "write `replicas: 1`",
-            );
-        }
-        let tail = fields.take("tail");
-        let lines = self.reader.count(&lines?, "lines", (1, ABSURD), "1_000_000")?;
-        let tail = match tail {
-            Some(node) => {
-                let example = (lines / 10).to_string();
-                self.reader.count(&node, "tail", (0, lines - 1), &example)?
-            }
-            None => lines / 10,
+        let (replicas, tail) = (fields.take("replicas"), fields.take("tail"));
+        let in_replicas = match fields.take("transport") {
+            Some(node) => self.reader.choice(&node, "transport", &["Batches", "Replicas"])? == "Replicas",
+            None => replicas.is_some() || tail.is_some(),
         };
-        Some(Action::Multipath { lines, tail })
+        for (name, node) in [("replicas", &replicas), ("tail", &tail)] {
+            if let Some(node) = node.as_ref().filter(|_| !in_replicas) {
+                let message = format!("the transport `Batches` has no `{name}`");
+                let help = format!("leave `{name}` out, or write `transport: Replicas`");
+                self.reader.problem(node.text, message, help);
+            }
+        }
+        let lines = lines.and_then(|lines| self.reader.count(&lines, "lines", (1, ABSURD), "1_000_000"));
+        let most = lines.unwrap_or(ABSURD);
+        let replicas = match replicas {
+            Some(node) => self.reader.count(&node, "replicas", (1, most.min(MOST_REPLICAS)), "8"),
+            None => Some(1),
+        };
+        let tail = match tail {
+            Some(node) => self.reader.count(&node, "tail", (0, most - 1), &(most / 10).to_string()),
+            None => Some(most / 10),
+        };
+        let (lines, replicas, tail) = (lines?, replicas?, tail?);
+        let transport = if in_replicas { Transport::Replicas { replicas, tail } } else { Transport::Batches };
+        Some(Action::Multipath { lines, transport })
     }
 }
 

@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use sir_geom::LoadError;
-use sir_parallel::RunError;
+use sir_parallel::{CheckpointError, Communicator, ConnectError, RunError};
 use sir_radiosity::SolveError;
 use sir_view::ViewError;
 use thiserror::Error;
@@ -51,6 +51,52 @@ pub enum Error {
     /// The light cannot be computed.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// The run was stopped, and can go on.
+    #[error(
+        "interrupted after {done} of {total} lines; `sir resume {}` goes on from here", directory.display()
+    )]
+    Interrupted {
+        /// Lines done in this stage.
+        done: u64,
+        /// Lines of the stage.
+        total: u64,
+        /// The run directory.
+        directory: PathBuf,
+    },
+    /// The run was stopped while it wrote its files, and can go on.
+    #[error("interrupted while files were written; `sir resume {}` goes on from the last checkpoint", directory.display())]
+    InterruptedSaving {
+        /// The run directory.
+        directory: PathBuf,
+    },
+    /// A run cannot go on.
+    #[error("the run in {} cannot be resumed: {why}", directory.display())]
+    CannotResume {
+        /// The run directory.
+        directory: PathBuf,
+        /// Why not, and what to do.
+        why: String,
+    },
+    /// The processes of a run cannot work together.
+    #[error(transparent)]
+    Connect(#[from] ConnectError),
+    /// Another rank has failed, and says why.
+    #[error("rank {rank} failed")]
+    Elsewhere {
+        /// The rank.
+        rank: usize,
+        /// Its exit code.
+        code: u8,
+    },
+    /// A rank has read something else than the first one.
+    #[error(
+        "rank {rank} has read another pipeline or scene than rank 0, or is another version of the program; all machines \
+         must see the same files"
+    )]
+    OtherInput {
+        /// The rank.
+        rank: usize,
+    },
     /// A result cannot be written, read or compared.
     #[error(transparent)]
     View(#[from] ViewError),
@@ -86,8 +132,25 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Pipeline(_) | Self::ReadPipeline { .. } | Self::NotText { .. } | Self::Exists { .. } => 2,
+            Self::CannotResume { .. } => 2,
+            Self::Interrupted { .. } | Self::InterruptedSaving { .. } => 130,
             Self::Run(RunError::Interrupted { .. }) => 130,
+            Self::Elsewhere { code, .. } => *code,
             _ => 1,
+        }
+    }
+
+    /// Whether this rank is the one to say it. All ranks return what they all notice; the rest is one rank's.
+    #[must_use]
+    pub fn is_mine(&self, comm: &dyn Communicator) -> bool {
+        match self {
+            Self::Elsewhere { .. } | Self::Run(RunError::Checkpoint(CheckpointError::Elsewhere { .. })) => {
+                false
+            }
+            Self::Interrupted { .. } | Self::Run(RunError::Interrupted { .. } | RunError::Solve(_)) => {
+                comm.is_first()
+            }
+            _ => true,
         }
     }
 

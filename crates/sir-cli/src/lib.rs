@@ -13,7 +13,7 @@
 //!   and only if it holds a `result.json` ([`report`]), which is written last; files appear whole or not at all.
 //! * *The same pipeline gives the same bytes,* except for the times in `result.json`.
 //!
-//! [`main`] is the program `sir`; [`run::run`], [`check::check`] and [`compare::compare`] are its commands for callers
+//! [`main`] is the program `sir`; [`run::run`], [`run::resume_together`], [`check::check`] and [`compare::compare`] are its commands for callers
 //! in Rust.
 //!
 //! # Example
@@ -37,11 +37,15 @@ pub mod diagnostic;
 mod directory;
 mod error;
 mod fields;
+mod fingerprint;
+mod interrupt;
 mod order;
 pub mod pipeline;
 pub mod prepare;
 pub mod progress;
+mod ranks;
 pub mod report;
+mod resume;
 mod ron_tree;
 pub mod run;
 mod save;
@@ -52,11 +56,12 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 
-use args::{Args, Command, RunArgs};
+use args::{Args, Command, HowArgs, RunArgs};
 pub use error::Error;
 use pipeline::Pipeline;
 use progress::Progress;
-use run::RunOptions;
+use run::{RunOptions, RunResult};
+use sir_parallel::{Alone, Communicator, connect};
 
 /// Runs the program on the arguments of the process.
 #[must_use]
@@ -68,20 +73,43 @@ pub fn main() -> ExitCode {
             // Whoever reads the output has seen enough, or cannot take it: there is nobody left to tell.
             Err(_) => ExitCode::FAILURE,
         },
-        Err(error) => {
-            match &error {
-                Error::Pipeline(problems) => eprint!("{problems}"),
-                other => eprintln!("error: {}", other.chain()),
-            }
-            ExitCode::from(error.exit_code())
-        }
+        Err(code) => code,
     }
 }
 
-/// Executes a command; returns what it has to say on standard output.
-fn execute(command: Command) -> Result<String, Error> {
+/// Executes a command; returns what it has to say on standard output. Errors have been shown.
+fn execute(command: Command) -> Result<String, ExitCode> {
     match command {
-        Command::Run(args) => run_command(args),
+        Command::Run(_) | Command::Resume { .. } => {
+            let comm = connect().map_err(|error| show(&error.into()))?;
+            work(command, &*comm).map_err(|error| {
+                if error.is_mine(&*comm) { show(&error) } else { ExitCode::from(error.exit_code()) }
+            })
+        }
+        alone => work(alone, &Alone).map_err(|error| show(&error)),
+    }
+}
+
+/// Shows an error; returns the exit code.
+fn show(error: &Error) -> ExitCode {
+    match error {
+        Error::Pipeline(problems) => eprint!("{problems}"),
+        other => eprintln!("error: {}", other.chain()),
+    }
+    ExitCode::from(error.exit_code())
+}
+
+/// Executes a command, together with the other ranks.
+fn work(command: Command, comm: &dyn Communicator) -> Result<String, Error> {
+    match command {
+        Command::Run(RunArgs { pipeline, out, seed, force, how }) => {
+            let options = RunOptions { out, seed, force, ..options(&how) };
+            run::run_together(Pipeline::read(&pipeline), &options, comm)
+                .map(|result| told(&result, &how, comm))
+        }
+        Command::Resume { directory, how } => {
+            run::resume_together(&directory, &options(&how), comm).map(|result| told(&result, &how, comm))
+        }
         Command::Check { pipeline } => {
             let pipeline = Pipeline::read(&pipeline)?;
             Ok(check::check(&pipeline, Progress::Quiet)?.to_string())
@@ -97,16 +125,22 @@ fn execute(command: Command) -> Result<String, Error> {
     }
 }
 
-fn run_command(args: RunArgs) -> Result<String, Error> {
-    let pipeline = Pipeline::read(&args.pipeline)?;
-    let options = RunOptions {
-        out: args.out,
-        force: args.force,
-        seed: args.seed,
-        threads: args.threads,
-        progress: if args.quiet { Progress::Quiet } else { Progress::for_stderr() },
+/// Options of a run that can be stopped.
+fn options(how: &HowArgs) -> RunOptions {
+    RunOptions {
+        threads: how.threads,
+        checkpoint_every: how.checkpoint_every,
+        stop: interrupt::flag(),
+        progress: if how.quiet { Progress::Quiet } else { Progress::for_stderr() },
         ..RunOptions::default()
-    };
-    let result = run::run(&pipeline, &options)?;
-    Ok(if args.json { result.report.to_json() } else { summary::summary(&result) })
+    }
+}
+
+/// What is printed when a run is done: by the first rank.
+fn told(result: &RunResult, how: &HowArgs, comm: &dyn Communicator) -> String {
+    match (comm.is_first(), how.json) {
+        (false, _) => String::new(),
+        (true, true) => result.report.to_json(),
+        (true, false) => summary::summary(result),
+    }
 }

@@ -53,11 +53,27 @@ pub enum Action {
     Multipath {
         /// How many lines, at least 1.
         lines: u64,
-        /// How many of them, at the end, only send on what was reflected: fewer than `lines`. Default a tenth.
-        tail: u64,
+        /// How they pass on the light.
+        transport: Transport,
     },
     /// Writes files.
     Save(Vec<Output>),
+}
+
+/// How global lines pass on the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Transport {
+    /// In frozen batches. Default, unless there are `replicas` or a `tail`.
+    #[default]
+    Batches,
+    /// One after the other, in independent replicas, as Martínez, Forés and Martín (2009) published it.
+    Replicas {
+        /// Among how many replicas the lines are shared: from 1 to the number of lines. Default 1.
+        replicas: u64,
+        /// How many of the lines, at the ends of the replicas, only send on what was reflected: fewer than `lines`.
+        /// Default a tenth.
+        tail: u64,
+    },
 }
 
 impl Action {

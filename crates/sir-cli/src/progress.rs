@@ -1,10 +1,12 @@
 //! What a run says while it runs, on the standard error stream.
 
 use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use sir_parallel::Observer;
+use sir_parallel::{Communicator, Observer};
 
 use crate::fields::grouped;
 
@@ -34,6 +36,11 @@ impl Progress {
         if std::io::stderr().is_terminal() { Self::Bar } else { Self::Lines }
     }
 
+    /// This, if `comm` is the rank that speaks.
+    pub(crate) fn of_rank(self, comm: &dyn Communicator) -> Self {
+        if comm.is_first() { self } else { Self::Silent }
+    }
+
     /// Shows the warnings of the scene's reader.
     pub(crate) fn warn(self, warnings: &[String]) {
         if self == Self::Silent {
@@ -54,8 +61,8 @@ impl Progress {
         }
     }
 
-    /// Begins to watch a stage of `total` lines.
-    pub(crate) fn stage(self, name: &'static str, total: u64) -> StageProgress {
+    /// Begins to watch a stage of `total` lines, which ends early if `stop` becomes true.
+    pub(crate) fn stage(self, name: &'static str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
         self.note(&format!("{name}: {} lines", grouped(total)));
         let bar = match self {
             Self::Bar => {
@@ -70,7 +77,17 @@ impl Progress {
             _ => ProgressBar::hidden(),
         };
         let now = Instant::now();
-        StageProgress { lines: self == Self::Lines, name, bar, start: now, last: now, done: 0 }
+        let stop = Arc::clone(stop);
+        StageProgress {
+            lines: self == Self::Lines,
+            name,
+            bar,
+            start: now,
+            last: now,
+            first: None,
+            done: 0,
+            stop,
+        }
     }
 }
 
@@ -81,17 +98,24 @@ pub(crate) struct StageProgress {
     bar: ProgressBar,
     start: Instant,
     last: Instant,
+    /// Lines done when the first progress was reported: more than a few after a restart.
+    first: Option<u64>,
     done: u64,
+    stop: Arc<AtomicBool>,
 }
 
 impl Observer for StageProgress {
     fn progress(&mut self, done: u64, total: u64) {
         self.bar.set_position(done);
+        let first = *self.first.get_or_insert(done);
+        if self.done == 0 {
+            self.bar.reset_eta();
+        }
         self.done = done;
         if self.lines && self.last.elapsed() >= PAUSE {
             self.last = Instant::now();
             let seconds = self.start.elapsed().as_secs_f64();
-            let rate = done as f64 / seconds;
+            let rate = ((done - first) as f64 / seconds).max(1.0);
             eprintln!(
                 "{}: {:.0} %, {} lines/s, {:.0} s left",
                 self.name,
@@ -101,6 +125,10 @@ impl Observer for StageProgress {
             );
         }
     }
+
+    fn should_stop(&self) -> bool {
+        self.stop.load(Relaxed)
+    }
 }
 
 impl Drop for StageProgress {
@@ -108,7 +136,7 @@ impl Drop for StageProgress {
         self.bar.finish_and_clear();
         if self.lines {
             let seconds = self.start.elapsed().as_secs_f64();
-            eprintln!("{}: {} lines in {seconds:.1} s", self.name, grouped(self.done));
+            eprintln!("{}: {} lines after {seconds:.1} s", self.name, grouped(self.done));
         }
     }
 }

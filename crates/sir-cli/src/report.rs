@@ -10,7 +10,7 @@ use sir_geom::Rgb;
 use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Received, Solution};
 
 /// Version of the layout of `result.json`.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Name of the report in a run directory.
 pub const FILE_NAME: &str = "result.json";
@@ -87,8 +87,12 @@ pub struct LinesReport {
     pub odd_lines: u64,
     /// Triangles met.
     pub crossings: u64,
+    /// Batches in which the lines were traced, or replicas that shared them: 1 in the first shot.
+    pub batches: u64,
     /// Where the power went.
     pub balance: BalanceReport,
+    /// Power that was added to what surfaces received to make up for the unshot \[W\], per band.
+    pub made_up: [f64; 3],
     /// Estimated relative error of the irradiance so far, per band: root of the area-weighted mean square of the
     /// standard errors, over the area-weighted mean irradiance. Zero in a band without light.
     pub relative_error: [f64; 3],
@@ -108,7 +112,7 @@ pub struct BalanceReport {
     /// Left the scene.
     pub escaped: [f64; 3],
     /// Reflected, but not sent out again. After the first shot it is what multipath distributes; after multipath
-    /// it is missing from the result.
+    /// it is missing from the result, unless something was `made_up` for it.
     pub unshot: [f64; 3],
 }
 
@@ -131,6 +135,12 @@ pub struct Time {
     /// Lines per second, if it is a stage with lines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lines_per_second: Option<f64>,
+    /// Of a stage with lines: time in which no lines were traced \[s\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sequential: Option<f64>,
+    /// Of a stage with lines: time for exchanging numbers with other ranks, and for waiting for them \[s\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub communication: Option<f64>,
 }
 
 impl Report {
@@ -146,26 +156,32 @@ impl Time {
     /// The time of something without lines.
     #[must_use]
     pub fn of(seconds: f64) -> Self {
-        Self { seconds, lines_per_second: None }
+        Self { seconds, lines_per_second: None, sequential: None, communication: None }
     }
 }
 
+/// What is known of a stage of lines when it is done.
+pub(crate) struct Facts<'a> {
+    pub(crate) unit: PowerUnit,
+    pub(crate) balance: Balance,
+    pub(crate) counts: Counts,
+    pub(crate) batches: u64,
+    pub(crate) made_up: Quanta,
+    pub(crate) received: &'a Received,
+    /// The result so far.
+    pub(crate) solution: &'a Solution,
+}
+
 impl LinesReport {
-    /// The report of a stage with its balance and counts, whose result so far is `solution` by `received`.
-    #[must_use]
-    pub fn new(
-        model: &Model,
-        unit: PowerUnit,
-        (balance, counts): (Balance, Counts),
-        received: &Received,
-        solution: &Solution,
-    ) -> Self {
+    pub(crate) fn new(model: &Model, facts: &Facts<'_>) -> Self {
+        let Facts { unit, balance, counts, batches, made_up, received, solution } = *facts;
         let watts = |quanta: Quanta| unit.watts(quanta).to_array();
         Self {
             lines: counts.lines,
             empty_share: counts.empty as f64 / counts.lines.max(1) as f64,
             odd_lines: counts.odd,
             crossings: counts.crossings,
+            batches,
             balance: BalanceReport {
                 emitted: watts(balance.emitted),
                 absorbed: watts(balance.absorbed),
@@ -173,6 +189,7 @@ impl LinesReport {
                 escaped: watts(balance.escaped),
                 unshot: watts(balance.unshot),
             },
+            made_up: watts(made_up),
             relative_error: relative_error(model, solution),
             tally_hash: received.hash(),
         }

@@ -1,23 +1,29 @@
-//! Running a pipeline.
+//! Running a pipeline, or going on with one.
 
 use std::fs;
 use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::Duration;
 
 use sir_geom::Rgb;
 use sir_lines::Domain;
-use sir_parallel::{first_shot, multipath};
-use sir_radiosity::{Model, MultipathSettings, Shot, Solution};
+use sir_parallel::{Alone, Checkpoints, Communicator, Crew, RunError, Saved, StageTime};
+use sir_radiosity::{Model, MultipathSettings, Quanta, Shot, Solution};
 
 use crate::Error;
 use crate::directory::{check_given, make_given, make_new, run_name};
-use crate::pipeline::{Action, Pipeline};
+use crate::fingerprint::{self, PROGRAM};
+use crate::pipeline::{Action, Output, Pipeline, Transport};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
+use crate::ranks::{agree, same_everywhere};
 use crate::report::{
-    FILE_NAME, LinesReport, PipelineReport, Report, SceneReport, StageReport, Stopwatch, Time, VERSION,
+    FILE_NAME, Facts, LinesReport, PipelineReport, Report, SceneReport, StageReport, Stopwatch, Time, VERSION,
 };
+use crate::resume::{self, CHECKPOINT, Head};
 use crate::save::save;
 
 /// How to run a pipeline. None of this changes the result, but for the seed.
@@ -33,6 +39,10 @@ pub struct RunOptions {
     pub seed: Option<u64>,
     /// Threads; `None` for one per processor core.
     pub threads: Option<NonZeroUsize>,
+    /// Time from one checkpoint to the next. Default five minutes.
+    pub checkpoint_every: Duration,
+    /// When this becomes true, the run saves a checkpoint and ends.
+    pub stop: Arc<AtomicBool>,
     /// How progress is shown.
     pub progress: Progress,
 }
@@ -45,6 +55,8 @@ impl Default for RunOptions {
             force: false,
             seed: None,
             threads: None,
+            checkpoint_every: Duration::from_secs(300),
+            stop: Arc::default(),
             progress: Progress::Silent,
         }
     }
@@ -65,115 +77,289 @@ pub struct RunResult {
 ///
 /// If the scene cannot be read, the light cannot be computed, or a file cannot be written.
 pub fn run(pipeline: &Pipeline, options: &RunOptions) -> Result<RunResult, Error> {
+    run_together(Ok(pipeline.clone()), options, &Alone)
+}
+
+/// As [`run`], by several ranks that have all read the pipeline. The first one writes; all return the same report.
+///
+/// # Errors
+///
+/// As [`run`], or if the ranks have not read the same pipeline and scene. If one of them fails, all do.
+pub fn run_together(
+    pipeline: Result<Pipeline, Error>,
+    options: &RunOptions,
+    comm: &dyn Communicator,
+) -> Result<RunResult, Error> {
     let watch = Stopwatch::start();
-    let progress = options.progress;
-    if let Some(directory) = &options.out {
-        check_given(directory, options.force)?;
-    }
+    let progress = options.progress.of_rank(comm);
+    let given = options.out.as_deref().filter(|_| comm.is_first());
+    let pipeline = agree(
+        comm,
+        pipeline.and_then(|pipeline| {
+            given.map_or(Ok(()), |directory| check_given(directory, options.force)).map(|()| pipeline)
+        }),
+    )?;
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
-    let prepared = prepare(pipeline, progress)?;
-    let directory = match &options.out {
-        Some(directory) => {
-            make_given(directory, options.force)?;
-            directory.clone()
-        }
-        None => make_new(&options.results, &run_name(&pipeline.path))?,
-    };
-    let mut report = Report {
+    let prepared = agree(comm, prepare(&pipeline, progress))?;
+    let seed = options.seed.unwrap_or(pipeline.seed);
+    let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared.model);
+    agree(comm, same_everywhere(comm, fingerprint))?;
+    let directory = agree(
+        comm,
+        match (given, comm.is_first()) {
+            (_, false) => Ok(PathBuf::new()),
+            (Some(directory), _) => make_given(directory, options.force).map(|()| directory.to_owned()),
+            (None, _) => make_new(&options.results, &run_name(&pipeline.path)),
+        },
+    )?;
+    let report = Report {
         version: VERSION,
-        program: concat!("sir ", env!("CARGO_PKG_VERSION")).into(),
+        program: PROGRAM.into(),
         pipeline: PipelineReport { path: pipeline.path.display().to_string(), text: pipeline.text.clone() },
-        seed: options.seed.unwrap_or(pipeline.seed),
+        seed,
         scene: scene_report(&prepared, pipeline.scene_path()),
         stages: Vec::new(),
         outputs: Vec::new(),
         time: Time::of(0.0),
     };
-    let threads = options.threads.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
-    run_stages(pipeline, &prepared, &directory, threads, progress, &mut report)?;
-    report.time = Time::of(watch.seconds());
-    write_report(&directory, &report)?;
-    Ok(RunResult { directory, report })
+    let head = Head {
+        fingerprint: fingerprint::hex(fingerprint),
+        pipeline: std::path::absolute(&pipeline.path).unwrap_or_else(|_| pipeline.path.clone()),
+        stage: 0,
+        report,
+    };
+    Run { pipeline, prepared, directory, options, comm, progress, watch, head }.finish(None)
 }
 
-fn run_stages(
-    pipeline: &Pipeline,
-    prepared: &Prepared,
+/// Goes on with the run in `directory`, which was interrupted. Of the options, those that say where to write, and the
+/// seed, have no effect: they are those of the run.
+///
+/// # Errors
+///
+/// If there is no checkpoint, it is of another program, pipeline or scene, or as [`run_together`].
+pub fn resume_together(
     directory: &Path,
-    threads: usize,
+    options: &RunOptions,
+    comm: &dyn Communicator,
+) -> Result<RunResult, Error> {
+    let watch = Stopwatch::start();
+    let progress = options.progress.of_rank(comm);
+    let (saved, head) = resume::open(directory, comm)?;
+    let pipeline = agree(comm, resume::pipeline(directory, &head))?;
+    progress.note(&format!("Load: {}", pipeline.scene_path().display()));
+    // The warnings have been shown when the run began.
+    let prepared = agree(comm, prepare(&pipeline, Progress::Silent))?;
+    let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared.model);
+    agree(comm, resume::check_fingerprint(directory, &head, fingerprint))?;
+    if comm.is_first() {
+        resume::clean_up(directory);
+    }
+    let directory = directory.to_owned();
+    // A run that had not begun a stage begins with the first.
+    let saved = (head.stage > 0).then_some(saved);
+    Run { pipeline, prepared, directory, options, comm, progress, watch, head }.finish(saved)
+}
+
+/// A run that is under way.
+struct Run<'a> {
+    pipeline: Pipeline,
+    prepared: Prepared,
+    directory: PathBuf,
+    options: &'a RunOptions,
+    comm: &'a dyn Communicator,
     progress: Progress,
-    report: &mut Report,
-) -> Result<(), Error> {
-    let model = &prepared.model;
-    let seed = report.seed;
-    // What the first shot leaves to multipath, and the light so far.
-    let mut shot: Option<Shot> = None;
-    let mut solution: Option<Solution> = None;
-    for stage in &pipeline.stages {
-        let name = stage.action.name();
-        let watch = Stopwatch::start();
-        let mut seconds = None;
-        let mut lines_report = None;
-        match &stage.action {
-            Action::Load { .. } => seconds = Some(prepared.load_seconds),
-            Action::Subdivide(_) => seconds = Some(prepared.build_seconds),
-            Action::FirstShot { lines } => {
-                let done = first_shot(model, *lines, seed, &mut progress.stage(name, *lines))?.outcome;
-                let direct = done.solution(model);
-                let facts = (done.balance, done.counts);
-                lines_report = Some(LinesReport::new(model, done.unit, facts, &done.received, &direct));
-                shot = Some(done);
-                solution = Some(direct);
+    watch: Stopwatch,
+    /// How far it is.
+    head: Head,
+}
+
+impl Run<'_> {
+    fn finish(mut self, saved: Option<Saved>) -> Result<RunResult, Error> {
+        let earlier = self.head.report.time.seconds;
+        let path = self.directory.join(CHECKPOINT);
+        let mut checkpoints = Checkpoints::new(path.clone(), self.options.checkpoint_every);
+        if saved.is_none() {
+            checkpoints.set_head(self.head.to_line());
+            checkpoints.save_start(self.comm).map_err(RunError::from)?;
+        }
+        self.stages(&mut checkpoints, saved, earlier).map_err(|error| self.name_directory(error))?;
+        let Self { directory, comm, mut head, watch, .. } = self;
+        head.report.time = Time::of(earlier + watch.seconds());
+        let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
+        agree(comm, written)?;
+        if comm.is_first() {
+            // The result is there: nobody needs to hear that its checkpoint could not be removed.
+            let _ = fs::remove_file(path);
+        }
+        Ok(RunResult { directory, report: head.report })
+    }
+
+    /// Says where an interrupted run can be resumed.
+    fn name_directory(&self, error: Error) -> Error {
+        match error {
+            Error::Run(RunError::Interrupted { done, total }) => {
+                Error::Interrupted { done, total, directory: self.directory.clone() }
             }
-            Action::Multipath { lines, tail } => {
-                // The decoder lets multipath follow nothing but a first shot.
-                let Some(shot) = shot.take() else { continue };
-                // The direct light has been saved if it was wanted, and takes much memory.
-                drop(solution.take());
-                let settings = multipath_settings(model, *lines, *tail);
-                let mut observer = progress.stage(name, *lines);
-                let done = multipath(model, shot, settings, seed, &mut observer)?.outcome;
-                let facts = (done.balance, done.counts);
-                let lines = LinesReport::new(model, done.unit, facts, &done.received, &done.solution);
-                progress.warn(&unshot_warning(&lines));
-                lines_report = Some(lines);
-                solution = Some(done.solution);
+            other => other,
+        }
+    }
+
+    /// Runs all stages, or those from the one that `saved` is of.
+    fn stages(
+        &mut self,
+        checkpoints: &mut Checkpoints,
+        mut saved: Option<Saved>,
+        earlier: f64,
+    ) -> Result<(), Error> {
+        let model = &self.prepared.model;
+        let seed = self.head.report.seed;
+        let available = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        let threads = self.options.threads.unwrap_or(available);
+        // What the first shot leaves to multipath, and the light so far.
+        let mut shot: Option<Shot> = None;
+        let mut solution: Option<Solution> = None;
+        for (number, stage) in self.pipeline.stages.iter().enumerate().skip(self.head.stage) {
+            let name = stage.action.name();
+            let watch = Stopwatch::start();
+            let mut time = None;
+            let mut lines_report = None;
+            let mut crew = Crew::of(threads);
+            crew.comm = self.comm;
+            if let Action::FirstShot { lines } | Action::Multipath { lines, .. } = stage.action {
+                crew.observer = Box::new(self.progress.stage(name, lines, &self.options.stop));
+                self.head.stage = number;
+                self.head.report.time.seconds = earlier + self.watch.seconds();
+                checkpoints.set_head(self.head.to_line());
+                crew.checkpoints = Some(&mut *checkpoints);
             }
-            Action::Save(outputs) => {
-                if let Some(solution) = &solution {
-                    report.outputs.extend(save(prepared, solution, outputs, directory, threads, progress)?);
+            match &stage.action {
+                Action::Load { .. } => time = Some(Time::of(self.prepared.load_seconds)),
+                Action::Subdivide(_) => time = Some(Time::of(self.prepared.build_seconds)),
+                Action::FirstShot { lines } => {
+                    let done = sir_parallel::first_shot(model, *lines, seed, &mut crew, saved.take())?;
+                    drop(crew);
+                    let Shot { unit, balance, counts, ref received, .. } = done.outcome;
+                    let direct = done.outcome.solution(model);
+                    let (batches, made_up) = (done.batches, Quanta::ZERO);
+                    let facts =
+                        Facts { unit, balance, counts, batches, made_up, received, solution: &direct };
+                    lines_report = Some(LinesReport::new(model, &facts));
+                    time = Some(stage_time(done.time, *lines));
+                    shot = Some(done.outcome);
+                    solution = Some(direct);
+                }
+                Action::Multipath { lines, transport } => {
+                    // The decoder lets multipath follow nothing but a first shot; if that is not in memory, the state
+                    // of this stage was saved.
+                    let shot = shot.take().unwrap_or_else(|| Shot::nothing(model));
+                    // The direct light has been saved if it was wanted, and takes much memory.
+                    drop(solution.take());
+                    let (lines, saved, domain) = (*lines, saved.take(), domain(model));
+                    let done = match *transport {
+                        Transport::Batches => {
+                            sir_parallel::batches(model, shot, lines, domain, seed, &mut crew, saved)
+                        }
+                        Transport::Replicas { replicas, tail } => {
+                            let settings = MultipathSettings { lines, tail, replicas, domain };
+                            sir_parallel::multipath(model, shot, settings, seed, &mut crew, saved)
+                        }
+                    }?;
+                    drop(crew);
+                    let (batches, done, stage_times) = (done.batches, done.outcome, done.time);
+                    let facts = Facts {
+                        unit: done.unit,
+                        balance: done.balance,
+                        counts: done.counts,
+                        batches,
+                        made_up: done.made_up,
+                        received: &done.received,
+                        solution: &done.solution,
+                    };
+                    let report = LinesReport::new(model, &facts);
+                    self.progress.warn(&unshot_warning(&report, *transport));
+                    lines_report = Some(report);
+                    time = Some(stage_time(stage_times, lines));
+                    solution = Some(done.solution);
+                }
+                Action::Save(outputs) => {
+                    drop(crew);
+                    let saved = match &solution {
+                        Some(solution) if self.comm.is_first() => self.save(solution, outputs, threads.get()),
+                        _ => Ok(Vec::new()),
+                    };
+                    self.head.report.outputs.extend(agree(self.comm, saved)?);
                 }
             }
+            let time = time.unwrap_or_else(|| Time::of(watch.seconds()));
+            self.head.report.stages.push(StageReport { name: name.into(), lines: lines_report, time });
         }
-        let seconds = seconds.unwrap_or_else(|| watch.seconds());
-        let lines_per_second = lines_report.as_ref().map(|l| l.lines as f64 / seconds.max(1e-9));
-        report.stages.push(StageReport {
-            name: name.into(),
-            lines: lines_report,
-            time: Time { seconds, lines_per_second },
-        });
+        Ok(())
     }
-    Ok(())
+
+    /// Writes the outputs of a stage, unless the run is to be stopped.
+    fn save(
+        &self,
+        solution: &Solution,
+        outputs: &[Output],
+        threads: usize,
+    ) -> Result<Vec<crate::report::OutputReport>, Error> {
+        let mut reports = Vec::new();
+        save(&self.prepared, solution, outputs, &self.directory, threads, self.progress, &mut |report| {
+            reports.push(report);
+            !self.options.stop.load(Relaxed)
+        })?;
+        if reports.len() < outputs.len() {
+            return Err(Error::InterruptedSaving { directory: self.directory.clone() });
+        }
+        Ok(reports)
+    }
 }
 
-/// The lines of a multipath stage: through the sphere around the scene.
-pub(crate) fn multipath_settings(model: &Model, lines: u64, tail: u64) -> MultipathSettings {
-    MultipathSettings { lines, tail, domain: Domain::Sphere(model.scene.bounding_sphere()) }
+/// The lines of multipath are drawn through the sphere around the scene.
+pub(crate) fn domain(model: &Model) -> Domain {
+    Domain::Sphere(model.scene.bounding_sphere())
 }
 
-/// What to say if so much light was not sent on that the result is visibly too dark.
-fn unshot_warning(lines: &LinesReport) -> Vec<String> {
+fn stage_time(time: StageTime, lines: u64) -> Time {
+    let seconds = time.total.as_secs_f64();
+    Time {
+        seconds,
+        lines_per_second: Some(lines as f64 / seconds.max(1e-9)),
+        sequential: Some(time.sequential().as_secs_f64()),
+        communication: Some(time.communication.as_secs_f64()),
+    }
+}
+
+/// What to say if so much light was not sent on that the result is visibly wrong.
+fn unshot_warning(lines: &LinesReport, transport: Transport) -> Vec<String> {
     let balance = &lines.balance;
-    let shares = balance.unshot.iter().zip(&balance.emitted).filter(|(_, e)| **e > 0.0).map(|(u, e)| u / e);
-    let share = shares.fold(0.0, f64::max);
-    if share <= 1e-3 {
-        return Vec::new();
+    let share = |parts: &[f64; 3]| {
+        let shares = parts.iter().zip(&balance.emitted).filter(|(_, e)| **e > 0.0).map(|(part, e)| part / e);
+        shares.fold(0.0, f64::max)
+    };
+    let unshot = share(&balance.unshot);
+    let made_up =
+        balance.unshot.iter().zip(&lines.made_up).all(|(unshot, more)| *unshot <= 0.0 || *more > 0.0);
+    match transport {
+        Transport::Batches if made_up && unshot > 0.1 => vec![format!(
+            "{:.0} % of the light that surfaces reflect was not sent on; it was made up for as if it spread like the \
+             light before it; give `Multipath` more lines, or make fewer patches",
+            100.0 * unshot
+        )],
+        Transport::Batches if made_up || unshot <= 1e-3 => Vec::new(),
+        Transport::Replicas { .. } if unshot <= 1e-3 => Vec::new(),
+        _ => {
+            let help = match transport {
+                Transport::Batches => "more lines",
+                Transport::Replicas { .. } => "more lines, fewer replicas or a longer `tail`",
+            };
+            vec![format!(
+                "{:.1} % of the light that surfaces reflect was not sent on and is missing from the result; give \
+                 `Multipath` {help}, or make fewer patches",
+                100.0 * unshot
+            )]
+        }
     }
-    vec![format!(
-        "{:.1} % of the light that surfaces reflect was not sent on and is missing from the result; give `Multipath` \
-         more lines or a longer `tail`, or make fewer patches",
-        100.0 * share
-    )]
 }
 
 fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {

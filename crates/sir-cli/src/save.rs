@@ -17,7 +17,7 @@ use crate::report::OutputReport;
 /// Height of a picture whose camera does not say what shape it has, as a share of its width.
 const DEFAULT_SHAPE: f64 = 0.75;
 
-/// Writes all outputs of a stage into a directory.
+/// Writes the outputs of a stage into a directory, one after the other, as long as `written` wants another one.
 pub(crate) fn save(
     prepared: &Prepared,
     solution: &Solution,
@@ -25,12 +25,12 @@ pub(crate) fn save(
     directory: &Path,
     threads: usize,
     progress: Progress,
-) -> Result<Vec<OutputReport>, Error> {
+    written: &mut dyn FnMut(OutputReport) -> bool,
+) -> Result<(), Error> {
     let Model { scene, mesh, .. } = &prepared.model;
     let seen = outputs.iter().any(|o| o.content != Content::Table);
     let display = seen.then(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
     let mut studio = display.as_ref().map(|display| Studio { prepared, display, threads, last: None });
-    let mut reports = Vec::new();
     for output in outputs {
         let path = directory.join(&output.path);
         progress.note(&format!("Save: {}", output.path.display()));
@@ -63,9 +63,11 @@ pub(crate) fn save(
         };
         let bytes = fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len();
         let path = output.path.to_string_lossy().into_owned();
-        reports.push(OutputReport { path, kind: kind.into(), bytes });
+        if !written(OutputReport { path, kind: kind.into(), bytes }) {
+            break;
+        }
     }
-    Ok(reports)
+    Ok(())
 }
 
 /// Takes pictures. The last one is kept, because the same is often wanted as PNG and as EXR.

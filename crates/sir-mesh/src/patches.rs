@@ -47,10 +47,12 @@ struct TrianglePatches {
     area: f64,
 }
 
-/// All patches of a scene. Uses 24 bytes per *triangle* and nothing per patch.
+/// All patches of a scene. Uses 28 bytes per *triangle* and nothing per patch.
 #[derive(Clone, Debug)]
 pub struct PatchMesh {
     triangles: Vec<TrianglePatches>,
+    /// One triangle of every patch, in the order of their numbers: of a merged face the first.
+    owners: Vec<TriangleId>,
     patches: u32,
     sides: u32,
 }
@@ -63,7 +65,12 @@ impl PatchMesh {
     /// If a limit is not positive, or there would be more than 2³² patches.
     pub fn new(scene: &Scene, subdivision: Subdivision) -> Result<Self, MeshError> {
         let divisions = subdivision.divisions(scene)?;
-        let mut mesh = Self { triangles: Vec::with_capacity(divisions.len()), patches: 0, sides: 0 };
+        let mut mesh = Self {
+            triangles: Vec::with_capacity(divisions.len()),
+            owners: scene.triangle_ids().collect(),
+            patches: 0,
+            sides: 0,
+        };
         for (t, &n) in scene.triangle_ids().zip(&divisions) {
             let per_triangle = n.checked_mul(n).ok_or(MeshError::TooMany)?;
             let sides = match scene.material(t).sides {
@@ -95,6 +102,7 @@ impl PatchMesh {
         }
         faces.retain(|_, members| is_flat(scene, members));
         (self.patches, self.sides) = (0, 0);
+        self.owners.clear();
         for t in scene.triangle_ids() {
             if let Some(members) = faces.get(&scene.triangle(t).face) {
                 if t != members[0] {
@@ -103,6 +111,7 @@ impl PatchMesh {
                 }
                 self.triangles[t.index()].area = members.iter().map(|&m| scene.area(m)).sum();
             }
+            self.owners.push(t);
             let record = &mut self.triangles[t.index()];
             (record.first_patch, record.first_side) = (self.patches, self.sides);
             self.patches += 1;
@@ -180,21 +189,29 @@ impl PatchMesh {
 
     /// Calls `visit` once for every active side, in the order of [`SideId`], with one triangle of its patch.
     pub fn for_each_side(&self, mut visit: impl FnMut(TriangleId, PatchId, Side, SideId)) {
-        let mut next = 0;
-        for (t, r) in self.triangles.iter().enumerate() {
-            let triangle = TriangleId::new(t);
+        for &triangle in &self.owners {
             for patch in self.patches_of(triangle).map(PatchId) {
                 for side in [Side::Front, Side::Back] {
-                    if let Some(id) = self.side_of(triangle, patch, side)
-                        && id.0 >= next
-                    {
+                    if let Some(id) = self.side_of(triangle, patch, side) {
                         visit(triangle, patch, side, id);
-                        next = id.0 + 1;
                     }
                 }
             }
-            debug_assert!(next >= r.first_side);
         }
+    }
+
+    /// The active sides whose numbers lie in `sides`, in order: a triangle and the consecutive numbers of sides of
+    /// its patches, all of the same area and material.
+    pub fn sides_within(&self, sides: Range<u32>) -> impl Iterator<Item = (TriangleId, Range<u32>)> {
+        let of = |triangle: TriangleId| {
+            let r = &self.triangles[triangle.index()];
+            r.first_side..r.first_side + r.divisions * r.divisions * r.sides
+        };
+        let first = self.owners.partition_point(|&t| of(t).end <= sides.start);
+        self.owners[first..]
+            .iter()
+            .map(move |&t| (t, of(t).start.max(sides.start)..of(t).end.min(sides.end)))
+            .take_while(|(_, range)| !range.is_empty())
     }
 }
 
@@ -274,6 +291,8 @@ mod tests {
             let mut visited = Vec::new();
             mesh.for_each_side(|_, _, _, side| visited.push(side.index()));
             assert_eq!(visited, (0..mesh.side_count()).collect::<Vec<_>>());
+            let owners: Vec<_> = mesh.sides_within(0..mesh.side_count() as u32).map(|(t, _)| t.0).collect();
+            assert_eq!(owners[..7], [0, 2, 4, 6, 8, 10, 12], "six faces of two triangles, then single ones");
         }
     }
 
@@ -299,6 +318,9 @@ mod tests {
             let mut seen = vec![false; mesh.side_count()];
             mesh.for_each_side(|_, _, _, s| assert!(!std::mem::replace(&mut seen[s.index()], true)));
             prop_assert!(seen.iter().all(|&s| s));
+            let (from, to) = ((v * seen.len() as f64) as u32, ((v + w * (1.0 - v)) * seen.len() as f64) as u32);
+            let within: Vec<u32> = mesh.sides_within(from..to).flat_map(|(_, sides)| sides).collect();
+            prop_assert_eq!(within, (from..to).collect::<Vec<_>>());
             for t in scene.triangle_ids() {
                 let point = Barycentric { v, w: w * (1.0 - v) };
                 let patch = mesh.patch_at(t, point);

@@ -6,8 +6,8 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
-use sir_parallel::{Observer, first_shot, multipath};
-use sir_radiosity::{Model, MultipathSettings};
+use sir_parallel::{Crew, Observer, batches, first_shot};
+use sir_radiosity::Model;
 
 /// Prints a line at every tenth of a stage.
 struct Tenths(u64);
@@ -28,10 +28,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
     let model = Model::new(builder.build()?.scene, Subdivision::Patches(600))?;
 
-    let shot = first_shot(&model, 1_000_000, 1, &mut Tenths(0))?.outcome;
+    let mut crew = Crew::default().watched_by(Tenths(0));
+    let (lines, seed) = (1_000_000, 1);
+    let shot = first_shot(&model, lines, seed, &mut crew, None)?.outcome;
     let domain = Domain::Sphere(model.scene.bounding_sphere());
-    let run = multipath(&model, shot, MultipathSettings::new(1_000_000, domain), 1, &mut Tenths(0))?;
+    let mut crew = Crew::default().watched_by(Tenths(0));
+    let run = batches(&model, shot, lines, domain, seed, &mut crew, None)?;
     let mean = run.outcome.solution.irradiance.iter().sum::<Rgb>() / model.mesh.side_count() as f64;
-    println!("mean irradiance {mean:.4}, exact [2, 5, 10], in {:.2} s", run.time.as_secs_f64());
+    println!(
+        "mean irradiance {mean:.4}, exact [2, 5, 10], in {:.2} s and {} batches",
+        run.time.total.as_secs_f64(),
+        run.batches
+    );
     Ok(())
 }

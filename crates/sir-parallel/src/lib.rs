@@ -1,30 +1,69 @@
-//! Who runs which lines.
+//! Who runs which lines: threads, MPI ranks, and restarts.
 //!
 //! # Design
 //!
-//! A stage is a range of line indices `[0, N)`, and a line is a pure function of its index. So all that is to be
-//! decided is which worker walks which part of the range, in pieces small enough to report progress and to stop
-//! between them. That is this crate; what a line does is none of its business, and who asks for it neither.
+//! A stage is a range of line indices `[0, N)`, a line is a pure function of its index, and what lines change are integers
+//! to which they only add. So the result is the same whoever traces which lines, in whatever order. This crate decides who
+//! does; what a line does is none of its business.
 //!
-//! [`share`] cuts the range among workers, [`walk`] walks a share block by block under the eyes of an [`Observer`],
-//! and [`first_shot`] and [`multipath`] run the two stages of the solver that way. There is one worker so far.
+//! * A [`Crew`] is some ranks with some threads each. Threads take small blocks of lines from a common counter and write
+//!   to one shared ledger; ranks have equal shares of the lines, and add up their ledgers when the stage asks for it.
+//! * A [`Communicator`] does one thing: it replaces numbers by their sums over all ranks. [`Alone`] is a single process;
+//!   [`connect`] gives MPI if the crate was built with the feature `mpi`.
+//! * The state of a stage is a sequence of numbers that a [`Visitor`](sir_radiosity::Visitor) sees. One visitor adds them up
+//!   over the ranks, one saves them ([`Checkpoints`]), one puts them back ([`Saved`]). A checkpoint holds sums over all
+//!   workers, so any number of them can go on from it.
+//! * Four times a second all ranks agree on how many lines to trace next, whether to save, and whether to stop. This
+//!   changes nothing in the result.
+//!
+//! [`first_shot`], [`batches`] and [`multipath`] run the stages of the solver. In multipath what a line carries depends on the
+//! lines before it; there, threads and ranks share replicas instead of lines.
 //!
 //! # Example
 //!
-//! ```
-//! use std::ops::Range;
-//! use sir_parallel::{Silent, share, walk};
+//! The light in a closed box, by one thread and by three:
 //!
-//! // Four workers share ten lines; the second one walks its own.
-//! assert_eq!(share(10, 1, 4), 2..5);
-//! let mut seen = Vec::new();
-//! walk(share(10, 1, 4), 2, &mut Silent, |block: Range<u64>| seen.extend(block))?;
-//! assert_eq!(seen, [2, 3, 4]);
-//! # Ok::<(), sir_parallel::RunError>(())
+//! ```
+//! use std::num::NonZeroUsize;
+//! use glam::DVec3;
+//! use sir_geom::{Material, Rgb, SceneBuilder, shapes::{self, Facing}};
+//! use sir_lines::Domain;
+//! use sir_mesh::Subdivision;
+//! use sir_parallel::{Crew, batches, first_shot};
+//! use sir_radiosity::Model;
+//!
+//! let mut builder = SceneBuilder::new();
+//! let grey = Material::diffuse("grey", Rgb::splat(0.5)).emitting(Rgb::splat(1.0));
+//! let grey = builder.add_material(grey);
+//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
+//! let model = Model::new(builder.build()?.scene, Subdivision::PerTriangle)?;
+//! let domain = Domain::Sphere(model.scene.bounding_sphere());
+//!
+//! let solve = |threads: usize| {
+//!     let crew = &mut Crew::of(NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN));
+//!     let (lines, seed) = (20_000, 1);
+//!     let shot = first_shot(&model, lines, seed, crew, None)?.outcome;
+//!     batches(&model, shot, lines, domain, seed, crew, None)
+//! };
+//! assert_eq!(solve(1)?.outcome.received, solve(3)?.outcome.received);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod checkpoint;
+mod communicator;
+mod connect;
+mod crew;
+mod error;
+#[cfg(feature = "mpi")]
+mod mpi;
+mod observer;
+mod replicas;
 mod stages;
-mod walk;
 
-pub use stages::{StageRun, first_shot, multipath};
-pub use walk::{Observer, RunError, Silent, share, walk};
+pub use checkpoint::{Checkpoints, Saved};
+pub use communicator::{Alone, Communicator};
+pub use connect::{ConnectError, HAS_MPI, connect};
+pub use crew::{Crew, StageTime};
+pub use error::{CheckpointError, RunError};
+pub use observer::{Observer, Silent};
+pub use stages::{StageRun, batches, first_shot, multipath};

@@ -1,55 +1,151 @@
-//! The stages of the solver, run by one worker.
+//! The stages of the solver, run by a crew.
 
-use std::time::{Duration, Instant};
+use std::ops::Range;
 
-use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings, Shot, Transported};
+use sir_lines::Domain;
+use sir_radiosity::{
+    Batches, Books, FirstShot, FirstShotTally, Model, Multipath, MultipathSettings, Shot, Totals,
+    Transported, Visitor,
+};
 
-use crate::walk::{Observer, RunError, share, walk};
-
-/// Lines between two looks at the observer: some milliseconds of work.
-const BLOCK: u64 = 1 << 13;
+use crate::crew::{Position, Shift, Work};
+use crate::replicas::Replicas;
+use crate::{Crew, RunError, Saved, StageTime};
 
 /// The outcome of a stage and how long it took.
 #[derive(Clone, Debug)]
 pub struct StageRun<T> {
-    /// What the stage made.
+    /// What the stage made: the same on all ranks.
     pub outcome: T,
-    /// Wall-clock time, set-up included.
-    pub time: Duration,
+    /// Wall-clock time.
+    pub time: StageTime,
+    /// Batches in which the lines were traced: 1 where what a line carries does not depend on other lines, and
+    /// the number of replicas in multipath.
+    pub batches: u64,
 }
 
-/// Runs a first shot of `lines` lines.
+struct FirstShotWork<'m> {
+    stage: FirstShot<'m>,
+    tally: FirstShotTally,
+}
+
+impl Work for FirstShotWork<'_> {
+    fn trace(&self, lines: Range<u64>, books: &mut Books) {
+        self.stage.trace(lines, &self.tally, books);
+    }
+
+    fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.tally.visit(visitor);
+    }
+}
+
+/// Runs a first shot of `lines` lines, or goes on with one that was saved.
 ///
 /// # Errors
 ///
-/// If nothing emits, a tally overflowed, or the observer wants to stop.
+/// If nothing emits, a tally overflowed, the observer wants to stop, or a checkpoint cannot be saved or restored.
 pub fn first_shot(
     model: &Model,
     lines: u64,
     seed: u64,
-    observer: &mut dyn Observer,
+    crew: &mut Crew<'_>,
+    saved: Option<Saved>,
 ) -> Result<StageRun<Shot>, RunError> {
-    let start = Instant::now();
+    let mut shift = Shift::begin(crew, lines);
     let stage = FirstShot::new(model, lines, seed)?;
-    let mut tally = stage.tally();
-    walk(share(lines, 0, 1), BLOCK, observer, |block| stage.trace(block, &mut tally))?;
-    Ok(StageRun { outcome: stage.finish(tally)?, time: start.elapsed() })
+    let mut work = FirstShotWork { tally: stage.tally(), stage };
+    let mut position = Position::default();
+    if let Some(saved) = saved {
+        shift.restore(saved, &mut position, &mut work)?;
+    }
+    shift.trace(&mut work, &mut position, lines)?;
+    shift.add_up(|visitor| {
+        position.books.visit(visitor);
+        work.visit(visitor);
+    });
+    let FirstShotWork { stage, tally } = work;
+    let outcome = stage.finish(tally, position.books)?;
+    Ok(StageRun { outcome, time: shift.time(), batches: 1 })
 }
 
-/// Runs multipath on the reflected light of a first shot.
+impl Work for Batches<'_> {
+    fn trace(&self, lines: Range<u64>, books: &mut Books) {
+        self.trace(lines, books);
+    }
+
+    fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.visit(visitor);
+    }
+}
+
+/// Transports the reflected light of a first shot along `lines` global lines in frozen batches, or goes on with a transport
+/// that was saved; `shot` is then not looked at.
 ///
 /// # Errors
 ///
-/// If a tally overflowed, or the observer wants to stop.
+/// If a tally overflowed, the observer wants to stop, or a checkpoint cannot be saved or restored.
+pub fn batches(
+    model: &Model,
+    shot: Shot,
+    lines: u64,
+    domain: Domain,
+    seed: u64,
+    crew: &mut Crew<'_>,
+    saved: Option<Saved>,
+) -> Result<StageRun<Transported>, RunError> {
+    let mut shift = Shift::begin(crew, lines);
+    let mut stage = Batches::new(model, shot, lines, domain, seed);
+    let mut position = Position::default();
+    let open = |stage: &mut Batches<'_>, shift: &mut Shift<'_, '_>| {
+        let parts = stage.parts(shift.threads()).collect();
+        shift.each(parts, |mut part| part.open());
+    };
+    match saved {
+        None => open(&mut stage, &mut shift),
+        Some(saved) => shift.restore(saved, &mut position, &mut stage)?,
+    }
+    loop {
+        let end = stage.lines().end;
+        shift.trace(&mut stage, &mut position, end)?;
+        shift.add_up(|visitor| stage.visit_batch(visitor));
+        let parts = stage.parts(shift.threads()).collect();
+        let mut totals = Totals::default();
+        shift.each(parts, |mut part| part.close()).into_iter().for_each(|part| totals += part);
+        if !stage.advance(totals) {
+            break;
+        }
+        open(&mut stage, &mut shift);
+    }
+    shift.add_up(|visitor| {
+        position.books.visit(visitor);
+        stage.visit_squares(visitor);
+    });
+    let batches = stage.number() + 1;
+    let outcome = stage.finish(position.books)?;
+    Ok(StageRun { outcome, time: shift.time(), batches })
+}
+
+/// Transports the reflected light of a first shot by multipath in replicas, or goes on with a transport that was saved;
+/// `shot` is then not looked at. Each thread works on one replica at a time.
+///
+/// # Errors
+///
+/// If a tally overflowed, the observer wants to stop, or a checkpoint cannot be saved or restored.
 pub fn multipath(
     model: &Model,
     shot: Shot,
     settings: MultipathSettings,
     seed: u64,
-    observer: &mut dyn Observer,
+    crew: &mut Crew<'_>,
+    saved: Option<Saved>,
 ) -> Result<StageRun<Transported>, RunError> {
-    let start = Instant::now();
-    let mut stage = Multipath::new(model, shot, settings, seed);
-    walk(share(settings.lines, 0, 1), BLOCK, observer, |block| stage.trace(block))?;
-    Ok(StageRun { outcome: stage.finish()?, time: start.elapsed() })
+    let mut shift = Shift::begin(crew, settings.lines);
+    let stage = Multipath::new(model, shot, settings, seed);
+    let mut replicas = Replicas::new(stage, settings, shift.comm());
+    if let Some(saved) = saved {
+        replicas.restore(saved, shift.comm())?;
+    }
+    replicas.run(&mut shift)?;
+    let outcome = replicas.finish(&mut shift)?;
+    Ok(StageRun { outcome, time: shift.time(), batches: settings.replicas })
 }

@@ -1,6 +1,8 @@
 //! Where the power went, and what the lines met.
 
-use crate::Quanta;
+use std::ops::AddAssign;
+
+use crate::{Quanta, Visitor};
 
 /// Energy balance of a stage. It closes exactly: `emitted = absorbed + blocked + escaped + unshot`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,4 +41,44 @@ pub struct Counts {
     pub odd: u64,
     /// Triangles met.
     pub crossings: u64,
+}
+
+/// What one worker writes down: its part of the balance and of the counts. Those of all workers add up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Books {
+    /// Where the power went.
+    pub balance: Balance,
+    /// What the lines met.
+    pub counts: Counts,
+}
+
+impl AddAssign for Books {
+    fn add_assign(&mut self, other: Self) {
+        let (mine, theirs) = (&mut self.balance, other.balance);
+        mine.emitted += theirs.emitted;
+        mine.absorbed += theirs.absorbed;
+        mine.blocked += theirs.blocked;
+        mine.escaped += theirs.escaped;
+        mine.unshot += theirs.unshot;
+        let (mine, theirs) = (&mut self.counts, other.counts);
+        mine.lines += theirs.lines;
+        mine.empty += theirs.empty;
+        mine.odd += theirs.odd;
+        mine.crossings += theirs.crossings;
+    }
+}
+
+impl Books {
+    /// Shows the books to a visitor.
+    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+        let Self { balance: b, counts: c } = self;
+        for quanta in [&mut b.emitted, &mut b.absorbed, &mut b.blocked, &mut b.escaped, &mut b.unshot] {
+            visitor.sum(&mut quanta.0);
+        }
+        let counts = [&mut c.lines, &mut c.empty, &mut c.odd, &mut c.crossings];
+        let mut words = [0; 4];
+        words.iter_mut().zip(&counts).for_each(|(word, count)| *word = **count as i64);
+        visitor.sum(&mut words);
+        counts.into_iter().zip(words).for_each(|(count, word)| *count = word as u64);
+    }
 }

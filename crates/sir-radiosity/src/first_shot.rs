@@ -7,8 +7,11 @@ use std::ops::Range;
 use sir_geom::{Line, Rgb, Side};
 use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
 
+use crate::ledger::{Counters, SquareUnit};
 use crate::sources::{Source, sources};
-use crate::{Balance, Counts, Model, PowerUnit, Quanta, Received, Solution, SolveError};
+use crate::{
+    Balance, Books, Counts, Ledger, Model, PowerUnit, Quanta, Received, Solution, SolveError, Visitor,
+};
 
 /// The lines of a first shot: what each one carries, and from where.
 #[derive(Clone, Debug)]
@@ -20,16 +23,13 @@ pub struct FirstShot<'m> {
     allocation: Allocation,
     streams: Streams,
     unit: PowerUnit,
+    lines: u64,
 }
 
-/// What some of the lines of a first shot have brought so far.
-#[derive(Clone, Debug)]
+/// What the lines of a first shot have brought so far. Any number of workers may trace into one.
+#[derive(Debug)]
 pub struct FirstShotTally {
-    received: Received,
-    counts: Counts,
-    emitted: Quanta,
-    blocked: Quanta,
-    escaped: Quanta,
+    ledger: Ledger,
 }
 
 /// The outcome of a first shot.
@@ -39,7 +39,7 @@ pub struct Shot {
     pub received: Received,
     /// The size of a quantum, for this and all later stages.
     pub unit: PowerUnit,
-    /// Where the power went. Its `unshot` is the reflected direct power that multipath has to send on.
+    /// Where the power went. Its `unshot` is the reflected direct power that has to be sent on.
     pub balance: Balance,
     /// What the lines met.
     pub counts: Counts,
@@ -50,6 +50,17 @@ impl Shot {
     #[must_use]
     pub fn solution(&self, model: &Model) -> Solution {
         Solution::new(model, &self.received, self.unit)
+    }
+
+    /// The outcome of no shot at all, to be filled by a later stage that is restored.
+    #[must_use]
+    pub fn nothing(model: &Model) -> Self {
+        Self {
+            received: Received::nothing(model.mesh.side_count()),
+            unit: PowerUnit::for_total(1.0, 0.0),
+            balance: Balance::default(),
+            counts: Counts::default(),
+        }
     }
 }
 
@@ -74,23 +85,19 @@ impl<'m> FirstShot<'m> {
         let offset = Streams::new(seed, Stage::ALLOCATION).line(0).unit();
         let allocation = Allocation::new(&weights, lines, offset);
         let streams = Streams::new(seed, Stage::FIRST_SHOT);
-        Ok(Self { model, sources, per_line, allocation, streams, unit })
+        Ok(Self { model, sources, per_line, allocation, streams, unit, lines })
     }
 
     /// An empty tally.
     #[must_use]
     pub fn tally(&self) -> FirstShotTally {
-        FirstShotTally {
-            received: Received::nothing(self.model.mesh.side_count()),
-            counts: Counts::default(),
-            emitted: Quanta::ZERO,
-            blocked: Quanta::ZERO,
-            escaped: Quanta::ZERO,
-        }
+        let largest = |band: usize| self.per_line.iter().map(|q| q.0[band] as f64).fold(0.0, f64::max);
+        let squares = SquareUnit::new([0, 1, 2].map(largest), self.lines as f64);
+        FirstShotTally { ledger: Ledger::new(self.model.mesh.side_count(), squares) }
     }
 
-    /// Traces some of the lines. Each line should be traced once.
-    pub fn trace(&self, lines: Range<u64>, tally: &mut FirstShotTally) {
+    /// Traces some of the lines. Each line should be traced once, by whomever.
+    pub fn trace(&self, lines: Range<u64>, tally: &FirstShotTally, books: &mut Books) {
         let Model { scene, mesh, accel } = self.model;
         let mut tracer = accel.tracer();
         for index in lines {
@@ -104,18 +111,18 @@ impl<'m> FirstShot<'m> {
             };
             let ray = Line { origin, direction: cosine_direction(normal, &mut stream) };
             let power = self.per_line[k];
-            tally.emitted += power;
-            tally.counts.lines += 1;
+            books.balance.emitted += power;
+            books.counts.lines += 1;
             match tracer.closest(&ray, Some(triangle)) {
                 None => {
-                    tally.escaped += power;
-                    tally.counts.empty += 1;
+                    books.balance.escaped += power;
+                    books.counts.empty += 1;
                 }
                 Some(hit) => {
-                    tally.counts.crossings += 1;
+                    books.counts.crossings += 1;
                     match mesh.side_at(hit.triangle, hit.point, hit.side) {
-                        Some(side) => tally.received.add(side, power),
-                        None => tally.blocked += power,
+                        Some(side) => tally.ledger.give(side, power, tally.ledger.squares(power)),
+                        None => books.balance.blocked += power,
                     }
                 }
             }
@@ -127,24 +134,33 @@ impl<'m> FirstShot<'m> {
     /// # Errors
     ///
     /// If a tally overflowed.
-    pub fn finish(&self, tally: FirstShotTally) -> Result<Shot, SolveError> {
-        let FirstShotTally { mut received, counts, emitted, blocked, escaped } = tally;
-        let mut balance = Balance { emitted, blocked, escaped, ..Balance::default() };
+    pub fn finish(&self, tally: FirstShotTally, books: Books) -> Result<Shot, SolveError> {
+        let Books { mut balance, counts } = books;
+        let mut received = Received::nothing(self.model.mesh.side_count());
+        let lines = counts.lines.max(1) as f64;
         self.model.mesh.for_each_side(|triangle, _, _, side| {
-            let power = received.power[side.index()];
+            let power = tally.ledger.power(side);
             let reflected = power.scaled(self.model.scene.material(triangle).reflectance);
             balance.unshot += reflected;
             balance.absorbed += power - reflected;
+            received.power[side.index()] = power;
+            // The number of lines is given, so the variance of a sum is binomial: Σw² − (Σw)²/N.
+            let squares = tally.ledger.variance(side);
+            received.variance[side.index()] = std::array::from_fn(|k| {
+                let power = power.0[k] as f64;
+                (squares[k] - power * power / lines).max(0.0) as f32
+            });
         });
-        // The number of lines is given, so the variance of a sum is binomial: Σw² − (Σw)²/N.
-        for (variance, power) in received.variance.iter_mut().zip(&received.power) {
-            for (v, p) in variance.iter_mut().zip(power.0) {
-                *v = (*v - p as f64 * p as f64 / counts.lines.max(1) as f64).max(0.0);
-            }
-        }
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "first shot" });
         }
         Ok(Shot { received, unit: self.unit, balance, counts })
+    }
+}
+
+impl FirstShotTally {
+    /// Shows the state of the stage to a visitor.
+    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.ledger.visit(Counters::All, visitor);
     }
 }

@@ -52,8 +52,11 @@
 //! ```
 
 mod balance;
+mod batches;
 mod error;
 mod first_shot;
+mod global;
+mod ledger;
 mod model;
 mod multipath;
 mod power;
@@ -61,14 +64,18 @@ mod received;
 mod segments;
 mod solution;
 mod sources;
+mod state;
 
-pub use balance::{Balance, Counts};
+pub use balance::{Balance, Books, Counts};
+pub use batches::{Batches, Part, Totals};
 pub use error::SolveError;
 pub use first_shot::{FirstShot, FirstShotTally, Shot};
+pub use ledger::Ledger;
 pub use model::Model;
-pub use multipath::{Multipath, MultipathSettings, Transported};
+pub use multipath::{Multipath, MultipathSettings, Replica, Transported, share};
 pub use power::{PowerUnit, Quanta};
 pub use received::Received;
 pub use segments::{End, Segment, segments};
 pub use solution::Solution;
 pub use sources::{Source, sources};
+pub use state::Visitor;

@@ -1,12 +1,17 @@
-//! Multipath: global lines pass power on between all surfaces that face each other.
+//! Multipath: global lines pass power on between all surfaces that face each other, one after the other.
 //!
 //! Sbert, Pueyo, Neumann and Purgathofer (1996), *Global multipath Monte Carlo algorithms for radiosity*; Martínez,
-//! Forés and Martín (2009), section 2.
+//! Forés and Martín (2009), sections 2 and 4.
 //!
-//! As published, every line takes along its share of the reflected direct power, and what has been reflected but not
-//! sent on when the lines end is missing from the result: a share of about `ρ/(1−ρ)/n` for patches that `n` lines
-//! cross. Here the last lines, the *tail*, take no such share and only send on: what is left then falls off like
-//! `exp(−(1−ρ) m)` with the number `m` of them that cross a patch.
+//! What a line carries depends on the lines before it, so this transport can only be shared among workers by running it
+//! several times: the *replicas* of Martínez, Forés and Martín share the lines and the light, and their results add up
+//! (which is to say that full results are averaged). Power that has been reflected but not sent on when the lines of a
+//! replica end is missing from the result: a share of about `ρ/(1−ρ) · P/n` for patches that `n` lines cross in `P`
+//! replicas together.
+//!
+//! Here the last lines of a replica, the *tail*, take no power from the sources and only send on: what is left then
+//! falls off like `exp(−(1−ρ) m)` with the number `m` of them that cross a patch. Without a tail, the method is as
+//! published.
 
 use std::ops::Range;
 
@@ -14,24 +19,22 @@ use sir_geom::TriangleId;
 use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::SideId;
 
-use crate::segments::{End, Segment, segments};
-use crate::{Balance, Counts, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError};
+use crate::global;
+use crate::ledger::{Counters, Ledger, SquareUnit, visit_quanta};
+use crate::segments::{End, Segment};
+use crate::state::visit_float;
+use crate::{
+    Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Visitor,
+};
 
-/// What a side holds while power travels.
-#[derive(Clone, Copy, Debug)]
-struct SideState {
-    /// Power received and reflected, but not sent on.
-    unshot: Quanta,
-    /// Reflected direct power that leaves with every line before the tail \[quanta\]: its forecast share.
-    emission: [f32; 3],
-}
-
-/// A transport of power along global lines. Sequential: the result depends on the order of the lines.
-#[derive(Clone, Debug)]
+/// A sequential transport of power along global lines, in independent replicas.
+#[derive(Debug)]
 pub struct Multipath<'m> {
     model: &'m Model,
-    sides: Vec<SideState>,
-    books: Books,
+    /// The direct light.
+    received: Received,
+    /// What the lines bring, and the share of the reflected direct power that leaves with each line.
+    ledger: Ledger,
     streams: Streams,
     unit: PowerUnit,
     settings: MultipathSettings,
@@ -40,33 +43,48 @@ pub struct Multipath<'m> {
 /// The lines of a transport.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MultipathSettings {
-    /// Number of lines, the tail included.
+    /// Number of lines, of all replicas together.
     pub lines: u64,
-    /// How many of them, at the end, only send on what was reflected. With none, the method is as published.
+    /// How many of them, at the ends of the replicas, only send on what was reflected. With none, the method is as
+    /// published.
     pub tail: u64,
+    /// Among how many independent replicas the lines are shared: at least 1.
+    pub replicas: u64,
     /// Where the lines are drawn from.
     pub domain: Domain,
 }
 
 impl MultipathSettings {
-    /// This number of lines, of which the last tenth is the tail.
+    /// This number of lines in one replica, of which the last tenth is the tail.
     #[must_use]
     pub fn new(lines: u64, domain: Domain) -> Self {
-        Self { lines, tail: lines / 10, domain }
+        Self { lines, tail: lines / 10, replicas: 1, domain }
     }
 
-    /// Lines that take a share of the reflected direct power along.
-    fn emitting(&self) -> u64 {
-        self.lines.saturating_sub(self.tail)
+    /// The lines of a replica.
+    #[must_use]
+    pub fn lines_of(&self, replica: u64) -> Range<u64> {
+        share(self.lines, replica, self.replicas)
     }
 }
 
-/// What is written down while power travels.
+/// The part of `0..count` that belongs to one of several workers or replicas. The parts follow each other and differ in
+/// length by one at most.
+#[must_use]
+pub fn share(count: u64, part: u64, parts: u64) -> Range<u64> {
+    let start = |p: u64| (u128::from(count) * u128::from(p) / u128::from(parts)) as u64;
+    start(part)..start(part + 1)
+}
+
+/// One run of multipath on its share of the lines. Its lines must be traced in order.
 #[derive(Clone, Debug)]
-struct Books {
-    received: Received,
-    balance: Balance,
-    counts: Counts,
+pub struct Replica {
+    /// The lines that are still to be traced.
+    lines: Range<u64>,
+    /// From which line on nothing is taken from the sources.
+    tail: u64,
+    /// Power received and reflected, but not sent on.
+    unshot: Vec<Quanta>,
 }
 
 /// The outcome of a transport.
@@ -78,115 +96,190 @@ pub struct Transported {
     pub received: Received,
     /// The size of a quantum.
     pub unit: PowerUnit,
-    /// Where the power of this stage went. Its `emitted` is what the lines took from the sources by forecast, which
-    /// differs from the reflected direct power by chance.
+    /// Where the power of this stage went.
+    ///
+    /// In multipath, `emitted` is what the lines took from the sources by forecast, which differs from the reflected
+    /// direct power by chance; in batches it is that power.
     pub balance: Balance,
     /// What the lines met.
     pub counts: Counts,
+    /// Power added to what was received to make up for the unshot; none in multipath, where the unshot is missing.
+    pub made_up: Quanta,
 }
 
 impl<'m> Multipath<'m> {
     /// Prepares the transport of the reflected direct power of a first shot.
     ///
-    /// A side of a patch of area `A` is left by `n = N · 2A/S` of the `N` lines before the tail on average, so each
-    /// takes `1/n` of its reflected direct power along.
+    /// A side of a patch of area `A` is left by `n = N · 2A/S` of the `N` lines that are not in a tail on average, so
+    /// each takes `1/n` of its reflected direct power along.
     #[must_use]
     pub fn new(model: &'m Model, shot: Shot, settings: MultipathSettings, seed: u64) -> Self {
-        let forecast = settings.domain.forecast(settings.emitting());
-        let mut sides = Vec::with_capacity(model.mesh.side_count());
+        let forecast = settings.domain.forecast(settings.lines.saturating_sub(settings.tail));
+        let mut shares = Vec::with_capacity(model.mesh.side_count());
+        let (mut largest, mut most) = ([0.0; 3], 0.0);
         model.mesh.for_each_side(|triangle, _, _, side| {
-            let reflected =
-                shot.received.power[side.index()].scaled(model.scene.material(triangle).reflectance);
+            let reflectance = model.scene.material(triangle).reflectance;
+            let reflected = shot.received.power[side.index()].scaled(reflectance);
             let crossings = forecast.crossings(model.mesh.patch_area(triangle));
-            sides.push(SideState {
-                unshot: Quanta::ZERO,
-                emission: reflected.0.map(|q| (q as f64 / crossings) as f32),
-            });
+            let share = reflected.0.map(|q| q as f64 / crossings);
+            for band in 0..3 {
+                largest[band] = f64::max(largest[band], share[band] / (1.0 - reflectance[band]));
+            }
+            most = f64::max(most, crossings);
+            shares.push(share);
         });
-        let books = Books { received: shot.received, balance: Balance::default(), counts: Counts::default() };
+        let ledger = Ledger::new(shares.len(), SquareUnit::new(largest, most));
+        for (i, share) in shares.into_iter().enumerate() {
+            ledger.set_share(SideId::new(i), share);
+        }
         let streams = Streams::new(seed, Stage::GLOBAL);
-        Self { model, sides, books, streams, unit: shot.unit, settings }
+        Self { model, received: shot.received, ledger, streams, unit: shot.unit, settings }
     }
 
-    /// Traces the next lines. The ranges of successive calls should follow each other.
-    pub fn trace(&mut self, lines: Range<u64>) {
-        let Self { model, sides, books, streams, settings, .. } = self;
-        let mut tracer = model.accel.tracer();
-        for index in lines {
-            let line = settings.domain.sample(&mut streams.line(index));
-            let hits = tracer.all_hits(&line);
-            books.counts.lines += 1;
-            books.counts.empty += u64::from(hits.is_empty());
-            books.counts.odd += hits.len() as u64 % 2;
-            books.counts.crossings += hits.len() as u64;
-            let emits = index < settings.emitting();
-            segments(&model.mesh, hits, |segment| exchange(model, sides, books, segment, emits));
+    /// A replica, with none of its lines traced.
+    #[must_use]
+    pub fn replica(&self, number: u64) -> Replica {
+        let lines = self.settings.lines_of(number);
+        let tail = share(self.settings.tail, number, self.settings.replicas);
+        let tail = lines.end - (tail.end - tail.start).min(lines.end - lines.start);
+        Replica { lines, tail, unshot: vec![Quanta::ZERO; self.model.mesh.side_count()] }
+    }
+
+    /// Traces at most `count` of the next lines of a replica. At its end, what is unshot is booked.
+    pub fn trace(&self, replica: &mut Replica, count: u64, books: &mut Books) {
+        let Replica { lines, tail, unshot } = replica;
+        let now = lines.start..lines.end.min(lines.start.saturating_add(count));
+        lines.start = now.end;
+        let Books { balance, counts } = books;
+        let model = self.model;
+        global::trace(model, &self.settings.domain, &self.streams, now, counts, |index, segment| {
+            exchange(model, &self.ledger, unshot, balance, segment, index < *tail);
+        });
+        if lines.is_empty() {
+            for unshot in std::mem::take(unshot) {
+                balance.unshot += unshot;
+            }
         }
     }
 
-    /// Closes the books once all lines are traced.
+    /// Shows the state of the stage to a visitor, but for that of the replicas which are under way.
+    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+        let mut quantum = self.unit.quantum();
+        visit_float(&mut quantum, visitor);
+        self.unit = PowerUnit::of_quantum(quantum);
+        self.ledger.visit_unit(visitor);
+        self.ledger.visit(Counters::All, visitor);
+        self.ledger.visit_shares(visitor);
+        self.received.visit(visitor);
+    }
+
+    /// Shows what the lines brought to a visitor.
+    pub fn visit_counters(&mut self, visitor: &mut dyn Visitor) {
+        self.ledger.visit(Counters::All, visitor);
+    }
+
+    /// Closes the books once all replicas have come to their end.
     ///
     /// # Errors
     ///
     /// If a tally overflowed.
-    pub fn finish(self) -> Result<Transported, SolveError> {
-        let Self { model, sides, books, unit, .. } = self;
-        let Books { received, mut balance, counts } = books;
-        for side in &sides {
-            balance.unshot += side.unshot;
-        }
-        // The solution needs room.
-        drop(sides);
+    pub fn finish(self, books: Books) -> Result<Transported, SolveError> {
+        let Self { model, mut received, ledger, unit, .. } = self;
+        let Books { balance, counts } = books;
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "multipath" });
         }
+        ledger.add_to(&mut received);
+        drop(ledger);
         let solution = Solution::new(model, &received, unit);
-        Ok(Transported { solution, received, unit, balance, counts })
+        Ok(Transported { solution, received, unit, balance, counts, made_up: Quanta::ZERO })
+    }
+}
+
+impl Replica {
+    /// How many lines are still to be traced.
+    #[must_use]
+    pub fn lines_left(&self) -> u64 {
+        self.lines.end - self.lines.start
+    }
+
+    /// Shows the state of a replica that is under way to a visitor; the visitor is told that all workers have it alike,
+    /// and has to see to it that they do.
+    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+        let mut start = [self.lines.start as i64];
+        visitor.same(&mut start);
+        self.lines.start = start[0] as u64;
+        visit_quanta(&mut self.unshot, visitor);
     }
 }
 
 /// Both ends of a segment send what they hold to the other one.
 #[inline]
-fn exchange(model: &Model, sides: &mut [SideState], books: &mut Books, segment: Segment, emits: bool) {
-    let mut take = |books: &mut Books, side| take(sides, books, side, emits);
+fn exchange(
+    model: &Model,
+    ledger: &Ledger,
+    unshot: &mut [Quanta],
+    balance: &mut Balance,
+    segment: Segment,
+    emits: bool,
+) {
+    // Takes all unshot power of a side and, if the line emits, its share of the reflected direct power.
+    let mut take = |side: SideId| {
+        let emission = if emits { ledger.share(side) } else { Quanta::ZERO };
+        balance.emitted += emission;
+        std::mem::take(&mut unshot[side.index()]) + emission
+    };
     match (segment.from, segment.to) {
         (End::Side(i, triangle_i), End::Side(j, triangle_j)) => {
-            let (from_i, from_j) = (take(books, i), take(books, j));
-            give(model, sides, books, (j, triangle_j), from_i);
-            give(model, sides, books, (i, triangle_i), from_j);
+            let (from_i, from_j) = (take(i), take(j));
+            give(model, ledger, unshot, balance, (j, triangle_j), from_i);
+            give(model, ledger, unshot, balance, (i, triangle_i), from_j);
         }
         (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
-            let power = take(books, i);
-            books.balance.escaped += power;
+            let power = take(i);
+            balance.escaped += power;
         }
         (End::Side(i, _), End::Inactive) | (End::Inactive, End::Side(i, _)) => {
-            let power = take(books, i);
-            books.balance.blocked += power;
+            let power = take(i);
+            balance.blocked += power;
         }
         _ => {}
     }
-}
-
-/// Takes all unshot power of a side and, if the line emits, its share of the reflected direct power.
-#[inline]
-fn take(sides: &mut [SideState], books: &mut Books, side: SideId, emits: bool) -> Quanta {
-    let state = &mut sides[side.index()];
-    let emission = if emits { Quanta(state.emission.map(|e| e as i64)) } else { Quanta::ZERO };
-    books.balance.emitted += emission;
-    std::mem::take(&mut state.unshot) + emission
 }
 
 /// A side receives power, absorbs some and keeps the rest to send it on.
 #[inline]
 fn give(
     model: &Model,
-    sides: &mut [SideState],
-    books: &mut Books,
+    ledger: &Ledger,
+    unshot: &mut [Quanta],
+    balance: &mut Balance,
     (side, triangle): (SideId, TriangleId),
     power: Quanta,
 ) {
-    books.received.add(side, power);
+    ledger.give(side, power, ledger.squares(power));
     let reflected = power.scaled(model.scene.material(triangle).reflectance);
-    sides[side.index()].unshot += reflected;
-    books.balance.absorbed += power - reflected;
+    unshot[side.index()] += reflected;
+    balance.absorbed += power - reflected;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_cover_the_range_evenly() {
+        for lines in [0, 1, 7, 1000, u64::MAX] {
+            for workers in [1, 2, 3, 64] {
+                let mut next = 0;
+                for w in 0..workers {
+                    let part = share(lines, w, workers);
+                    assert_eq!(part.start, next);
+                    assert!((part.end - part.start).abs_diff(lines / workers) <= 1);
+                    next = part.end;
+                }
+                assert_eq!(next, lines);
+            }
+        }
+    }
 }

@@ -14,14 +14,25 @@ impl Quanta {
     /// No power.
     pub const ZERO: Self = Self([0; 3]);
 
-    /// This power times a fraction per band, to the nearest quantum. Not for negative power.
+    /// This power times a fraction per band, to the nearest quantum, halves away from zero.
     #[inline]
     #[must_use]
     pub fn scaled(self, fraction: Rgb) -> Self {
         let f = fraction.to_array();
-        Self(std::array::from_fn(|k| (self.0[k] as f64 * f[k] + 0.5) as i64))
+        Self(std::array::from_fn(|k| {
+            let exact = self.0[k] as f64 * f[k];
+            (exact + 0.5_f64.copysign(exact)) as i64
+        }))
     }
 
+    /// This power so many times; saturates.
+    #[inline]
+    #[must_use]
+    pub fn times(self, count: i64) -> Self {
+        Self(self.0.map(|q| q.saturating_mul(count)))
+    }
+
+    #[inline]
     fn zip(self, other: Self, op: impl Fn(i64, i64) -> i64) -> Self {
         Self(std::array::from_fn(|k| op(self.0[k], other.0[k])))
     }
@@ -70,6 +81,11 @@ impl PowerUnit {
         Self { quantum: 2f64.powi((exponent - 62).max(-1000)) }
     }
 
+    /// The unit with this many watts per quantum.
+    pub(crate) fn of_quantum(quantum: f64) -> Self {
+        Self { quantum }
+    }
+
     /// The nearest whole number of quanta; saturates.
     #[must_use]
     pub fn quanta(self, power: Rgb) -> Quanta {
@@ -108,6 +124,7 @@ mod tests {
     fn scaling_rounds_to_the_nearest_and_sums_saturate() {
         let q = Quanta([10, 7, 0]);
         assert_eq!(q.scaled(Rgb::new(0.25, 0.5, 0.9)), Quanta([3, 4, 0]));
+        assert_eq!(Quanta([-10, -7, 0]).scaled(Rgb::new(0.25, 0.5, 0.9)), Quanta([-3, -4, 0]));
         assert_eq!(Quanta([i64::MAX; 3]) + q, Quanta([i64::MAX; 3]));
     }
 }

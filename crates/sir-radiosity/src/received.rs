@@ -1,20 +1,20 @@
 //! Power received by the sides of patches.
 
 use sha2::{Digest, Sha256};
-use sir_mesh::SideId;
 
-use crate::Quanta;
+use crate::ledger::{visit_floats, visit_quanta};
+use crate::{Quanta, Visitor};
 
-/// Power received per side, and the sum of the squares of what each line brought.
-///
-/// If lines bring the amounts `w` independently, the variance of their sum is estimated by `Σw²` (compound Poisson);
-/// that is where the standard errors of a single run come from.
+/// Power received per side, with its variance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Received {
-    /// Power received, indexed by [`SideId`].
+    /// Power received, indexed by [`SideId`](sir_mesh::SideId).
     pub power: Vec<Quanta>,
-    /// Estimated variance of `power` per band \[quanta²\], indexed by [`SideId`].
-    pub variance: Vec<[f64; 3]>,
+    /// Estimated variance of `power` per band \[quanta²\], indexed by [`SideId`](sir_mesh::SideId).
+    ///
+    /// If lines bring the amounts `w` independently, the variance of their sum is about `Σw²` (compound Poisson): that
+    /// is where the standard errors of a single run come from.
+    pub variance: Vec<[f32; 3]>,
 }
 
 impl Received {
@@ -22,16 +22,6 @@ impl Received {
     #[must_use]
     pub fn nothing(sides: usize) -> Self {
         Self { power: vec![Quanta::ZERO; sides], variance: vec![[0.0; 3]; sides] }
-    }
-
-    /// A line brings power to a side.
-    #[inline]
-    pub fn add(&mut self, side: SideId, power: Quanta) {
-        self.power[side.index()] += power;
-        let variance = &mut self.variance[side.index()];
-        for (v, p) in variance.iter_mut().zip(power.0) {
-            *v += p as f64 * p as f64;
-        }
     }
 
     /// SHA-256 of the tallies in hexadecimal: the same for the same result, on any machine.
@@ -44,5 +34,10 @@ impl Received {
             }
         }
         hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    pub(crate) fn visit(&mut self, visitor: &mut dyn Visitor) {
+        visit_quanta(&mut self.power, visitor);
+        visit_floats(&mut self.variance, visitor);
     }
 }

@@ -22,7 +22,7 @@ impl Solution {
         model.mesh.for_each_side(|triangle, _, _, side| {
             let per_area = 1.0 / model.mesh.patch_area(triangle);
             solution.irradiance.push(unit.watts(received.power[side.index()]) * per_area);
-            let deviation = received.variance[side.index()].map(|v| v.sqrt() * unit.quantum());
+            let deviation = received.variance[side.index()].map(|v| f64::from(v).sqrt() * unit.quantum());
             solution.error.push(Rgb::from_array(deviation) * per_area);
         });
         solution

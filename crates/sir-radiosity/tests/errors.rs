@@ -10,7 +10,7 @@
 
 mod common;
 
-use common::{grey, scene, shoot, solve};
+use common::{TRANSPORTS, grey, scene, shoot};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
@@ -71,8 +71,11 @@ fn errors_of_many_patches_are_honest() {
     for (what, model) in
         [("furnace", furnace(Subdivision::Patches(600))), ("lamp", lamp(Subdivision::Patches(600)))]
     {
-        let runs: Vec<_> = (1..=40).map(|seed| solve(&model, LINES, seed).solution).collect();
-        assert_honest(what, &runs, 1.0, 0.03);
+        for (way, transport) in TRANSPORTS {
+            let run = |seed| transport(&model, shoot(&model, LINES, seed), LINES, seed).solution;
+            let runs: Vec<_> = (1..=40).map(run).collect();
+            assert_honest(&format!("{what}, {way}"), &runs, 1.0, 0.03);
+        }
         let runs: Vec<_> = (1..=40).map(|seed| shoot(&model, LINES, seed).solution(&model)).collect();
         assert_honest(&format!("{what}, direct light"), &runs, 1.0, 0.03);
     }
@@ -85,8 +88,11 @@ fn errors_of_few_patches_are_not_too_small() {
     let (f, rho) = (0.2, 0.9);
     let least = f64::sqrt(1.0 - f) / (1.0 + rho * f);
     for (what, model) in [("furnace", furnace(Subdivision::PerFace)), ("lamp", lamp(Subdivision::PerFace))] {
-        let runs: Vec<_> = (1..=150).map(|seed| solve(&model, LINES, seed).solution).collect();
-        assert_honest(&format!("{what} of six patches"), &runs, least, 0.08);
+        for (way, transport) in TRANSPORTS {
+            let run = |seed| transport(&model, shoot(&model, LINES, seed), LINES, seed).solution;
+            let runs: Vec<_> = (1..=150).map(run).collect();
+            assert_honest(&format!("{what} of six patches, {way}"), &runs, least, 0.08);
+        }
     }
 }
 
@@ -95,13 +101,9 @@ fn errors_of_few_patches_are_not_too_small() {
 #[test]
 fn noise_of_the_first_shot_that_is_reflected_can_be_left_out() {
     let model = lamp(Subdivision::Patches(600));
-    let run = |seed| {
-        let domain = sir_lines::Domain::Sphere(model.scene.bounding_sphere());
-        let settings = sir_radiosity::MultipathSettings::new(50_000, domain);
-        let mut multipath = sir_radiosity::Multipath::new(&model, shoot(&model, 5_000, seed), settings, seed);
-        multipath.trace(0..50_000);
-        multipath.finish().unwrap().solution
-    };
-    let runs: Vec<_> = (1..=40).map(run).collect();
-    assert_honest("lamp with a short first shot", &runs, 1.0, 0.03);
+    for (way, transport) in TRANSPORTS {
+        let run = |seed| transport(&model, shoot(&model, 5_000, seed), 50_000, seed).solution;
+        let runs: Vec<_> = (1..=40).map(run).collect();
+        assert_honest(&format!("lamp with a short first shot, {way}"), &runs, 1.0, 0.03);
+    }
 }

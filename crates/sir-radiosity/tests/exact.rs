@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Estimate, add_polygon, add_sphere, case, grey, per_face, reference, runs};
+use common::{Estimate, TRANSPORTS, add_polygon, add_sphere, case, grey, per_face, reference, runs};
 use glam::DVec3;
 use serde_json::Value;
 use sir_geom::shapes::Facing;
@@ -36,11 +36,15 @@ fn enclosure(name: &str) {
             add_polygon(&mut b, surface, m);
         }
         let model = Model::new(b.build().unwrap().scene, Subdivision::PerTriangle).unwrap();
-        let runs = runs(&model, 1_000_000, RUNS);
-        for band in 0..3 {
-            for face in 0..runs[0].len() {
-                Estimate::of(runs.iter().map(|r| r[face][band]))
-                    .assert_is(exact(rho[band]), &format!("{name}, ρ = {}, face {face}", rho[band]));
+        for (way, transport) in TRANSPORTS {
+            let runs = runs(&model, transport, 1_000_000, RUNS);
+            for band in 0..3 {
+                for face in 0..runs[0].len() {
+                    Estimate::of(runs.iter().map(|r| r[face][band])).assert_is(
+                        exact(rho[band]),
+                        &format!("{way}, {name}, ρ = {}, face {face}", rho[band]),
+                    );
+                }
             }
         }
     }
@@ -74,10 +78,13 @@ fn concentric_spheres() {
             let m = b.add_material(grey(of("M"), of("rho")));
             add_sphere(&mut b, number(&radii[format!("r{k}")]), 1, facing, &[(180, m)]);
         }
-        let runs = runs(&per_face(b), 500_000, RUNS);
-        for (face, name) in ["B1", "B2"].iter().enumerate() {
-            Estimate::of(runs.iter().map(|r| r[face].x))
-                .assert_is(number(&c["values"][name]), &format!("{id} {name}"));
+        let model = per_face(b);
+        for (way, transport) in TRANSPORTS {
+            let runs = runs(&model, transport, 500_000, RUNS);
+            for (face, name) in ["B1", "B2"].iter().enumerate() {
+                Estimate::of(runs.iter().map(|r| r[face].x))
+                    .assert_is(number(&c["values"][name]), &format!("{way}, {id} {name}"));
+            }
         }
     }
 }
@@ -101,11 +108,14 @@ fn sphere_interior_with_uneven_emission() {
             .collect();
         // Facets five degrees wide change the irradiance by 0.02 to 0.1 %, more than the standard errors.
         add_sphere(&mut b, number(&c["geometry"]["parameters"]["R"]), 2, Facing::Inward, &zones);
-        let runs = runs(&per_face(b), 500_000, RUNS);
-        for zone in 0..3 {
-            let name = format!("B zone {}", zone + 1);
-            Estimate::of(runs.iter().map(|r| r[zone].x))
-                .assert_is(number(&c["values"][&name]), &format!("{id} {name}"));
+        let model = per_face(b);
+        for (way, transport) in TRANSPORTS {
+            let runs = runs(&model, transport, 500_000, RUNS);
+            for zone in 0..3 {
+                let name = format!("B zone {}", zone + 1);
+                Estimate::of(runs.iter().map(|r| r[zone].x))
+                    .assert_is(number(&c["values"][&name]), &format!("{way}, {id} {name}"));
+            }
         }
     }
 }
@@ -123,11 +133,14 @@ fn boxes_with_one_patch_per_face() {
             let m = b.add_material(grey(number(&inputs["M"]), number(&inputs["rho"])));
             add_polygon(&mut b, s, m);
         }
-        let runs = runs(&per_face(b), 500_000, RUNS);
-        for (face, s) in surfaces.iter().enumerate() {
-            let name = s["name"].as_str().unwrap();
-            Estimate::of(runs.iter().map(|r| r[face].x))
-                .assert_is(number(&c["values"]["B"][name]), &format!("{id} {name}"));
+        let model = per_face(b);
+        for (way, transport) in TRANSPORTS {
+            let runs = runs(&model, transport, 500_000, RUNS);
+            for (face, s) in surfaces.iter().enumerate() {
+                let name = s["name"].as_str().unwrap();
+                Estimate::of(runs.iter().map(|r| r[face].x))
+                    .assert_is(number(&c["values"]["B"][name]), &format!("{way}, {id} {name}"));
+            }
         }
     }
 }

@@ -10,7 +10,9 @@ use sir_geom::shapes::Facing;
 use sir_geom::{Material, MaterialId, Rgb, Scene, SceneBuilder, Side};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
-use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings, Shot, Transported};
+use sir_radiosity::{
+    Batches, Books, FirstShot, Model, Multipath, MultipathSettings, Shot, Totals, Transported,
+};
 
 /// The exact answers: see `tests/reference/README.md`.
 pub(crate) fn reference(file: &str) -> Value {
@@ -80,19 +82,52 @@ pub(crate) fn grey(m: f64, rho: f64) -> Material {
 
 pub(crate) fn shoot(model: &Model, lines: u64, seed: u64) -> Shot {
     let shot = FirstShot::new(model, lines, seed).unwrap();
-    let mut tally = shot.tally();
-    shot.trace(0..lines, &mut tally);
-    shot.finish(tally).unwrap()
+    let (tally, mut books) = (shot.tally(), Books::default());
+    shot.trace(0..lines, &tally, &mut books);
+    shot.finish(tally, books).unwrap()
 }
 
-/// First shot and multipath with this number of lines each.
-pub(crate) fn solve(model: &Model, lines: u64, seed: u64) -> Transported {
-    let domain = Domain::Sphere(model.scene.bounding_sphere());
+/// Transports the light of a first shot; takes the number of lines and the seed.
+pub(crate) type Transport = fn(&Model, Shot, u64, u64) -> Transported;
+
+/// Both transports, and what to call them.
+pub(crate) const TRANSPORTS: [(&str, Transport); 2] = [("batches", batches), ("multipath", multipath)];
+
+/// Frozen batches.
+pub(crate) fn batches(model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
+    let mut transport = Batches::new(model, shot, lines, domain(model), seed);
+    let mut books = Books::default();
+    loop {
+        transport.parts(3).for_each(|mut part| part.open());
+        transport.trace(transport.lines(), &mut books);
+        let mut totals = Totals::default();
+        transport.parts(2).for_each(|mut part| totals += part.close());
+        if !transport.advance(totals) {
+            return transport.finish(books).unwrap();
+        }
+    }
+}
+
+/// Multipath in one replica.
+pub(crate) fn multipath(model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
     // A long tail: what is left unshot must be far below standard errors of some 0.01 %.
-    let settings = MultipathSettings { tail: 3 * (lines / 10), ..MultipathSettings::new(lines, domain) };
-    let mut multipath = Multipath::new(model, shoot(model, lines, seed), settings, seed);
-    multipath.trace(0..lines);
-    multipath.finish().unwrap()
+    let settings =
+        MultipathSettings { tail: 3 * (lines / 10), ..MultipathSettings::new(lines, domain(model)) };
+    replicas(model, shot, settings, seed)
+}
+
+/// Multipath in any number of replicas.
+pub(crate) fn replicas(model: &Model, shot: Shot, settings: MultipathSettings, seed: u64) -> Transported {
+    let transport = Multipath::new(model, shot, settings, seed);
+    let mut books = Books::default();
+    for number in 0..settings.replicas {
+        transport.trace(&mut transport.replica(number), u64::MAX, &mut books);
+    }
+    transport.finish(books).unwrap()
+}
+
+pub(crate) fn domain(model: &Model) -> Domain {
+    Domain::Sphere(model.scene.bounding_sphere())
 }
 
 /// Radiosity of every material: the area-weighted mean of its fronts.
@@ -138,9 +173,10 @@ impl Estimate {
     }
 }
 
-/// Independent runs of a model: the radiosities of its materials, per run.
-pub(crate) fn runs(model: &Model, lines: u64, count: u64) -> Vec<Vec<Rgb>> {
-    (1..=count).map(|seed| radiosities(model, &solve(model, lines, seed))).collect()
+/// Independent runs of a model, with this number of lines in both stages: the radiosities of its materials, per run.
+pub(crate) fn runs(model: &Model, transport: Transport, lines: u64, count: u64) -> Vec<Vec<Rgb>> {
+    let one = |seed| radiosities(model, &transport(model, shoot(model, lines, seed), lines, seed));
+    (1..=count).map(one).collect()
 }
 
 /// One patch per face.

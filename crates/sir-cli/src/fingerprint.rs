@@ -1,0 +1,51 @@
+//! A number that tells scenes, pipelines and programs apart.
+
+use sha2::{Digest, Sha256};
+use sir_geom::Sides;
+use sir_radiosity::Model;
+
+use crate::pipeline::Pipeline;
+
+/// Name and version of this program.
+pub(crate) const PROGRAM: &str = concat!("sir ", env!("CARGO_PKG_VERSION"));
+
+/// A SHA-256.
+pub(crate) type Fingerprint = [u8; 32];
+
+/// Of everything that decides the result of a run: equal for equal results.
+pub(crate) fn of_run(pipeline: &Pipeline, seed: u64, model: &Model) -> Fingerprint {
+    let mut hash = Sha256::new();
+    hash.update(PROGRAM);
+    hash.update(seed.to_le_bytes());
+    hash.update((pipeline.text.len() as u64).to_le_bytes());
+    hash.update(&pipeline.text);
+    hash.update(of_scene(model));
+    hash.finalize().into()
+}
+
+/// Of the surfaces of a scene and their patches.
+pub(crate) fn of_scene(model: &Model) -> Fingerprint {
+    let Model { scene, mesh, .. } = model;
+    let mut hash = Sha256::new();
+    let mut number = |n: u64| hash.update(n.to_le_bytes());
+    number(scene.vertices().len() as u64);
+    for vertex in scene.vertices() {
+        vertex.to_array().iter().for_each(|x| number(x.to_bits()));
+    }
+    for triangle in scene.triangles() {
+        triangle.vertices.iter().for_each(|v| number(v.0.into()));
+        number(triangle.material.0.into());
+    }
+    for material in scene.materials() {
+        let colours = [material.reflectance, material.exitance];
+        colours.iter().flat_map(|c| c.to_array()).for_each(|x| number(x.to_bits()));
+        number(u64::from(material.sides == Sides::Both) + 2 * u64::from(material.back_emits));
+    }
+    number(mesh.patch_count() as u64);
+    hash.finalize().into()
+}
+
+/// In hexadecimal.
+pub(crate) fn hex(fingerprint: Fingerprint) -> String {
+    fingerprint.iter().map(|byte| format!("{byte:02x}")).collect()
+}

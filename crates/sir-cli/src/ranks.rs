@@ -1,0 +1,36 @@
+//! What the ranks of a run have to agree on.
+
+use sir_parallel::Communicator;
+
+use crate::Error;
+use crate::fingerprint::Fingerprint;
+
+/// Lets all ranks fail if one does. The first of those that failed keeps its error, to say it; the others know who does.
+pub(crate) fn agree<T>(comm: &dyn Communicator, outcome: Result<T, Error>) -> Result<T, Error> {
+    let Some(rank) = comm.first_failed(outcome.is_err()) else { return outcome };
+    let mine = outcome.err().filter(|_| rank == comm.rank());
+    let mut code = [mine.as_ref().map_or(0, |error| error.exit_code().into())];
+    comm.sum(&mut code);
+    Err(mine.unwrap_or(Error::Elsewhere { rank, code: code[0] as u8 }))
+}
+
+/// Checks that all ranks are to compute the same.
+pub(crate) fn same_everywhere(comm: &dyn Communicator, fingerprint: Fingerprint) -> Result<(), Error> {
+    let mut first: [i64; 32] = fingerprint.map(i64::from);
+    comm.broadcast(&mut first);
+    if first == fingerprint.map(i64::from) {
+        return Ok(());
+    }
+    Err(Error::OtherInput { rank: comm.rank() })
+}
+
+/// A text of the first rank, for all.
+pub(crate) fn broadcast_text(comm: &dyn Communicator, text: &str) -> String {
+    let mut length = [text.len() as i64];
+    comm.broadcast(&mut length);
+    let mut words: Vec<i64> = text.bytes().map(i64::from).collect();
+    words.resize(length[0] as usize, 0);
+    comm.broadcast(&mut words);
+    let bytes: Vec<u8> = words.into_iter().map(|word| word as u8).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}

@@ -1,0 +1,283 @@
+//! Checkpoints: the state of a run in a file, from which it can go on.
+//!
+//! A file has a line of text with the version of its layout, a line with the *head*, which means something to the caller
+//! only, the state of a stage as 64-bit little-endian numbers, and the SHA-256 of all of this. It says nothing about threads
+//! and ranks, because no state depends on how many there are.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use sha2::{Digest, Sha256};
+use sir_radiosity::Visitor;
+
+use crate::{CheckpointError, Communicator};
+
+/// First line of a checkpoint: what it is, and the version of its layout.
+const MAGIC: &str = "SIR checkpoint 1";
+
+/// Work that is worth a checkpoint at the end of a stage.
+const AT_THE_END: Duration = Duration::from_secs(30);
+
+/// Length of a SHA-256.
+const HASH: usize = 32;
+
+/// Where and how often the state of a run is saved.
+#[derive(Clone, Debug)]
+pub struct Checkpoints {
+    path: PathBuf,
+    every: Duration,
+    head: String,
+    last: Instant,
+}
+
+/// A checkpoint that was read, up to the state of its stage.
+#[derive(Debug)]
+pub struct Saved {
+    path: PathBuf,
+    head: String,
+    words: Option<BufReader<io::Take<File>>>,
+}
+
+impl Checkpoints {
+    /// Saves to this file; `every` is the time from one checkpoint to the next.
+    #[must_use]
+    pub fn new(path: PathBuf, every: Duration) -> Self {
+        Self { path, every, head: String::new(), last: Instant::now() }
+    }
+
+    /// Sets what the next checkpoints tell the caller: a text without line breaks.
+    pub fn set_head(&mut self, head: String) {
+        debug_assert!(!head.contains('\n'));
+        self.head = head;
+    }
+
+    /// Saves that nothing has been done yet. Only the first rank writes.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub fn save_start(&mut self, comm: &dyn Communicator) -> Result<(), CheckpointError> {
+        self.save(comm, &mut |_| {})
+    }
+
+    /// Whether the state should be saved now.
+    pub(crate) fn are_due(&self) -> bool {
+        self.last.elapsed() >= self.every
+    }
+
+    /// Whether the state should be saved now that a stage is done.
+    pub(crate) fn are_late(&self) -> bool {
+        self.last.elapsed() >= self.every.min(AT_THE_END)
+    }
+
+    /// Saves the state that `show` shows. All ranks take part; the first one writes, and if it fails, all do.
+    pub(crate) fn save(
+        &mut self,
+        comm: &dyn Communicator,
+        show: &mut dyn FnMut(&mut dyn Visitor),
+    ) -> Result<(), CheckpointError> {
+        let part = self.path.with_extension("part");
+        // After a failure the other ranks must still be served.
+        let writer = comm.is_first().then(|| Writer::create(&part, &self.head));
+        let mut saver = Saver { comm, writer, words: Vec::new() };
+        show(&mut saver);
+        let written = match saver.writer {
+            Some(writer) => writer.and_then(Writer::finish).and_then(|()| replace(&part, &self.path)),
+            None => Ok(()),
+        };
+        self.last = Instant::now();
+        let written = written.map_err(|source| {
+            let _ = std::fs::remove_file(&part);
+            CheckpointError::Write { path: self.path.clone(), source }
+        });
+        agree(comm, written)
+    }
+}
+
+/// Puts a new file in an old one's place.
+fn replace(new: &Path, old: &Path) -> io::Result<()> {
+    std::fs::rename(new, old)?;
+    // The new name is on disk when its folder is; not all systems let one say so.
+    if let Some(folder) = old.parent().and_then(|folder| File::open(folder).ok()) {
+        let _ = folder.sync_all();
+    }
+    Ok(())
+}
+
+/// Lets all ranks fail if one does.
+fn agree(comm: &dyn Communicator, outcome: Result<(), CheckpointError>) -> Result<(), CheckpointError> {
+    match comm.first_failed(outcome.is_err()) {
+        Some(rank) if outcome.is_ok() => Err(CheckpointError::Elsewhere { rank }),
+        _ => outcome,
+    }
+}
+
+/// A new file and the hash of what has been written to it.
+struct Writer {
+    file: BufWriter<File>,
+    hash: Sha256,
+}
+
+impl Writer {
+    fn create(path: &Path, head: &str) -> io::Result<Self> {
+        let mut writer = Self { file: BufWriter::new(File::create(path)?), hash: Sha256::new() };
+        writer.write(format!("{MAGIC}\n{head}\n").as_bytes())?;
+        Ok(writer)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.hash.update(bytes);
+        self.file.write_all(bytes)
+    }
+
+    /// Makes sure that everything is on disk.
+    fn finish(self) -> io::Result<()> {
+        let Self { mut file, hash } = self;
+        file.write_all(&hash.finalize())?;
+        file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+    }
+}
+
+/// Saves a state, added up over all ranks, and leaves it as it is.
+struct Saver<'a> {
+    comm: &'a dyn Communicator,
+    /// Of the first rank, which writes until something fails.
+    writer: Option<io::Result<Writer>>,
+    words: Vec<i64>,
+}
+
+impl Visitor for Saver<'_> {
+    fn sum(&mut self, words: &mut [i64]) {
+        let mut sums = std::mem::take(&mut self.words);
+        sums.clear();
+        sums.extend_from_slice(words);
+        self.comm.sum(&mut sums);
+        self.same(&mut sums);
+        self.words = sums;
+    }
+
+    fn same(&mut self, words: &mut [i64]) {
+        if let Some(Ok(writer)) = &mut self.writer {
+            let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+            if let Err(error) = writer.write(&bytes) {
+                self.writer = Some(Err(error));
+            }
+        }
+    }
+}
+
+impl Saved {
+    /// Reads a checkpoint up to its head, and checks that all of it is what was written.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read, is damaged, or has another layout.
+    pub fn open(path: &Path) -> Result<Self, CheckpointError> {
+        let unfit = |why: &str| CheckpointError::Unfit { path: path.to_owned(), why: why.into() };
+        let read = |source| CheckpointError::Read { path: path.to_owned(), source };
+        let length = std::fs::metadata(path).map_err(read)?.len();
+        let Some(content) = length.checked_sub(HASH as u64) else { return Err(unfit("it is too short")) };
+
+        let mut file = BufReader::new(File::open(path).map_err(read)?);
+        let mut first = String::new();
+        let known = file.by_ref().take(64).read_line(&mut first).is_ok() && first.trim_end() == MAGIC;
+        if !known {
+            return Err(unfit(&format!(
+                "it does not begin with \"{MAGIC}\"; another version may have written it"
+            )));
+        }
+        let mut file = File::open(path).map_err(read)?;
+        let mut hash = Sha256::new();
+        io::copy(&mut Read::by_ref(&mut file).take(content), &mut HashWriter(&mut hash)).map_err(read)?;
+        let mut expected = [0; HASH];
+        file.read_exact(&mut expected).map_err(read)?;
+        if *hash.finalize() != expected {
+            return Err(unfit("its content is damaged"));
+        }
+
+        let mut words = BufReader::new(File::open(path).map_err(read)?.take(content));
+        let (mut first, mut head) = (String::new(), String::new());
+        words.read_line(&mut first).and_then(|_| words.read_line(&mut head)).map_err(read)?;
+        Ok(Self { path: path.to_owned(), head: head.trim_end().to_owned(), words: Some(words) })
+    }
+
+    /// A checkpoint as ranks other than the first have it: the first one reads for all.
+    #[must_use]
+    pub fn elsewhere() -> Self {
+        Self { path: PathBuf::new(), head: String::new(), words: None }
+    }
+
+    /// What the caller wanted to be told.
+    #[must_use]
+    pub fn head(&self) -> &str {
+        &self.head
+    }
+
+    /// Restores the state that `show` shows. All ranks take part, the first one reads.
+    pub(crate) fn restore(
+        self,
+        comm: &dyn Communicator,
+        show: &mut dyn FnMut(&mut dyn Visitor),
+    ) -> Result<(), CheckpointError> {
+        let mut restorer = Restorer { comm, words: self.words, outcome: Ok(()) };
+        show(&mut restorer);
+        let left = restorer.words.as_mut().map_or(Ok(0), |words| words.read(&mut [0]));
+        let outcome = match (restorer.outcome, left) {
+            (Ok(()), Ok(0)) => Ok(()),
+            (Err(source), _) | (_, Err(source)) if source.kind() != io::ErrorKind::UnexpectedEof => {
+                Err(CheckpointError::Read { path: self.path, source })
+            }
+            _ => {
+                let why = "it is of another stage, scene or pipeline".into();
+                Err(CheckpointError::Unfit { path: self.path, why })
+            }
+        };
+        agree(comm, outcome)
+    }
+}
+
+struct HashWriter<'a>(&'a mut Sha256);
+
+impl Write for HashWriter<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Puts back a state that was saved: sums to the first rank, what all ranks have alike to all.
+struct Restorer<'a> {
+    comm: &'a dyn Communicator,
+    /// Only the first rank reads.
+    words: Option<BufReader<io::Take<File>>>,
+    outcome: io::Result<()>,
+}
+
+impl Visitor for Restorer<'_> {
+    fn sum(&mut self, words: &mut [i64]) {
+        words.fill(0);
+        if let (Some(reader), Ok(())) = (&mut self.words, &self.outcome) {
+            for word in words {
+                let mut bytes = [0; 8];
+                match reader.read_exact(&mut bytes) {
+                    Ok(()) => *word = i64::from_le_bytes(bytes),
+                    Err(error) => {
+                        self.outcome = Err(error);
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    fn same(&mut self, words: &mut [i64]) {
+        self.sum(words);
+        self.comm.broadcast(words);
+    }
+}

@@ -1,0 +1,393 @@
+//! Frozen batches: global lines pass on what the batch before them has brought.
+//!
+//! While the lines of a batch are traced, what each side sends with a line is fixed, and what they bring is only added up;
+//! the next batch sends it on. So the lines of a batch may be traced in any order and by any number of workers, and the
+//! result does not depend on it. It is stochastic iteration (Szirmay-Kalos 1999, *Stochastic iteration for
+//! non-diffuse global illumination*) along global lines, with three refinements:
+//!
+//! * *Nothing is lost.* A side that holds the power `U` and expects `n` lines of a batch sends `U/(n+1)` with each, and
+//!   what `c` lines did not take, `U − cU/(n+1)`, stays for the next batch. Of all shares `U/q` this one leaves the
+//!   smallest mean square: `E(1 − c/q)²` for a Poisson number `c` has its minimum, `1/(n+1)`, at `q = n+1`.
+//!   If `c` is large, what stays is negative, and takes back what was sent too much.
+//! * *Lines go where the power is.* The sources are sent out in `K` equal parts with the first `K` batches, and the number
+//!   of lines of a batch is in proportion to the power that it sends.
+//! * *The tail is stretched.* What is still unshot at the end would be received much as was the power sent after the sources
+//!   had ceased. Let there have been `L₀` unshot at that time and `L` at the end: then the power received since is
+//!   multiplied by `1 + L/(L₀ − L)`, so that all power is accounted for.
+
+use std::ops::{AddAssign, Range};
+
+use sir_geom::TriangleId;
+use sir_lines::{Domain, Stage, Streams};
+use sir_mesh::SideId;
+
+use crate::global;
+use crate::ledger::{Counters, Ledger, SquareUnit, visit_floats, visit_quanta};
+use crate::segments::End;
+use crate::state::{visit_counts, visit_float};
+use crate::{
+    Balance, Books, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Transported, Visitor,
+};
+
+/// Most parts in which the sources are sent out.
+///
+/// More parts spread the light of a source over more lines, to a limit that is nearly reached with 16, and cost an exchange
+/// between ranks each.
+const MOST_PARTS: u64 = 16;
+
+/// Crossings of a typical patch that a batch should have at least, for what it holds not to be mere chance.
+const CROSSINGS_PER_PART: f64 = 8.0;
+
+/// Share of the sources' power below which the unshot is not worth another batch.
+const NEGLIGIBLE: f64 = 1e-5;
+
+/// Largest share of the power unshot when the sources had ceased that may be left for the tail to be stretched.
+const STRETCHABLE: f64 = 0.9;
+
+/// A transport of power along global lines in frozen batches.
+#[derive(Debug)]
+pub struct Batches<'m> {
+    model: &'m Model,
+    domain: Domain,
+    streams: Streams,
+    /// What the lines of this batch bring, and the share of its power that each side sends with a line.
+    ledger: Ledger,
+    /// Power received before this batch.
+    received: Received,
+    /// Power that sides hold.
+    unshot: Vec<Quanta>,
+    /// While the sources are sent out, the reflected direct power; afterwards, the power received before.
+    noted: Vec<[f32; 3]>,
+    unit: PowerUnit,
+    plan: Plan,
+}
+
+/// What is known of all batches so far, and follows for the next one.
+#[derive(Clone, Copy, Debug)]
+struct Plan {
+    /// Lines of all batches together.
+    lines: u64,
+    /// The lines of this batch.
+    batch: [u64; 2],
+    /// Its number.
+    number: u64,
+    /// Parts in which the sources are sent out.
+    parts: u64,
+    /// Lines that cross a typical patch once.
+    least: u64,
+    /// Reflected power per power sent in the first shot.
+    guess: f64,
+    /// Reflected direct power, in all.
+    source: Quanta,
+    /// Unshot power when the sources had ceased.
+    ceased: Quanta,
+    /// Sums over all batches so far; `unshot` is that of now.
+    totals: Totals,
+}
+
+/// Sums over sides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Totals {
+    unshot: Quanta,
+    sent: Quanta,
+    reflected: Quanta,
+    absorbed: Quanta,
+}
+
+impl AddAssign for Totals {
+    fn add_assign(&mut self, other: Self) {
+        self.unshot += other.unshot;
+        self.sent += other.sent;
+        self.reflected += other.reflected;
+        self.absorbed += other.absorbed;
+    }
+}
+
+/// Some consecutive sides between two batches. All parts together have all sides, and may be worked on at the same time.
+#[derive(Debug)]
+pub struct Part<'a> {
+    model: &'a Model,
+    domain: Domain,
+    ledger: &'a Ledger,
+    plan: Plan,
+    first: u32,
+    power: &'a mut [Quanta],
+    unshot: &'a mut [Quanta],
+    noted: &'a mut [[f32; 3]],
+}
+
+impl<'m> Batches<'m> {
+    /// Prepares the transport of the reflected direct power of a first shot along `lines` lines.
+    #[must_use]
+    pub fn new(model: &'m Model, shot: Shot, lines: u64, domain: Domain, seed: u64) -> Self {
+        let Shot { received, unit, balance, .. } = shot;
+        let sides = model.mesh.side_count();
+        let (mut unshot, mut noted) = (Vec::with_capacity(sides), Vec::with_capacity(sides));
+        let mut source = Quanta::ZERO;
+        let forecast = domain.forecast(lines);
+        let (mut area, mut square, mut most, mut brightest) = (0.0, 0.0, 0.0, [0.0; 3]);
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let reflectance = model.scene.material(triangle).reflectance;
+            let reflected = received.power[side.index()].scaled(reflectance);
+            source += reflected;
+            unshot.push(reflected);
+            noted.push(reflected.0.map(|q| q as f32));
+            let a = model.mesh.patch_area(triangle);
+            (area, square) = (area + a, square + a * a);
+            let crossings = forecast.crossings(a);
+            most = f64::max(most, crossings);
+            for band in 0..3 {
+                // All light that a side reflects, if what it sees is as bright, over all its crossings.
+                let share = reflected.0[band] as f64 / (1.0 - reflectance[band]) / crossings;
+                brightest[band] = f64::max(brightest[band], share);
+            }
+        });
+        let ledger = Ledger::new(sides, SquareUnit::new(brightest, most));
+        let least = (domain.surface() * area / (2.0 * square)).ceil();
+        let parts = (lines as f64 / least / CROSSINGS_PER_PART) as u64;
+        let plan = Plan {
+            lines,
+            batch: [0; 2],
+            number: 0,
+            parts: parts.clamp(1, MOST_PARTS),
+            least: least as u64,
+            guess: sum(balance.unshot) / sum(balance.emitted).max(1.0),
+            source,
+            ceased: Quanta::ZERO,
+            totals: Totals { unshot: source, ..Totals::default() },
+        };
+        let plan = Plan { batch: [0, plan.next_lines()], ..plan };
+        let streams = Streams::new(seed, Stage::GLOBAL);
+        Self { model, domain, streams, ledger, received, unshot, noted, unit, plan }
+    }
+
+    /// The lines of the current batch. Each of them is traced once, by whomever, when all parts have been
+    /// [opened](Part::open).
+    #[must_use]
+    pub fn lines(&self) -> Range<u64> {
+        self.plan.batch[0]..self.plan.batch[1]
+    }
+
+    /// Number of the current batch, from 0; at the end, that of the last one.
+    #[must_use]
+    pub fn number(&self) -> u64 {
+        self.plan.number
+    }
+
+    /// Traces some lines of the current batch.
+    pub fn trace(&self, lines: Range<u64>, books: &mut Books) {
+        let Books { balance, counts } = books;
+        let ledger = &self.ledger;
+        let leave = |side: SideId| {
+            ledger.leave(side);
+            ledger.share(side)
+        };
+        let give = |side, power| ledger.give(side, power, ledger.squares(power));
+        global::trace(self.model, &self.domain, &self.streams, lines, counts, |_, segment| {
+            match (segment.from, segment.to) {
+                (End::Side(i, _), End::Side(j, _)) => {
+                    let (from_i, from_j) = (leave(i), leave(j));
+                    give(j, from_i);
+                    give(i, from_j);
+                }
+                (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
+                    balance.escaped += leave(i);
+                }
+                (End::Side(i, _), End::Inactive) | (End::Inactive, End::Side(i, _)) => {
+                    balance.blocked += leave(i);
+                }
+                _ => {}
+            }
+        });
+    }
+
+    /// Cuts the sides into at most `count` parts.
+    pub fn parts(&mut self, count: usize) -> impl Iterator<Item = Part<'_>> {
+        let Self { model, domain, ref ledger, ref mut received, ref mut unshot, ref mut noted, plan, .. } =
+            *self;
+        let size = unshot.len().div_ceil(count.max(1)).max(1);
+        let slices = received.power.chunks_mut(size).zip(unshot.chunks_mut(size)).zip(noted.chunks_mut(size));
+        slices.enumerate().map(move |(i, ((power, unshot), noted))| {
+            let first = (i * size) as u32;
+            Part { model, domain, ledger, plan, first, power, unshot, noted }
+        })
+    }
+
+    /// Goes on to the next batch, when all lines of the current one are traced and all parts have been
+    /// [closed](Part::close). Returns whether there is one.
+    pub fn advance(&mut self, closed: Totals) -> bool {
+        let plan = &mut self.plan;
+        plan.totals += closed;
+        plan.totals.unshot = closed.unshot;
+        let [_, end] = plan.batch;
+        if end >= plan.lines {
+            return false;
+        }
+        plan.number += 1;
+        if plan.number == plan.parts {
+            plan.ceased = plan.totals.unshot;
+        }
+        plan.batch = [end, end];
+        plan.batch[1] += plan.next_lines();
+        true
+    }
+
+    /// Shows what the lines of the current batch have brought to a visitor, as far as the next batch depends on it.
+    pub fn visit_batch(&mut self, visitor: &mut dyn Visitor) {
+        self.ledger.visit(Counters::Batch, visitor);
+    }
+
+    /// Shows what only the standard errors depend on to a visitor.
+    pub fn visit_squares(&mut self, visitor: &mut dyn Visitor) {
+        self.ledger.visit(Counters::Squares, visitor);
+    }
+
+    /// Shows the state of the stage to a visitor.
+    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+        let mut quantum = self.unit.quantum();
+        visit_float(&mut quantum, visitor);
+        self.unit = PowerUnit::of_quantum(quantum);
+        self.plan.visit(visitor);
+        self.ledger.visit_unit(visitor);
+        self.ledger.visit(Counters::All, visitor);
+        self.ledger.visit_shares(visitor);
+        self.received.visit(visitor);
+        visit_quanta(&mut self.unshot, visitor);
+        visit_floats(&mut self.noted, visitor);
+    }
+
+    /// Closes the books when there is no further batch; `books` are those of all workers.
+    ///
+    /// # Errors
+    ///
+    /// If a tally overflowed.
+    pub fn finish(self, books: Books) -> Result<Transported, SolveError> {
+        let Self { model, mut received, ledger, noted, unit, plan, .. } = self;
+        let Books { balance: Balance { blocked, escaped, .. }, counts } = books;
+        let Totals { unshot, absorbed, .. } = plan.totals;
+        let balance = Balance { emitted: plan.source, absorbed, blocked, escaped, unshot };
+        if !balance.closes() {
+            return Err(SolveError::Unbalanced { stage: "multipath" });
+        }
+        ledger.add_variance_to(&mut received);
+        drop(ledger);
+        let stretch = plan.stretch();
+        let mut made_up = Quanta::ZERO;
+        let Received { power, variance } = &mut received;
+        for ((power, variance), noted) in power.iter_mut().zip(variance).zip(&noted) {
+            let mut more = Quanta::ZERO;
+            for band in 0..3 {
+                let all = power.0[band] as f64;
+                let tail = all - f64::from(noted[band]);
+                more.0[band] = (tail * stretch[band]).round() as i64;
+                // Lines bring about the same at all times, so the variance of the tail is in proportion to its power.
+                let share = if all > 0.0 { (tail / all).clamp(0.0, 1.0) } else { 0.0 };
+                let stretched = (1.0 + stretch[band]) * (1.0 + stretch[band]);
+                variance[band] = (f64::from(variance[band]) * (1.0 - share + share * stretched)) as f32;
+            }
+            *power += more;
+            made_up += more;
+        }
+        drop(noted);
+        let solution = Solution::new(model, &received, unit);
+        Ok(Transported { solution, received, unit, balance, counts, made_up })
+    }
+}
+
+impl Plan {
+    /// Share of the sources' power that is kept for later batches.
+    fn withheld(&self) -> f64 {
+        (1.0 - (self.number + 1) as f64 / self.parts as f64).max(0.0)
+    }
+
+    /// How many lines the batch that begins now should have.
+    ///
+    /// Of each unit of power sent, `r` is reflected and has to be sent again. To have the same relative error in all that is
+    /// sent, lines are shared in proportion to power: `1/(1−r)` for each unit held. In the tail the number of lines falls
+    /// off more slowly, with the square root of the power, for less to be left at the end.
+    fn next_lines(&self) -> u64 {
+        let left = self.lines - self.batch[0];
+        let (source, held, sent) = (sum(self.source), sum(self.totals.unshot), sum(self.totals.sent));
+        let r = if sent > 0.0 { sum(self.totals.reflected) / sent } else { self.guess };
+        let r = r.clamp(0.0, 0.999);
+        let sends = |r: f64| 1.0 / (1.0 - r);
+        let in_tail = if self.number < self.parts { source / self.parts as f64 * r * sends(r) } else { held };
+        let still_to_send = held * sends(r) + in_tail * (sends(r.sqrt()) - sends(r));
+        let wanted = left as f64 * (held - self.withheld() * source) / still_to_send;
+        let over = self.number >= self.parts && held <= NEGLIGIBLE * source;
+        let lines = if over || !wanted.is_finite() { left } else { left.min(self.least.max(wanted as u64)) };
+        let lines = if left - lines < self.least { left } else { lines };
+        // Crossings of a side are counted in 32 bits.
+        lines.min(1 << 31)
+    }
+
+    /// What is to be added to the power received in the tail for each unit of it, per band.
+    fn stretch(&self) -> [f64; 3] {
+        std::array::from_fn(|band| {
+            let (before, after) = (self.ceased.0[band] as f64, self.totals.unshot.0[band] as f64);
+            if after > 0.0 && after <= STRETCHABLE * before { after / (before - after) } else { 0.0 }
+        })
+    }
+
+    fn visit(&mut self, visitor: &mut dyn Visitor) {
+        let Self { lines, batch: [start, end], number, parts, least, guess, source, ceased, totals } = self;
+        visit_counts([lines, start, end, number, parts, least], visitor);
+        visit_float(guess, visitor);
+        let Totals { unshot, sent, reflected, absorbed } = totals;
+        for quanta in [source, ceased, unshot, sent, reflected, absorbed] {
+            visitor.same(&mut quanta.0);
+        }
+    }
+}
+
+impl<'a> Part<'a> {
+    /// Sets what the sides of this part send with each line of the batch that begins.
+    pub fn open(&mut self) {
+        let forecast = self.domain.forecast(self.plan.batch[1] - self.plan.batch[0]);
+        let withheld = self.plan.withheld();
+        let ceased = self.plan.number == self.plan.parts;
+        for (triangle, sides) in self.sides() {
+            let lines = forecast.crossings(self.model.mesh.patch_area(triangle)) + 1.0;
+            for i in sides {
+                let k = (i - self.first) as usize;
+                if ceased {
+                    self.noted[k] = self.power[k].0.map(|q| q as f32);
+                }
+                let kept = |band: usize| withheld * f64::from(self.noted[k][band]);
+                let share = |band: usize| (self.unshot[k].0[band] as f64 - kept(band)) / lines;
+                self.ledger.set_share(SideId(i), [0, 1, 2].map(share));
+            }
+        }
+    }
+
+    /// Books what the lines of the batch that ends have brought to the sides of this part, and taken from them.
+    pub fn close(&mut self) -> Totals {
+        let mut totals = Totals::default();
+        for (triangle, sides) in self.sides() {
+            let reflectance = self.model.scene.material(triangle).reflectance;
+            for i in sides {
+                let (side, k) = (SideId(i), (i - self.first) as usize);
+                let (power, crossings) = self.ledger.take(side);
+                let sent = self.ledger.share(side).times(i64::from(crossings));
+                let reflected = power.scaled(reflectance);
+                self.power[k] += power;
+                self.unshot[k] += reflected - sent;
+                totals.unshot += self.unshot[k];
+                totals.sent += sent;
+                totals.reflected += reflected;
+                totals.absorbed += power - reflected;
+            }
+        }
+        totals
+    }
+
+    /// The sides of this part: triangles, and consecutive sides of each.
+    fn sides(&self) -> impl Iterator<Item = (TriangleId, Range<u32>)> + use<'a> {
+        self.model.mesh.sides_within(self.first..self.first + self.unshot.len() as u32)
+    }
+}
+
+/// Sum over bands.
+fn sum(quanta: Quanta) -> f64 {
+    quanta.0.iter().map(|&q| q as f64).sum()
+}

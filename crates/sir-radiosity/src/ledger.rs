@@ -1,0 +1,235 @@
+//! The ledger of a stage: what every side receives and gives, written by all workers at once.
+
+use std::sync::atomic::{AtomicI64, AtomicU32, Ordering::Relaxed};
+
+use sir_mesh::SideId;
+
+use crate::{Quanta, Received, Visitor};
+
+/// What one side receives and gives: one cache line, so that a line of light touches one place per side.
+///
+/// Everything that lines change is an integer, to which they only add. The sums are therefore the same in whatever order
+/// and by however many workers.
+#[derive(Debug, Default)]
+#[repr(align(64))]
+struct Record {
+    power: [AtomicI64; 3],
+    squares: [AtomicI64; 3],
+    share: [AtomicU32; 3],
+    crossings: AtomicU32,
+}
+
+/// Power that sides receive in a stage, and the share that each of them sends with a line.
+///
+/// Writing needs no more than `&self`: all counters are atomic.
+#[derive(Debug)]
+pub struct Ledger {
+    records: Vec<Record>,
+    unit: SquareUnit,
+}
+
+/// Which counters of a [`Ledger`] a visitor goes through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Counters {
+    /// All of them.
+    All,
+    /// Power and crossings: what the next batch of lines depends on.
+    Batch,
+    /// The squares.
+    Squares,
+}
+
+/// Sides whose counters are handed over at a time: 16,384 sides in at most 0.9 MB.
+const CHUNK: usize = 1 << 14;
+
+impl Ledger {
+    /// An empty ledger.
+    pub(crate) fn new(sides: usize, unit: SquareUnit) -> Self {
+        let mut records = Vec::with_capacity(sides);
+        records.resize_with(sides, Record::default);
+        Self { records, unit }
+    }
+
+    /// Squares of a gift, in the unit of this ledger.
+    #[inline]
+    pub(crate) fn squares(&self, power: Quanta) -> [i64; 3] {
+        self.unit.counts(power)
+    }
+
+    /// A line brings power to a side; `squares` is the [square](Self::squares) of the same power.
+    #[inline]
+    pub(crate) fn give(&self, side: SideId, power: Quanta, squares: [i64; 3]) {
+        let record = &self.records[side.index()];
+        for band in 0..3 {
+            record.power[band].fetch_add(power.0[band], Relaxed);
+            record.squares[band].fetch_add(squares[band], Relaxed);
+        }
+    }
+
+    /// What a side sends with a line.
+    #[inline]
+    pub(crate) fn share(&self, side: SideId) -> Quanta {
+        let record = &self.records[side.index()];
+        Quanta(std::array::from_fn(|band| f32::from_bits(record.share[band].load(Relaxed)) as i64))
+    }
+
+    /// Sets what a side sends with a line, rounded to 24 significant bits.
+    pub(crate) fn set_share(&self, side: SideId, share: [f64; 3]) {
+        let record = &self.records[side.index()];
+        for (place, share) in record.share.iter().zip(share) {
+            place.store((share as f32).to_bits(), Relaxed);
+        }
+    }
+
+    /// A line leaves a side.
+    #[inline]
+    pub(crate) fn leave(&self, side: SideId) {
+        self.records[side.index()].crossings.fetch_add(1, Relaxed);
+    }
+
+    /// Power received by a side.
+    pub(crate) fn power(&self, side: SideId) -> Quanta {
+        Quanta(std::array::from_fn(|band| self.records[side.index()].power[band].load(Relaxed)))
+    }
+
+    /// Takes out the power received by a side and the number of lines that left it.
+    pub(crate) fn take(&self, side: SideId) -> (Quanta, u32) {
+        let record = &self.records[side.index()];
+        let power = Quanta(std::array::from_fn(|band| record.power[band].swap(0, Relaxed)));
+        (power, record.crossings.swap(0, Relaxed))
+    }
+
+    /// Variance of the power received by a side \[quanta²\]: the sum of the squares of what each line brought (compound
+    /// Poisson).
+    pub(crate) fn variance(&self, side: SideId) -> [f64; 3] {
+        let record = &self.records[side.index()];
+        std::array::from_fn(|band| record.squares[band].load(Relaxed) as f64 * self.unit.size[band])
+    }
+
+    /// Adds the variances to those of what was received before.
+    pub(crate) fn add_variance_to(&self, received: &mut Received) {
+        for (i, sum) in received.variance.iter_mut().enumerate() {
+            let more = self.variance(SideId::new(i));
+            *sum = std::array::from_fn(|band| (f64::from(sum[band]) + more[band]) as f32);
+        }
+    }
+
+    /// Adds the power, and the variances, to what was received before.
+    pub(crate) fn add_to(&self, received: &mut Received) {
+        self.add_variance_to(received);
+        for (i, sum) in received.power.iter_mut().enumerate() {
+            *sum += self.power(SideId::new(i));
+        }
+    }
+
+    /// Shows the unit of the squares to a visitor.
+    pub(crate) fn visit_unit(&mut self, visitor: &mut dyn Visitor) {
+        self.unit.visit(visitor);
+    }
+
+    /// Shows counters of all sides to a visitor.
+    pub(crate) fn visit(&self, counters: Counters, visitor: &mut dyn Visitor) {
+        let mut words = Vec::new();
+        for chunk in self.records.chunks(CHUNK) {
+            words.clear();
+            for record in chunk {
+                if counters != Counters::Squares {
+                    words.extend(record.power.iter().map(|p| p.load(Relaxed)));
+                    words.push(i64::from(record.crossings.load(Relaxed)));
+                }
+                if counters != Counters::Batch {
+                    words.extend(record.squares.iter().map(|s| s.load(Relaxed)));
+                }
+            }
+            visitor.sum(&mut words);
+            let mut seen = words.iter().copied();
+            let mut next = || seen.next().unwrap_or_default();
+            for record in chunk {
+                if counters != Counters::Squares {
+                    record.power.iter().for_each(|p| p.store(next(), Relaxed));
+                    record.crossings.store(next() as u32, Relaxed);
+                }
+                if counters != Counters::Batch {
+                    record.squares.iter().for_each(|s| s.store(next(), Relaxed));
+                }
+            }
+        }
+    }
+
+    /// Shows the shares of all sides to a visitor.
+    pub(crate) fn visit_shares(&self, visitor: &mut dyn Visitor) {
+        let mut words = Vec::new();
+        for chunk in self.records.chunks(CHUNK) {
+            words.clear();
+            words.extend(chunk.iter().flat_map(|r| r.share.iter().map(|s| i64::from(s.load(Relaxed)))));
+            visitor.same(&mut words);
+            let places = chunk.iter().flat_map(|r| &r.share);
+            places.zip(&words).for_each(|(share, word)| share.store(*word as u32, Relaxed));
+        }
+    }
+}
+
+/// The size in which squares of power are counted, per band, so that their sums fit 62 bits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SquareUnit {
+    /// Square quanta per count.
+    size: [f64; 3],
+    /// Counts per square quantum.
+    density: [f64; 3],
+    /// Largest count of one gift.
+    most: f64,
+}
+
+/// How much larger than foreseen a square may be.
+const HEADROOM: f64 = 64.0;
+
+impl SquareUnit {
+    /// A unit for gifts of about `largest` quanta at most, of which a side gets about `gifts` at most.
+    pub(crate) fn new(largest: [f64; 3], gifts: f64) -> Self {
+        let most = 2f64.powi(60) / (gifts.max(1.0) + 16.0);
+        Self::of(largest.map(|l| (l * l * HEADROOM / most).max(1.0)), most)
+    }
+
+    fn of(size: [f64; 3], most: f64) -> Self {
+        Self { size, density: size.map(|s| 1.0 / s), most }
+    }
+
+    /// The square of a gift, to the nearest count.
+    #[inline]
+    fn counts(&self, power: Quanta) -> [i64; 3] {
+        std::array::from_fn(|band| {
+            let power = power.0[band] as f64;
+            (power * power * self.density[band] + 0.5).min(self.most) as i64
+        })
+    }
+
+    fn visit(&mut self, visitor: &mut dyn Visitor) {
+        let [r, g, b] = self.size;
+        let mut words = [r, g, b, self.most].map(|x| x.to_bits() as i64);
+        visitor.same(&mut words);
+        let [r, g, b, most] = words.map(|w| f64::from_bits(w as u64));
+        *self = Self::of([r, g, b], most);
+    }
+}
+
+/// Shows a slice of power to a visitor: numbers that all workers have alike.
+pub(crate) fn visit_quanta(quanta: &mut [Quanta], visitor: &mut dyn Visitor) {
+    let mut words = Vec::new();
+    for chunk in quanta.chunks_mut(CHUNK) {
+        words.clear();
+        words.extend(chunk.iter().flat_map(|q| q.0));
+        visitor.same(&mut words);
+        chunk.iter_mut().flat_map(|q| &mut q.0).zip(&words).for_each(|(q, w)| *q = *w);
+    }
+}
+
+/// As [`visit_quanta`], for numbers in single precision.
+pub(crate) fn visit_floats(floats: &mut [[f32; 3]], visitor: &mut dyn Visitor) {
+    let mut words = Vec::new();
+    for chunk in floats.chunks_mut(CHUNK) {
+        words.clear();
+        words.extend(chunk.iter().flatten().map(|f| i64::from(f.to_bits())));
+        visitor.same(&mut words);
+        chunk.iter_mut().flatten().zip(&words).for_each(|(f, w)| *f = f32::from_bits(*w as u32));
+    }
+}
