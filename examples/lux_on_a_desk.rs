@@ -7,18 +7,18 @@ use std::path::Path;
 use sir::geom::{LoadOptions, Rgb, Side, load};
 use sir::lines::Domain;
 use sir::mesh::Subdivision;
-use sir::parallel::{Silent, first_shot, multipath};
-use sir::radiosity::{Model, MultipathSettings};
+use sir::parallel::{Crew, batches, first_shot};
+use sir::radiosity::Model;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = Path::new("scenes/reading-room/reading-room.glb");
     let scene = load(path, &LoadOptions::default())?.scene;
     let model = Model::new(scene, Subdivision::Patches(100_000))?;
 
-    let shot = first_shot(&model, 2_000_000, 1, &mut Silent)?.outcome;
+    let (crew, seed) = (&mut Crew::default(), 1);
+    let shot = first_shot(&model, 2_000_000, seed, crew, None)?.outcome;
     let domain = Domain::Sphere(model.scene.bounding_sphere());
-    let settings = MultipathSettings::new(4_000_000, domain);
-    let solution = multipath(&model, shot, settings, 1, &mut Silent)?.outcome.solution;
+    let solution = batches(&model, shot, 4_000_000, domain, seed, crew, None)?.outcome.solution;
 
     // Mean irradiance of the upward faces of each material at desk height.
     let mut desks = std::collections::BTreeMap::<&str, (f64, Rgb)>::new();

@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use sir::geom::{LoadOptions, Rgb, Side, load};
 use sir::lines::Domain;
 use sir::mesh::Subdivision;
-use sir::parallel::{Silent, first_shot, multipath};
-use sir::radiosity::{Model, MultipathSettings};
+use sir::parallel::{Crew, batches, first_shot};
+use sir::radiosity::Model;
 
 /// The folder of a scene.
 fn scene_folder(name: &str) -> Option<PathBuf> {
@@ -72,9 +72,6 @@ struct Effort {
     patches: u64,
     /// Lines of the first shot and of multipath, per run.
     lines: (u64, u64),
-    /// How many of the latter, at the end, only send on what is left. Patches with the reflectance `ρ` that each are
-    /// crossed by `n` of them keep about `exp(−(1−ρ) n)` of it, which is missing from the result.
-    tail: u64,
     /// Independent runs.
     seeds: u64,
 }
@@ -84,9 +81,9 @@ fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
     let (local, global) = effort.lines;
     let domain = Domain::Sphere(model.scene.bounding_sphere());
     let one = |seed| {
-        let shot = first_shot(model, local, seed, &mut Silent).unwrap().outcome;
-        let settings = MultipathSettings { lines: global, tail: effort.tail, domain };
-        let solution = multipath(model, shot, settings, seed, &mut Silent).unwrap().outcome.solution;
+        let crew = &mut Crew::default();
+        let shot = first_shot(model, local, seed, crew, None).unwrap().outcome;
+        let solution = batches(model, shot, global, domain, seed, crew, None).unwrap().outcome.solution;
         let mut radiosity = vec![Rgb::ZERO; model.scene.triangles().len()];
         model.mesh.for_each_side(|t, _, side, id| {
             if side == Side::Front {
@@ -154,7 +151,7 @@ const COPIES: [(usize, usize); 4] = [(16, 20), (17, 21), (30, 32), (31, 33)];
 #[test]
 fn cornell_box() {
     let Some(folder) = scene_folder("cornell-mcguire") else { return };
-    let effort = Effort { patches: 160_000, lines: (200_000, 2_400_000), tail: 1_800_000, seeds: 12 };
+    let effort = Effort { patches: 160_000, lines: (200_000, 2_400_000), seeds: 12 };
     let model = model(&folder.join("CornellBox-Original.obj"), &effort);
     let runs = solve(&model, &effort);
     let reference = reference(&folder.join("reference-radiosity.csv"));
@@ -202,6 +199,6 @@ fn by_material(folder: &Path, file: &str, effort: &Effort) -> Deviations {
 #[test]
 fn leuven_office() {
     let Some(folder) = scene_folder("mgf-leuven-office") else { return };
-    let effort = Effort { patches: 40_000, lines: (1_000_000, 10_000_000), tail: 5_000_000, seeds: 8 };
+    let effort = Effort { patches: 40_000, lines: (1_000_000, 10_000_000), seeds: 8 };
     assert_agrees(by_material(&folder, "leuven-office.obj", &effort));
 }

@@ -59,7 +59,7 @@ impl Checkpoints {
     ///
     /// If the file cannot be written.
     pub fn save_start(&mut self, comm: &dyn Communicator) -> Result<(), CheckpointError> {
-        self.save(comm, &mut |_| {})
+        self.save(comm, &[], &mut |_| {})
     }
 
     /// Whether the state should be saved now.
@@ -72,16 +72,22 @@ impl Checkpoints {
         self.last.elapsed() >= self.every.min(AT_THE_END)
     }
 
-    /// Saves the state that `show` shows. All ranks take part; the first one writes, and if it fails, all do.
+    /// Saves the state that `show` shows, of the stage that `identity` tells from others. All ranks take part; the first
+    /// one writes, and if it fails, all do.
     pub(crate) fn save(
         &mut self,
         comm: &dyn Communicator,
+        identity: &[i64],
         show: &mut dyn FnMut(&mut dyn Visitor),
     ) -> Result<(), CheckpointError> {
-        let part = self.path.with_extension("part");
+        // Added, not put in place of the extension: `run.1` and `run.2` may be saved at the same time.
+        let mut part = self.path.clone().into_os_string();
+        part.push(".part");
+        let part = PathBuf::from(part);
         // After a failure the other ranks must still be served.
         let writer = comm.is_first().then(|| Writer::create(&part, &self.head));
         let mut saver = Saver { comm, writer, words: Vec::new() };
+        saver.same(&mut identity.to_vec());
         show(&mut saver);
         let written = match saver.writer {
             Some(writer) => writer.and_then(Writer::finish).and_then(|()| replace(&part, &self.path)),
@@ -200,7 +206,8 @@ impl Saved {
         let mut words = BufReader::new(File::open(path).map_err(read)?.take(content));
         let (mut first, mut head) = (String::new(), String::new());
         words.read_line(&mut first).and_then(|_| words.read_line(&mut head)).map_err(read)?;
-        Ok(Self { path: path.to_owned(), head: head.trim_end().to_owned(), words: Some(words) })
+        head.pop();
+        Ok(Self { path: path.to_owned(), head, words: Some(words) })
     }
 
     /// A checkpoint as ranks other than the first have it: the first one reads for all.
@@ -215,14 +222,22 @@ impl Saved {
         &self.head
     }
 
-    /// Restores the state that `show` shows. All ranks take part, the first one reads.
+    /// Restores the state that `show` shows, if it is of the stage with this identity. All ranks take part, the first
+    /// one reads.
     pub(crate) fn restore(
         self,
         comm: &dyn Communicator,
+        identity: &[i64],
         show: &mut dyn FnMut(&mut dyn Visitor),
     ) -> Result<(), CheckpointError> {
         let mut restorer = Restorer { comm, words: self.words, outcome: Ok(()) };
-        show(&mut restorer);
+        let mut found = identity.to_vec();
+        restorer.same(&mut found);
+        if found == identity {
+            show(&mut restorer);
+        } else if comm.is_first() {
+            restorer.outcome = Err(io::ErrorKind::UnexpectedEof.into());
+        }
         let left = restorer.words.as_mut().map_or(Ok(0), |words| words.read(&mut [0]));
         let outcome = match (restorer.outcome, left) {
             (Ok(()), Ok(0)) => Ok(()),

@@ -80,9 +80,10 @@ pub(crate) trait Work: Sync {
 /// A crew at work on one stage.
 pub(crate) struct Shift<'c, 'a> {
     crew: &'c mut Crew<'a>,
+    /// What tells the stage from others.
+    identity: Vec<i64>,
     start: Instant,
-    /// Time spent before a restart.
-    earlier: Duration,
+    /// Time spent; `total` is that before a restart.
     time: StageTime,
     /// Lines of all workers until the observer is looked at again.
     slice: u64,
@@ -100,19 +101,12 @@ pub(crate) struct Orders {
 }
 
 impl<'c, 'a> Shift<'c, 'a> {
-    /// Begins a stage of `total` lines.
-    pub(crate) fn begin(crew: &'c mut Crew<'a>, total: u64) -> Self {
+    /// Begins a stage of `total` lines; `identity` tells it from other stages, whose checkpoints it cannot use.
+    pub(crate) fn begin(crew: &'c mut Crew<'a>, total: u64, identity: &[u64]) -> Self {
         let now = Instant::now();
         let slice = BLOCK * (crew.comm.size() * crew.threads.get()) as u64;
-        Self {
-            crew,
-            start: now,
-            earlier: Duration::ZERO,
-            time: StageTime::default(),
-            slice,
-            since: (now, 0),
-            total,
-        }
+        let identity = identity.iter().map(|&word| word as i64).collect();
+        Self { crew, identity, start: now, time: StageTime::default(), slice, since: (now, 0), total }
     }
 
     pub(crate) fn comm(&self) -> &'a dyn Communicator {
@@ -125,7 +119,7 @@ impl<'c, 'a> Shift<'c, 'a> {
 
     /// The time so far.
     pub(crate) fn time(&self) -> StageTime {
-        StageTime { total: self.earlier + self.start.elapsed(), ..self.time }
+        StageTime { total: self.time.total + self.start.elapsed(), ..self.time }
     }
 
     /// Tells the observer how many lines are done.
@@ -171,14 +165,6 @@ impl<'c, 'a> Shift<'c, 'a> {
         }
     }
 
-    /// Saves the state that is shown, if there are checkpoints.
-    pub(crate) fn save(&mut self, show: &mut dyn FnMut(&mut dyn Visitor)) -> Result<(), CheckpointError> {
-        match &mut self.crew.checkpoints {
-            Some(checkpoints) => checkpoints.save(self.crew.comm, show),
-            None => Ok(()),
-        }
-    }
-
     /// Whether, at the end of a stage, so much time has passed since the last checkpoint that there should be another one.
     pub(crate) fn is_late(&mut self) -> bool {
         let first = self.crew.comm.is_first();
@@ -192,22 +178,30 @@ impl<'c, 'a> Shift<'c, 'a> {
         &mut self,
         saved: Saved,
         position: &mut Position,
-        work: &mut impl Work,
+        show: &mut dyn FnMut(&mut dyn Visitor),
     ) -> Result<(), CheckpointError> {
-        saved.restore(self.crew.comm, &mut |visitor| {
+        saved.restore(self.crew.comm, &self.identity, &mut |visitor| {
             position.visit(visitor);
-            work.visit(visitor);
+            show(visitor);
         })?;
-        self.earlier = position.spent;
+        self.time = position.spent;
         Ok(())
     }
 
-    fn save_at(&mut self, position: &mut Position, work: &mut impl Work) -> Result<(), CheckpointError> {
-        position.spent = self.time().total;
-        self.save(&mut |visitor| {
-            position.visit(visitor);
-            work.visit(visitor);
-        })
+    /// Saves the state that is shown, if there are checkpoints.
+    pub(crate) fn save(
+        &mut self,
+        position: &mut Position,
+        show: &mut dyn FnMut(&mut dyn Visitor),
+    ) -> Result<(), CheckpointError> {
+        position.spent = self.time();
+        match &mut self.crew.checkpoints {
+            Some(checkpoints) => checkpoints.save(self.crew.comm, &self.identity, &mut |visitor| {
+                position.visit(visitor);
+                show(visitor);
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Lets all workers trace the lines up to `end`.
@@ -220,7 +214,7 @@ impl<'c, 'a> Shift<'c, 'a> {
         while position.next < end {
             let orders = self.orders();
             if orders.save {
-                self.save_at(position, work)?;
+                self.save(position, &mut |visitor| work.visit(visitor))?;
             }
             if orders.stop {
                 return Err(RunError::Interrupted { done: position.next, total: self.total });
@@ -236,7 +230,7 @@ impl<'c, 'a> Shift<'c, 'a> {
             self.progress(position.next);
         }
         if end == self.total && self.is_late() {
-            self.save_at(position, work)?;
+            self.save(position, &mut |visitor| work.visit(visitor))?;
         }
         Ok(())
     }
@@ -267,6 +261,10 @@ impl<'c, 'a> Shift<'c, 'a> {
     }
 }
 
+fn micros(time: Duration) -> u64 {
+    time.as_micros() as u64
+}
+
 /// How far a stage is.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Position {
@@ -274,16 +272,22 @@ pub(crate) struct Position {
     pub(crate) next: u64,
     /// What this rank has written down.
     pub(crate) books: Books,
-    /// Time spent before the last checkpoint was saved.
-    spent: Duration,
+    /// Time spent until the last checkpoint was saved.
+    spent: StageTime,
 }
 
 impl Position {
     pub(crate) fn visit(&mut self, visitor: &mut dyn Visitor) {
-        let mut words = [self.next as i64, self.spent.as_micros() as i64];
+        let StageTime { total, tracing, communication } = &mut self.spent;
+        let mut words =
+            [self.next, micros(*total), micros(*tracing), micros(*communication)].map(|w| w as i64);
         visitor.same(&mut words);
+        let times = [total, tracing, communication];
         self.next = words[0] as u64;
-        self.spent = Duration::from_micros(words[1] as u64);
+        times
+            .into_iter()
+            .zip(&words[1..])
+            .for_each(|(time, word)| *time = Duration::from_micros(*word as u64));
         self.books.visit(visitor);
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use sir_radiosity::{Books, Multipath, MultipathSettings, Replica, Transported, Visitor};
 
-use crate::crew::Shift;
+use crate::crew::{Position, Shift};
 use crate::{CheckpointError, Communicator, RunError, Saved};
 
 /// The replicas of a transport. Those whose numbers leave the remainder `rank` when divided by the number of ranks belong
@@ -17,7 +17,7 @@ pub(crate) struct Replicas<'m> {
     ranks: u64,
     /// What belongs to this rank and is not done yet. Those under way come first.
     waiting: VecDeque<Task>,
-    books: Books,
+    position: Position,
 }
 
 /// A replica of this rank; it has a state once it is under way.
@@ -30,7 +30,7 @@ impl<'m> Replicas<'m> {
     pub(crate) fn new(stage: Multipath<'m>, settings: MultipathSettings, comm: &dyn Communicator) -> Self {
         let (rank, ranks) = (comm.rank() as u64, comm.size() as u64);
         let mut replicas =
-            Self { stage, settings, rank, ranks, waiting: VecDeque::new(), books: Books::default() };
+            Self { stage, settings, rank, ranks, waiting: VecDeque::new(), position: Position::default() };
         replicas.waiting = replicas.mine().map(|number| Task { number, replica: None }).collect();
         replicas
     }
@@ -74,7 +74,7 @@ impl<'m> Replicas<'m> {
 
     /// Lets every thread trace some lines, of one replica or of several.
     fn trace(&mut self, shift: &mut Shift<'_, '_>, lines: u64) {
-        let Self { stage, waiting, books, .. } = self;
+        let Self { stage, waiting, position, .. } = self;
         let threads = shift.threads().min(waiting.len());
         let queue = Mutex::new(std::mem::take(waiting));
         let take = || queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner).pop_front();
@@ -97,14 +97,15 @@ impl<'m> Replicas<'m> {
         let outcomes = shift.each_tracing(vec![(); threads], work);
         *waiting = queue.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
         for (part, task) in outcomes.into_iter().rev() {
-            *books += part;
+            position.books += part;
             task.into_iter().for_each(|task| waiting.push_front(task));
         }
     }
 
     fn save(&mut self, shift: &mut Shift<'_, '_>) -> Result<(), CheckpointError> {
         let left = self.table(shift);
-        shift.save(&mut |visitor| self.show(&left, visitor))
+        let mut position = self.position;
+        shift.save(&mut position, &mut |visitor| self.show(&left, visitor))
     }
 
     /// How many lines are left in each replica.
@@ -121,7 +122,6 @@ impl<'m> Replicas<'m> {
     /// those under way.
     fn show(&mut self, left: &[i64], visitor: &mut dyn Visitor) {
         visitor.same(&mut left.to_vec());
-        self.books.visit(visitor);
         self.stage.visit(visitor);
         for number in self.under_way(left) {
             // All ranks take part; those that do not have the replica add zeros.
@@ -143,12 +143,12 @@ impl<'m> Replicas<'m> {
     }
 
     /// Puts back what was saved.
-    pub(crate) fn restore(&mut self, saved: Saved, comm: &dyn Communicator) -> Result<(), CheckpointError> {
+    pub(crate) fn restore(&mut self, saved: Saved, shift: &mut Shift<'_, '_>) -> Result<(), CheckpointError> {
         let mut left = vec![0; self.settings.replicas as usize];
         let mut tasks = VecDeque::new();
-        saved.restore(comm, &mut |visitor| {
+        let mut position = Position::default();
+        shift.restore(saved, &mut position, &mut |visitor| {
             visitor.same(&mut left);
-            self.books.visit(visitor);
             self.stage.visit(visitor);
             for number in self.under_way(&left) {
                 let mut replica = self.stage.replica(number);
@@ -161,17 +161,17 @@ impl<'m> Replicas<'m> {
         let under_way = self.under_way(&left);
         let untouched = |n: &u64| left[*n as usize] > 0 && !under_way.contains(n);
         tasks.extend(self.mine().filter(untouched).map(|number| Task { number, replica: None }));
-        self.waiting = tasks;
+        (self.waiting, self.position) = (tasks, position);
         Ok(())
     }
 
     /// Adds up what all ranks have, and closes the books.
     pub(crate) fn finish(mut self, shift: &mut Shift<'_, '_>) -> Result<Transported, RunError> {
         shift.add_up(|visitor| {
-            self.books.visit(visitor);
+            self.position.books.visit(visitor);
             self.stage.visit_counters(visitor);
         });
-        Ok(self.stage.finish(self.books)?)
+        Ok(self.stage.finish(self.position.books)?)
     }
 }
 

@@ -51,12 +51,12 @@ pub fn first_shot(
     crew: &mut Crew<'_>,
     saved: Option<Saved>,
 ) -> Result<StageRun<Shot>, RunError> {
-    let mut shift = Shift::begin(crew, lines);
+    let mut shift = Shift::begin(crew, lines, &[1, model.mesh.side_count() as u64, lines, seed]);
     let stage = FirstShot::new(model, lines, seed)?;
     let mut work = FirstShotWork { tally: stage.tally(), stage };
     let mut position = Position::default();
     if let Some(saved) = saved {
-        shift.restore(saved, &mut position, &mut work)?;
+        shift.restore(saved, &mut position, &mut |visitor| work.visit(visitor))?;
     }
     shift.trace(&mut work, &mut position, lines)?;
     shift.add_up(|visitor| {
@@ -93,7 +93,7 @@ pub fn batches(
     crew: &mut Crew<'_>,
     saved: Option<Saved>,
 ) -> Result<StageRun<Transported>, RunError> {
-    let mut shift = Shift::begin(crew, lines);
+    let mut shift = Shift::begin(crew, lines, &[2, model.mesh.side_count() as u64, lines, seed]);
     let mut stage = Batches::new(model, shot, lines, domain, seed);
     let mut position = Position::default();
     let open = |stage: &mut Batches<'_>, shift: &mut Shift<'_, '_>| {
@@ -102,7 +102,7 @@ pub fn batches(
     };
     match saved {
         None => open(&mut stage, &mut shift),
-        Some(saved) => shift.restore(saved, &mut position, &mut stage)?,
+        Some(saved) => shift.restore(saved, &mut position, &mut |visitor| stage.visit(visitor))?,
     }
     loop {
         let end = stage.lines().end;
@@ -139,11 +139,13 @@ pub fn multipath(
     crew: &mut Crew<'_>,
     saved: Option<Saved>,
 ) -> Result<StageRun<Transported>, RunError> {
-    let mut shift = Shift::begin(crew, settings.lines);
+    let MultipathSettings { lines, tail, replicas, .. } = settings;
+    let identity = [3, model.mesh.side_count() as u64, lines, seed, tail, replicas];
+    let mut shift = Shift::begin(crew, lines, &identity);
     let stage = Multipath::new(model, shot, settings, seed);
     let mut replicas = Replicas::new(stage, settings, shift.comm());
     if let Some(saved) = saved {
-        replicas.restore(saved, shift.comm())?;
+        replicas.restore(saved, &mut shift)?;
     }
     replicas.run(&mut shift)?;
     let outcome = replicas.finish(&mut shift)?;

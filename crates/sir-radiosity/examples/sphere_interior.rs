@@ -7,7 +7,7 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
-use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings, sources};
+use sir_radiosity::{Books, FirstShot, Model, Multipath, MultipathSettings, sources};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let reflectance = 0.7;
@@ -22,13 +22,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (seed, lines) = (1, 2_000_000);
     let shot = FirstShot::new(&model, lines, seed)?;
-    let mut tally = shot.tally();
-    shot.trace(0..lines, &mut tally);
+    let (tally, mut books) = (shot.tally(), Books::default());
+    shot.trace(0..lines, &tally, &mut books);
     let domain = Domain::Sphere(model.scene.bounding_sphere());
     let settings = MultipathSettings::new(lines, domain);
-    let mut multipath = Multipath::new(&model, shot.finish(tally)?, settings, seed);
-    multipath.trace(0..lines);
-    let done = multipath.finish()?;
+    let multipath = Multipath::new(&model, shot.finish(tally, books)?, settings, seed);
+    let mut books = Books::default();
+    multipath.trace(&mut multipath.replica(0), lines, &mut books);
+    let done = multipath.finish(books)?;
 
     let power: f64 = sources(&model.scene).iter().map(|s| s.power.x).sum();
     let exact = power / (model.scene.total_area() * (1.0 - reflectance));

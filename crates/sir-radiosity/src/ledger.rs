@@ -60,10 +60,8 @@ impl Ledger {
     #[inline]
     pub(crate) fn give(&self, side: SideId, power: Quanta, squares: [i64; 3]) {
         let record = &self.records[side.index()];
-        for band in 0..3 {
-            record.power[band].fetch_add(power.0[band], Relaxed);
-            record.squares[band].fetch_add(squares[band], Relaxed);
-        }
+        record.power.iter().zip(power.0).for_each(|(sum, power)| _ = sum.fetch_add(power, Relaxed));
+        record.squares.iter().zip(squares).for_each(|(sum, square)| _ = sum.fetch_add(square, Relaxed));
     }
 
     /// What a side sends with a line.

@@ -1,18 +1,20 @@
-//! Monte Carlo radiosity with a first shot of local lines and multipath on global lines.
+//! Monte Carlo radiosity with a first shot of local lines, and global lines for all further reflections.
 //!
 //! # Design
 //!
 //! The method is that of Martínez, Forés and Martín (2009), *Parallel implementation of a global line Monte Carlo
 //! radiosity*, with Sbert's multipath (1996, 1997) at its heart. This crate knows how a range of lines changes a
-//! solution. It knows nothing of threads, ranks, files or progress: those who do cut the ranges.
+//! solution. It knows nothing of threads, ranks, files or progress: those who do cut the ranges, and see the state of a
+//! stage as a sequence of numbers ([`Visitor`]).
 //!
 //! * [`FirstShot`]: lines from the light sources carry the emitted power to the first surfaces.
-//! * [`Multipath`]: lines through the whole scene pass the reflected power on, between every pair of surfaces that
-//!   face each other along a line, in both directions.
+//! * Lines through the whole scene pass the reflected power on, between every pair of surfaces that face each other
+//!   along a line, in both directions. [`Multipath`] sends it on line by line, as published. [`Batches`] freezes
+//!   what surfaces send while the lines of a batch are traced, so that any number of workers can share them.
 //! * [`Solution`]: irradiance and its standard error per side of a patch.
 //!
-//! Power is counted in whole [`Quanta`]: integers add up to the same sum in any order, and the energy
-//! [`Balance`] closes exactly, not nearly. Lines become [`Segment`]s, which name the two sides that see each other:
+//! Power is counted in whole [`Quanta`]: integers add up to the same sum in any order, by any number of workers who
+//! share a [`Ledger`], and the energy [`Balance`] closes exactly, not nearly. Lines become [`Segment`]s, which name the two sides that see each other:
 //! a new kind of line or a new transport needs to know nothing else.
 //!
 //! # Example
@@ -24,7 +26,7 @@
 //! use sir_geom::{Material, Rgb, SceneBuilder, Side, shapes::{self, Facing}};
 //! use sir_lines::Domain;
 //! use sir_mesh::Subdivision;
-//! use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings};
+//! use sir_radiosity::{Books, FirstShot, Model, Multipath, MultipathSettings};
 //!
 //! let mut builder = SceneBuilder::new();
 //! let grey = Material::diffuse("grey", Rgb::splat(0.5)).emitting(Rgb::splat(1.0));
@@ -34,14 +36,16 @@
 //!
 //! let (seed, lines) = (1, 100_000);
 //! let shot = FirstShot::new(&model, lines, seed)?;
-//! let mut tally = shot.tally();
-//! shot.trace(0..lines, &mut tally);
+//! let (tally, mut books) = (shot.tally(), Books::default());
+//! shot.trace(0..lines, &tally, &mut books);
+//! let shot = shot.finish(tally, books)?;
 //!
 //! let domain = Domain::Sphere(model.scene.bounding_sphere());
 //! let settings = MultipathSettings::new(lines, domain);
-//! let mut multipath = Multipath::new(&model, shot.finish(tally)?, settings, seed);
-//! multipath.trace(0..lines);
-//! let solution = multipath.finish()?.solution;
+//! let multipath = Multipath::new(&model, shot, settings, seed);
+//! let mut books = Books::default();
+//! multipath.trace(&mut multipath.replica(0), lines, &mut books);
+//! let solution = multipath.finish(books)?.solution;
 //!
 //! model.mesh.for_each_side(|triangle, _, _, side| {
 //!     let radiosity = solution.radiosity(&model, triangle, Side::Front, side);

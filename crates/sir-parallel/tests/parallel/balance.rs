@@ -1,0 +1,76 @@
+//! No power is lost or made, and no line is left out or traced twice.
+
+use sir_radiosity::{Balance, Quanta};
+
+use crate::jobs::{JOBS, Job, LINES, Outcome, ROOM, crew};
+use crate::ranks::run_ranks;
+
+/// What a crew of two ranks with two threads makes.
+fn outcome(job: Job) -> Outcome {
+    run_ranks(2, |comm| job.run(&ROOM, &mut crew(comm, 2), None).unwrap()).swap_remove(0)
+}
+
+fn wide(q: Quanta) -> [i128; 3] {
+    q.0.map(i128::from)
+}
+
+#[test]
+fn what_is_emitted_is_absorbed_or_blocked_or_escapes_or_is_unshot() {
+    for job in JOBS {
+        let Outcome { balance, .. } = outcome(job);
+        let Balance { emitted, absorbed, blocked, escaped, unshot } = balance;
+        for band in 0..3 {
+            let parts = [absorbed, blocked, escaped, unshot].map(|q| wide(q)[band]);
+            assert_eq!(wide(emitted)[band], parts.iter().sum::<i128>(), "{job:?}: {balance:?}");
+        }
+        assert!(balance.closes());
+        // Otherwise the scene would show less than it should.
+        let ends = [emitted, absorbed, escaped];
+        assert!(ends.iter().all(|q| q.0.iter().all(|&q| q > 0)), "{job:?}: {balance:?}");
+        assert_ne!(unshot, Quanta::ZERO, "{job:?}");
+        // Light of the lamp cannot come to its back at once.
+        let reflected = !matches!(job, Job::FirstShot);
+        assert_eq!(blocked != Quanta::ZERO, reflected, "{job:?}: {balance:?}");
+    }
+}
+
+#[test]
+fn batches_emit_what_the_first_shot_has_left_unshot() {
+    assert_eq!(outcome(Job::Batches).balance.emitted, ROOM.shot.balance.unshot);
+}
+
+#[test]
+fn all_lines_are_traced_once() {
+    for job in JOBS {
+        let Outcome { counts, .. } = outcome(job);
+        assert_eq!(counts.lines, LINES, "{job:?}");
+        assert!(0 < counts.empty && counts.empty < LINES && counts.crossings > 0, "{job:?}: {counts:?}");
+    }
+}
+
+/// Of what a side receives it absorbs what it does not reflect, to within a rounding each time.
+#[test]
+fn what_is_received_is_absorbed_or_reflected() {
+    for job in JOBS {
+        let Outcome { received, balance, made_up, counts, .. } = outcome(job);
+        let mut absorbed = [0.0; 3];
+        ROOM.model.mesh.for_each_side(|triangle, _, _, side| {
+            let reflectance = ROOM.model.scene.material(triangle).reflectance;
+            let before = match job {
+                Job::FirstShot => Quanta::ZERO,
+                _ => ROOM.shot.received.power[side.index()],
+            };
+            let new = received.power[side.index()] - before;
+            let kept = |band: usize| new.0[band] as f64 * (1.0 - reflectance[band]);
+            absorbed.iter_mut().enumerate().for_each(|(band, sum)| *sum += kept(band));
+        });
+        for (band, absorbed) in absorbed.into_iter().enumerate() {
+            let difference = absorbed - balance.absorbed.0[band] as f64;
+            // The tail of batches is stretched when the books are closed.
+            let made_up = made_up.0[band] as f64;
+            let rounding = 4.0 * counts.crossings as f64;
+            assert!(difference >= made_up.min(0.0) - rounding, "{job:?}: {difference}, {made_up}");
+            assert!(difference <= made_up.max(0.0) + rounding, "{job:?}: {difference}, {made_up}");
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! A scene with everything that light can meet, and the stages that are run on it.
+
+use std::num::NonZeroUsize;
+use std::sync::LazyLock;
+
+use glam::DVec3;
+use sir_geom::shapes::{self, Facing};
+use sir_geom::{Material, Rgb, SceneBuilder, Sides};
+use sir_lines::Domain;
+use sir_mesh::Subdivision;
+use sir_parallel::{Communicator, Crew, RunError, Saved, StageRun, batches, first_shot, multipath};
+use sir_radiosity::{
+    Balance, Batches, Books, Counts, FirstShot, Model, Multipath, MultipathSettings, Quanta, Received, Shot,
+    Totals, Transported,
+};
+
+use crate::observers::StopAfter;
+
+/// Lines of every stage.
+pub(crate) const LINES: u64 = 30_000;
+
+const SEED: u64 = 3;
+
+/// A scene, and the light that its lamp throws on it.
+pub(crate) struct Room {
+    pub(crate) model: Model,
+    pub(crate) shot: Shot,
+}
+
+/// The room of most tests.
+pub(crate) static ROOM: LazyLock<Room> = LazyLock::new(|| Room::new(400));
+
+/// The same room in so many patches that their state is handed over in several chunks.
+pub(crate) static FINE_ROOM: LazyLock<Room> = LazyLock::new(|| Room::new(40_000));
+
+/// A stage with its settings.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Job {
+    FirstShot,
+    Batches,
+    Multipath { replicas: u64, tail: u64 },
+}
+
+/// What a stage has made.
+#[derive(Clone, PartialEq)]
+pub(crate) struct Outcome {
+    pub(crate) received: Received,
+    pub(crate) quantum: f64,
+    pub(crate) balance: Balance,
+    pub(crate) counts: Counts,
+    pub(crate) made_up: Quanta,
+    pub(crate) batches: u64,
+}
+
+/// All stages, multipath with various settings.
+pub(crate) const JOBS: [Job; 8] = [
+    Job::FirstShot,
+    Job::Batches,
+    Job::Multipath { replicas: 1, tail: 0 },
+    Job::Multipath { replicas: 3, tail: 0 },
+    Job::Multipath { replicas: 8, tail: 0 },
+    Job::Multipath { replicas: 1, tail: LINES / 10 },
+    Job::Multipath { replicas: 3, tail: LINES / 10 },
+    Job::Multipath { replicas: 8, tail: LINES / 5 },
+];
+
+impl Room {
+    /// A room whose front is open, in about so many patches. With a lamp that does not shine to the back, a
+    /// solid block, and a sheet that reflects from both sides, light ends in all possible ways.
+    pub(crate) fn new(patches: u64) -> Self {
+        let mut b = SceneBuilder::new();
+        let add = |r: f64, g: f64, blue: f64| Material::diffuse("", Rgb::new(r, g, blue));
+        let white = b.add_material(add(0.8, 0.8, 0.8));
+        let red = b.add_material(add(0.7, 0.2, 0.1));
+        let green = b.add_material(add(0.1, 0.6, 0.2));
+        let dark = b.add_material(add(0.05, 0.0, 0.3));
+        let mirror = b.add_material(add(0.95, 0.9, 0.9));
+        let sheet = b.add_material(add(0.5, 0.6, 0.4).with_sides(Sides::Both));
+        let lamp = b.add_material(add(0.3, 0.3, 0.3).emitting(Rgb::new(9.0, 7.0, 4.0)));
+
+        // The walls of a box of 2 by 2 by 2, but for the one at y = −1.
+        let wall = |axis: DVec3, u: DVec3| {
+            let v = axis.cross(u);
+            [u + v, v - u, -u - v, u - v].map(|corner| corner - axis)
+        };
+        let walls = [
+            (DVec3::X, DVec3::Y, red),
+            (-DVec3::X, DVec3::Y, green),
+            (-DVec3::Y, DVec3::Z, mirror),
+            (DVec3::Z, DVec3::X, dark),
+            (-DVec3::Z, DVec3::X, white),
+        ];
+        for (inward, along, material) in walls {
+            shapes::quad(&mut b, wall(inward, along), material);
+        }
+        shapes::quad(&mut b, wall(-DVec3::Z, DVec3::X).map(|p| DVec3::new(0.3, 0.3, 0.9) * p), lamp);
+        let slanting = wall(DVec3::Y, DVec3::X).map(|p| DVec3::new(0.5 * p.x, 0.2 + 0.3 * p.z, 0.4 * p.z));
+        shapes::quad(&mut b, slanting, sheet);
+        let (min, max) = (DVec3::new(0.2, -0.5, -0.99), DVec3::new(0.7, 0.1, -0.5));
+        shapes::cuboid(&mut b, min, max, [green, white, red, white, dark, mirror], Facing::Outward);
+
+        let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(patches)).unwrap();
+        let shot = first_shot(&model, LINES, SEED, &mut Crew::of(NonZeroUsize::MIN), None).unwrap().outcome;
+        Self { model, shot }
+    }
+
+    fn domain(&self) -> Domain {
+        Domain::Sphere(self.model.scene.bounding_sphere())
+    }
+}
+
+impl Job {
+    fn settings(replicas: u64, tail: u64, domain: Domain) -> MultipathSettings {
+        MultipathSettings { lines: LINES, tail, replicas, domain }
+    }
+
+    /// Lets a crew do the stage, or go on with what was saved.
+    pub(crate) fn run(
+        self,
+        room: &Room,
+        crew: &mut Crew<'_>,
+        saved: Option<Saved>,
+    ) -> Result<Outcome, RunError> {
+        let (model, domain) = (&room.model, room.domain());
+        // Who goes on has not made the first shot.
+        let shot = || if saved.is_some() { Shot::nothing(model) } else { room.shot.clone() };
+        match self {
+            Self::FirstShot => first_shot(model, LINES, SEED, crew, saved).map(Outcome::of_shot),
+            Self::Batches => {
+                batches(model, shot(), LINES, domain, SEED, crew, saved).map(Outcome::of_transport)
+            }
+            Self::Multipath { replicas, tail } => {
+                let settings = Self::settings(replicas, tail, domain);
+                multipath(model, shot(), settings, SEED, crew, saved).map(Outcome::of_transport)
+            }
+        }
+    }
+
+    /// The same stage without any crew: line by line.
+    pub(crate) fn by_hand(self, room: &Room) -> Outcome {
+        let (model, shot, mut books) = (&room.model, room.shot.clone(), Books::default());
+        let run = match self {
+            Self::FirstShot => {
+                let stage = FirstShot::new(model, LINES, SEED).unwrap();
+                let tally = stage.tally();
+                stage.trace(0..LINES, &tally, &mut books);
+                let outcome = stage.finish(tally, books).unwrap();
+                return Outcome::of_shot(StageRun { outcome, time: Default::default(), batches: 1 });
+            }
+            Self::Batches => {
+                let mut stage = Batches::new(model, shot, LINES, room.domain(), SEED);
+                loop {
+                    stage.parts(1).for_each(|mut part| part.open());
+                    stage.trace(stage.lines(), &mut books);
+                    let mut totals = Totals::default();
+                    stage.parts(1).for_each(|mut part| totals += part.close());
+                    if !stage.advance(totals) {
+                        break;
+                    }
+                }
+                let batches = stage.number() + 1;
+                StageRun { outcome: stage.finish(books).unwrap(), time: Default::default(), batches }
+            }
+            Self::Multipath { replicas, tail } => {
+                let settings = Self::settings(replicas, tail, room.domain());
+                let stage = Multipath::new(model, shot, settings, SEED);
+                for number in 0..replicas {
+                    stage.trace(&mut stage.replica(number), u64::MAX, &mut books);
+                }
+                StageRun {
+                    outcome: stage.finish(books).unwrap(),
+                    time: Default::default(),
+                    batches: replicas,
+                }
+            }
+        };
+        Outcome::of_transport(run)
+    }
+}
+
+impl Outcome {
+    fn of_shot(StageRun { outcome, batches, .. }: StageRun<Shot>) -> Self {
+        let Shot { received, unit, balance, counts } = outcome;
+        Self { received, quantum: unit.quantum(), balance, counts, made_up: Quanta::ZERO, batches }
+    }
+
+    fn of_transport(StageRun { outcome, batches, .. }: StageRun<Transported>) -> Self {
+        let Transported { received, unit, balance, counts, made_up, .. } = outcome;
+        Self { received, quantum: unit.quantum(), balance, counts, made_up, batches }
+    }
+
+    /// Equal to the last bit.
+    #[track_caller]
+    pub(crate) fn assert_is(&self, expected: &Self, what: &str) {
+        assert_eq!(self.counts, expected.counts, "{what}: counts");
+        assert_eq!(self.balance, expected.balance, "{what}: balance");
+        assert_eq!(self.received.hash(), expected.received.hash(), "{what}: power received");
+        assert!(
+            self.received.variance == expected.received.variance,
+            "{what}: variance of the power received"
+        );
+        assert_eq!(self.made_up, expected.made_up, "{what}: power made up");
+        assert_eq!(self.batches, expected.batches, "{what}: batches");
+        assert!(self == expected, "{what}");
+    }
+}
+
+/// A crew of this rank with so many threads.
+pub(crate) fn crew(comm: &dyn Communicator, threads: usize) -> Crew<'_> {
+    let threads = NonZeroUsize::new(threads).unwrap();
+    Crew { comm, threads, observer: Box::new(StopAfter::NEVER), checkpoints: None }
+}
