@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 
+use crate::scaling::ScalingArgs;
+
 const EXAMPLES: &str = "\
 Examples:
   sir check scenes/cornell-box/pipeline.ron      what will it do, and how long will it take?
@@ -13,6 +15,7 @@ Examples:
   sir compare results/cornell-box results/cornell-box-2
   sir resume results/cornell-box                 go on where it was stopped, by Ctrl-C or a power cut
   mpirun -n 4 sir run room.ron                   on several machines, if built with --features mpi
+  sir scaling room.ron --threads 1,2,4           how much faster are more threads?
 
 A pipeline is a text file like this one (docs/pipeline.md tells all):
   Pipeline(
@@ -82,6 +85,13 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Measure how much faster a pipeline runs on more threads and ranks.
+    ///
+    /// Runs it with every number of ranks and every number of threads, several times, and prints times,
+    /// speed-ups S(p) = T(1)/T(p) and efficiencies E(p) = S(p)/p of the first shot, of multipath and of the
+    /// whole run. Checks that all results are the same. The output directory gets scaling.csv, scaling.json,
+    /// scaling.md and scaling.svg.
+    Scaling(ScalingArgs),
 }
 
 /// How to run a pipeline.

@@ -4,12 +4,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use sir_geom::LoadError;
-use sir_parallel::{CheckpointError, Communicator, ConnectError, RunError};
+use sir_parallel::{ConnectError, RunError};
 use sir_radiosity::SolveError;
 use sir_view::ViewError;
 use thiserror::Error;
 
 use crate::diagnostic::Diagnostics;
+use crate::scaling::ScalingError;
 
 /// Why a command fails. Every message ends with what to do, where that is not obvious.
 #[derive(Debug, Error)]
@@ -114,6 +115,9 @@ pub enum Error {
         /// The directory.
         directory: PathBuf,
     },
+    /// Speed-ups cannot be measured.
+    #[error(transparent)]
+    Scaling(#[from] ScalingError),
 }
 
 impl From<SolveError> for Error {
@@ -136,21 +140,8 @@ impl Error {
             Self::Interrupted { .. } | Self::InterruptedSaving { .. } => 130,
             Self::Run(RunError::Interrupted { .. }) => 130,
             Self::Elsewhere { code, .. } => *code,
+            Self::Scaling(error) => error.exit_code(),
             _ => 1,
-        }
-    }
-
-    /// Whether this rank is the one to say it. All ranks return what they all notice; the rest is one rank's.
-    #[must_use]
-    pub fn is_mine(&self, comm: &dyn Communicator) -> bool {
-        match self {
-            Self::Elsewhere { .. } | Self::Run(RunError::Checkpoint(CheckpointError::Elsewhere { .. })) => {
-                false
-            }
-            Self::Interrupted { .. } | Self::Run(RunError::Interrupted { .. } | RunError::Solve(_)) => {
-                comm.is_first()
-            }
-            _ => true,
         }
     }
 

@@ -49,6 +49,7 @@ mod resume;
 mod ron_tree;
 pub mod run;
 mod save;
+pub mod scaling;
 pub mod summary;
 
 use std::io::Write as _;
@@ -82,9 +83,7 @@ fn execute(command: Command) -> Result<String, ExitCode> {
     match command {
         Command::Run(_) | Command::Resume { .. } => {
             let comm = connect().map_err(|error| show(&error.into()))?;
-            work(command, &*comm).map_err(|error| {
-                if error.is_mine(&*comm) { show(&error) } else { ExitCode::from(error.exit_code()) }
-            })
+            work(command, &*comm).map_err(|error| show(&error))
         }
         alone => work(alone, &Alone).map_err(|error| show(&error)),
     }
@@ -94,6 +93,8 @@ fn execute(command: Command) -> Result<String, ExitCode> {
 fn show(error: &Error) -> ExitCode {
     match error {
         Error::Pipeline(problems) => eprint!("{problems}"),
+        // The rank that failed says why.
+        Error::Elsewhere { .. } => {}
         other => eprintln!("error: {}", other.chain()),
     }
     ExitCode::from(error.exit_code())
@@ -122,6 +123,7 @@ fn work(command: Command, comm: &dyn Communicator) -> Result<String, Error> {
                 compare::text(&comparison)
             })
         }
+        Command::Scaling(args) => scaling::command(&args),
     }
 }
 

@@ -180,7 +180,10 @@ impl Run<'_> {
         let mut checkpoints = Checkpoints::new(path.clone(), self.options.checkpoint_every);
         if saved.is_none() {
             checkpoints.set_head(self.head.to_line());
-            checkpoints.save_start(self.comm).map_err(RunError::from)?;
+            agree(
+                self.comm,
+                checkpoints.save_start(self.comm).map_err(|error| RunError::from(error).into()),
+            )?;
         }
         self.stages(&mut checkpoints, saved, earlier).map_err(|error| self.name_directory(error))?;
         let Self { directory, comm, mut head, watch, .. } = self;
@@ -236,7 +239,8 @@ impl Run<'_> {
                 Action::Load { .. } => time = Some(Time::of(self.prepared.load_seconds)),
                 Action::Subdivide(_) => time = Some(Time::of(self.prepared.build_seconds)),
                 Action::FirstShot { lines } => {
-                    let done = sir_parallel::first_shot(model, *lines, seed, &mut crew, saved.take())?;
+                    let done = sir_parallel::first_shot(model, *lines, seed, &mut crew, saved.take());
+                    let done = agree(self.comm, done.map_err(Error::from))?;
                     drop(crew);
                     let Shot { unit, balance, counts, ref received, .. } = done.outcome;
                     let direct = done.outcome.solution(model);
@@ -263,7 +267,8 @@ impl Run<'_> {
                             let settings = MultipathSettings { lines, tail, replicas, domain };
                             sir_parallel::multipath(model, shot, settings, seed, &mut crew, saved)
                         }
-                    }?;
+                    };
+                    let done = agree(self.comm, done.map_err(Error::from))?;
                     drop(crew);
                     let (batches, done, stage_times) = (done.batches, done.outcome, done.time);
                     let facts = Facts {

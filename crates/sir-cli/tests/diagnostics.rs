@@ -7,7 +7,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use sir_cli::diagnostic::Diagnostics;
-use sir_cli::pipeline::Pipeline;
+use sir_cli::pipeline::{Action, Pipeline, Transport};
 
 const VALID: &str = r#"// A comment with ( and "
 Pipeline(
@@ -55,6 +55,21 @@ fn a_valid_pipeline_is_understood() {
     for stage in &pipeline.stages {
         assert_eq!(&VALID[stage.span.clone()], stage.action.name());
     }
+    let transport = |stages: &str| {
+        let text = format!(
+            r#"(stages: [Load(path: "room.obj"), FirstShot(lines: 9), Multipath(lines: 100{stages})])"#
+        );
+        match parse(&text).unwrap().stages[2].action {
+            Action::Multipath { transport, .. } => transport,
+            _ => unreachable!("the third stage is Multipath"),
+        }
+    };
+    let replicas = |replicas, tail| Transport::Replicas { replicas, tail };
+    assert_eq!(transport(""), Transport::Batches);
+    assert_eq!(transport(", transport: Batches"), Transport::Batches);
+    assert_eq!(transport(", transport: Replicas"), replicas(1, 10));
+    assert_eq!(transport(", replicas: 8"), replicas(8, 10));
+    assert_eq!(transport(", tail: 0"), replicas(1, 0));
     let outputs: Vec<_> = pipeline.outputs().map(|o| o.path.to_str().unwrap()).collect();
     assert_eq!(outputs, ["view.png", "own.exr", "result.glb", "tables/patches.csv"]);
     assert!(pipeline.scene_path().is_file() || pipeline.scene_path().ends_with("room.obj"));
@@ -245,10 +260,10 @@ fn wrong_types() {
       |                                  ^^^^^
       = help: did you mean `Sphere`?
 
-    x.ron:5:51: error: `replicas` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 1.5
+    x.ron:5:51: error: `replicas` must be a whole number from 1 to 1_000_000, but it is the number 1.5
     5 | Multipath(lines: "many", domain: Spher, replicas: 1.5),
       |                                                   ^^^
-      = help: write for instance `replicas: 1`
+      = help: write for instance `replicas: 8`
 
     x.ron:6:38: error: `exposure` must be `Auto` or a number, but it is `Automatic`
     6 | Save([Image(path: "a.png", exposure: Automatic, camera: true)]),
@@ -391,17 +406,35 @@ fn numbers_out_of_range() {
 fn what_is_not_there_yet() {
     insta::assert_snapshot!(stages(&[
         r#"Load(path: "room.obj"), FirstShot(lines: 10),"#,
-        r#"Multipath(lines: 10, domain: Hull, replicas: 4)"#,
+        r#"Multipath(lines: 10, domain: Hull)"#,
     ]), @r"
     x.ron:3:30: error: the domain `Hull` is not available yet
-    3 | Multipath(lines: 10, domain: Hull, replicas: 4)
+    3 | Multipath(lines: 10, domain: Hull)
       |                              ^^^^
       = help: write `domain: Sphere`
+    ");
+}
 
-    x.ron:3:46: error: more than one replica is not available yet
-    3 | Multipath(lines: 10, domain: Hull, replicas: 4)
-      |                                              ^
-      = help: write `replicas: 1`
+#[test]
+fn what_one_transport_has_and_the_other_has_not() {
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: "room.obj"), FirstShot(lines: 10),"#,
+        r#"Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)"#,
+    ]), @r"
+    x.ron:3:52: error: the transport `Batches` has no `replicas`
+    3 | Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)
+      |                                                    ^^
+      = help: leave `replicas` out, or write `transport: Replicas`
+
+    x.ron:3:52: error: `replicas` must be a whole number from 1 to 10, but it is the number 20
+    3 | Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)
+      |                                                    ^^
+      = help: write for instance `replicas: 8`
+
+    x.ron:3:62: error: the transport `Batches` has no `tail`
+    3 | Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)
+      |                                                              ^
+      = help: leave `tail` out, or write `transport: Replicas`
     ");
 }
 

@@ -1,0 +1,74 @@
+//! Axes with labels at round numbers.
+
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
+use plotters::prelude::Ranged;
+
+/// An axis from 0.
+///
+/// `plotters` would put labels at fractions of workers, and offers places of one's own for whole numbers
+/// only.
+pub(crate) struct Axis {
+    last: f64,
+    ticks: Vec<f64>,
+}
+
+impl Axis {
+    /// Ends at `last`; the labels are whole multiples of `least` apart.
+    pub(crate) fn new(last: f64, least: f64) -> Self {
+        Self { last, ticks: ticks(last, least) }
+    }
+}
+
+impl Ranged for Axis {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (start, end): (i32, i32)) -> i32 {
+        start + (value / self.last * f64::from(end - start)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        // Thin lines between the labels are not wanted.
+        if hint.weight().allow_light_points() { Vec::new() } else { self.ticks.clone() }
+    }
+
+    fn range(&self) -> Range<f64> {
+        0.0..self.last
+    }
+}
+
+/// Places of labels on an axis from 0 to `last`, ten at most: multiples of `least` times 1, 2, 5, 10, 20, …
+fn ticks(last: f64, least: f64) -> Vec<f64> {
+    const MOST: f64 = 9.0;
+    let mut step = least;
+    for factor in [2.0, 2.5, 2.0].into_iter().cycle() {
+        if last / step < MOST {
+            break;
+        }
+        step *= factor;
+    }
+    (0..).map(|i| f64::from(i) * step).take_while(|&x| x <= last * (1.0 + 1e-9)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_are_at_round_numbers() {
+        assert_eq!(ticks(4.2, 1.0), [0.0, 1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(ticks(17.0, 1.0), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0]);
+        assert_eq!(ticks(128.0, 1.0), [0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0]);
+        assert_eq!(ticks(1.1, 0.2).len(), 6);
+    }
+
+    #[test]
+    fn values_are_mapped_to_pixels() {
+        let axis = Axis::new(8.0, 1.0);
+        assert_eq!([0.0, 2.0, 8.0].map(|x| axis.map(&x, (100, 180))), [100, 120, 180]);
+        // Downwards, as rows of pixels are counted.
+        assert_eq!([0.0, 2.0, 8.0].map(|y| axis.map(&y, (180, 100))), [180, 160, 100]);
+    }
+}

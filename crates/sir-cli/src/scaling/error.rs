@@ -1,0 +1,95 @@
+//! Why a measurement fails.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::Workers;
+
+/// Why speed-ups cannot be measured.
+#[derive(Debug, Error)]
+pub enum ScalingError {
+    /// Ranks were asked for, but the program cannot talk to them.
+    #[error(
+        "this program was built without MPI and runs on 1 rank only; build it with \
+         `cargo build --release --features mpi`, or leave out --ranks"
+    )]
+    NoMpi,
+    /// The command that starts the ranks cannot be started.
+    #[error(
+        "cannot start `{command}` ({source}); install an MPI (Debian: `apt-get install openmpi-bin \
+         libopenmpi-dev libclang-dev`), or name what starts its processes with --mpirun"
+    )]
+    Mpirun {
+        /// The program that was tried.
+        command: String,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// The program cannot start itself.
+    #[error("cannot start this program again")]
+    Program(#[source] io::Error),
+    /// A run failed.
+    #[error("the run on {workers} failed ({status}):\n{stderr}")]
+    Run {
+        /// Its workers.
+        workers: Workers,
+        /// How it ended.
+        status: String,
+        /// Its exit code, for this program to end with.
+        code: u8,
+        /// What it said.
+        stderr: String,
+    },
+    /// A run ended well, but what it printed is no report.
+    #[error(
+        "the run on {workers} printed no report ({why}); does what --mpirun starts pass on its \
+         standard output?"
+    )]
+    NoReport {
+        /// Its workers.
+        workers: Workers,
+        /// What is wrong with what it printed.
+        why: String,
+    },
+    /// Two runs of one pipeline have different results.
+    #[error(
+        "{} (repeat {}) gave another result than {} (repeat {}): {what}; a result must not depend on who \
+         computes it: this is a bug of SIR, please report it with the pipeline",
+        this.0, this.1, first.0, first.1
+    )]
+    DifferentResults {
+        /// Workers and repeat of the run that differs.
+        this: (Workers, usize),
+        /// Those of the first run.
+        first: (Workers, usize),
+        /// What differs, and in which stage.
+        what: String,
+    },
+    /// Somebody edits what is measured.
+    #[error("the pipeline, its scene or the program was changed during the measurement; start it again")]
+    Changed,
+    /// The directory that was asked for has a measurement already.
+    #[error("{} holds the measurement of another `sir scaling`; choose another --out", directory.display())]
+    Exists {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// Ctrl-C or SIGTERM.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}
+
+impl ScalingError {
+    /// The exit code of the program.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::NoMpi | Self::Exists { .. } => 2,
+            Self::Interrupted => 130,
+            Self::Run { code, .. } => *code,
+            _ => 1,
+        }
+    }
+}

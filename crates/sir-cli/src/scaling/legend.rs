@@ -1,0 +1,102 @@
+//! Lines with marks, and the legend that explains them.
+
+use plotters::coord::Shift;
+use plotters::drawing::DrawingAreaErrorKind;
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::series::{Kind, Stage};
+
+/// The picture.
+pub(crate) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Why something cannot be drawn.
+pub(crate) type Failure = DrawingAreaErrorKind<std::io::Error>;
+
+/// A place on the picture, in pixels from its upper left corner.
+pub(crate) type Pixel = (i32, i32);
+
+/// Of the ideal lines, and of that which shows the number of cores.
+pub(crate) const GREY: RGBColor = RGBColor(150, 150, 150);
+
+/// Of letters and axes.
+pub(crate) const INK: RGBColor = RGBColor(50, 50, 50);
+
+/// Height of a row of the legend.
+pub(crate) const ROW: i32 = 24;
+
+/// Distance from one column of the legend to the next.
+const COLUMN: i32 = 110;
+
+/// Half the length of the lines in the legend.
+const SAMPLE: i32 = 24;
+
+/// Draws the points of a series, and the line that joins them.
+pub(crate) fn draw_line(
+    canvas: &Canvas<'_>,
+    points: &[Pixel],
+    kind: &Kind,
+    stage: &Stage,
+) -> Result<(), Failure> {
+    let style = stage.colour.stroke_width(stage.width);
+    if kind.dashed {
+        canvas.draw(&DashedPathElement::new(points.iter().copied(), 7, 4, style))
+    } else {
+        canvas.draw(&PathElement::new(points.to_vec(), style))
+    }
+}
+
+/// Draws a mark. Those of ranks are empty, so that one sees what is below them.
+pub(crate) fn draw_mark(canvas: &Canvas<'_>, at: Pixel, kind: &Kind, stage: &Stage) -> Result<(), Failure> {
+    if kind.mark.is_empty() {
+        return canvas.draw(&Circle::new(at, 3 + stage.width as i32 / 2, stage.colour.filled()));
+    }
+    // Two corners more than there are: the line ends where it has begun, and goes round the first corner.
+    let corners = kind.mark.iter().chain(kind.mark.iter().take(2)).map(|(x, y)| (at.0 + x, at.1 + y));
+    canvas.draw(&PathElement::new(corners.collect::<Vec<_>>(), stage.colour.stroke_width(2)))
+}
+
+/// Writes a text whose middle, or whose left end, is at a place.
+pub(crate) fn write(
+    canvas: &Canvas<'_>,
+    text: &str,
+    at: Pixel,
+    centred: bool,
+    size: i32,
+    colour: RGBColor,
+) -> Result<(), Failure> {
+    let style = TextStyle::from(("sans-serif", size).into_font()).color(&colour);
+    let anchor = if centred { HPos::Center } else { HPos::Left };
+    canvas.draw(&Text::new(text.to_owned(), at, style.pos(Pos::new(anchor, VPos::Center))))
+}
+
+/// Draws the legend, centred below `top`: a column for every stage, a row for every kind of workers.
+pub(crate) fn draw_legend(
+    canvas: &Canvas<'_>,
+    top: i32,
+    stages: &[Stage],
+    kinds: &[Kind],
+) -> Result<(), Failure> {
+    let letters = kinds.iter().map(|kind| kind.label.len() as i32).max().unwrap_or(0);
+    // Columns after the names of the kinds: the stages, and the ideal.
+    let names = 7 * letters + 20;
+    let width = names + COLUMN * (stages.len() as i32 + 1);
+    let left = (canvas.dim_in_pixel().0 as i32 - width) / 2;
+    let column = |i: usize| left + names + COLUMN * i as i32 + COLUMN / 2;
+    let row = |i: usize| top + ROW * i as i32 + ROW / 2;
+    for (i, stage) in stages.iter().enumerate() {
+        write(canvas, stage.name, (column(i), row(0)), true, 16, stage.colour)?;
+        for (j, kind) in kinds.iter().enumerate() {
+            let (x, y) = (column(i), row(j + 1));
+            draw_line(canvas, &[(x - SAMPLE, y), (x + SAMPLE, y)], kind, stage)?;
+            draw_mark(canvas, (x, y), kind, stage)?;
+        }
+    }
+    for (j, kind) in kinds.iter().enumerate() {
+        write(canvas, &kind.label, (left, row(j + 1)), false, 16, INK)?;
+    }
+    let (x, y) = (column(stages.len()), row(1));
+    write(canvas, "ideal", (x, row(0)), true, 16, GREY)?;
+    canvas.draw(&PathElement::new(vec![(x - SAMPLE, y), (x + SAMPLE, y)], GREY.stroke_width(1)))
+}

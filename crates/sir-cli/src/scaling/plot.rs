@@ -1,0 +1,139 @@
+//! The picture: speed-up and efficiency over the number of workers.
+
+use std::io;
+
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+
+use super::axis::Axis;
+use super::legend::{Canvas, Failure, GREY, INK, Pixel, ROW, draw_legend, draw_line, draw_mark, write};
+use super::series::{Kind, Stage, kinds, stages};
+use super::statistics::Part;
+use super::study::Study;
+use super::workers::counted;
+
+const WIDTH: u32 = 1000;
+const TITLE: u32 = 44;
+const PANELS: u32 = 400;
+
+/// How far axes go beyond what they show.
+const ROOM: f64 = 1.06;
+
+/// The speed-ups, and beside them the efficiencies, as SVG.
+///
+/// # Errors
+///
+/// None that are known: it is drawn in memory.
+pub fn svg(study: &Study) -> io::Result<String> {
+    let mut text = String::new();
+    draw(study, &mut text).map_err(io::Error::other)?;
+    Ok(text)
+}
+
+fn draw(study: &Study, text: &mut String) -> Result<(), Failure> {
+    let (stages, kinds) = (stages(study), kinds(study));
+    let legend = ROW as u32 * (kinds.len() as u32 + 1) + 20;
+    let canvas = SVGBackend::with_string(text, (WIDTH, TITLE + PANELS + legend)).into_drawing_area();
+    canvas.fill(&WHITE)?;
+    let title = match study.repeats {
+        1 => format!("{}, one run each", study.name),
+        n => format!("{}, medians of {n} runs", study.name),
+    };
+    write(&canvas, &title, (WIDTH as i32 / 2, TITLE as i32 / 2 + 4), true, 24, INK)?;
+    let (_, below) = canvas.split_vertically(TITLE);
+    let (panels, _) = below.split_vertically(PANELS);
+    let (left, right) = panels.split_horizontally(WIDTH / 2);
+    let most = study.rows.iter().map(|row| row.p).max().unwrap_or(1) as f64;
+    let speed_ups = Panel {
+        label: "speed-up S(p) = T(1) / T(p)",
+        value: |part| part.speed_up,
+        ideal: [(0.0, 0.0), (most, most)],
+        last: ROOM * most,
+        least_step: 1.0,
+    };
+    let efficiencies = Panel {
+        label: "efficiency E(p) = S(p) / p",
+        value: |part| part.efficiency,
+        ideal: [(0.0, 1.0), (ROOM * most, 1.0)],
+        last: 1.1,
+        least_step: 0.2,
+    };
+    speed_ups.draw(study, &stages, &kinds, &canvas, &left)?;
+    efficiencies.draw(study, &stages, &kinds, &canvas, &right)?;
+    draw_legend(&canvas, (TITLE + PANELS) as i32, &stages, &kinds)?;
+    canvas.present()
+}
+
+/// One of the two diagrams.
+struct Panel {
+    /// Beside the vertical axis.
+    label: &'static str,
+    value: fn(Part) -> f64,
+    ideal: [(f64, f64); 2],
+    /// Where the vertical axis ends, unless there are larger values.
+    last: f64,
+    /// Smallest distance of the labels on the vertical axis.
+    least_step: f64,
+}
+
+impl Panel {
+    /// Draws it into `area`, which is a part of `canvas`.
+    fn draw(
+        &self,
+        study: &Study,
+        stages: &[Stage],
+        kinds: &[Kind],
+        canvas: &Canvas<'_>,
+        area: &Canvas<'_>,
+    ) -> Result<(), Failure> {
+        let value = |stage: &Stage, row: usize| (stage.part)(&study.rows[row]).map(self.value);
+        let all =
+            (0..study.rows.len()).flat_map(|row| stages.iter().filter_map(move |stage| value(stage, row)));
+        let y_last = all.fold(self.last, |last, y| last.max(ROOM * y));
+        let x_last = ROOM * study.rows.iter().map(|row| row.p).max().unwrap_or(1) as f64;
+        let mut chart = ChartBuilder::on(area)
+            .margin(14)
+            .x_label_area_size(48)
+            .y_label_area_size(58)
+            .build_cartesian_2d(Axis::new(x_last, 1.0), Axis::new(y_last, self.least_step))?;
+        let decimals = usize::from(self.least_step < 1.0);
+        chart
+            .configure_mesh()
+            .disable_x_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(RGBColor(228, 228, 228))
+            .axis_style(INK)
+            .label_style(("sans-serif", 16).into_font().color(&INK))
+            .axis_desc_style(("sans-serif", 17).into_font().color(&INK))
+            .x_label_formatter(&|x| format!("{x:.0}"))
+            .y_label_formatter(&|y| format!("{y:.decimals$}"))
+            .x_desc("workers p")
+            .y_desc(self.label)
+            .draw()?;
+        let at = |x: f64, y: f64| chart.backend_coord(&(x, y));
+        let ideal = self.ideal.map(|(x, y)| at(x, y));
+        canvas.draw(&PathElement::new(ideal.to_vec(), GREY.stroke_width(1)))?;
+        let cores = study.cores as f64;
+        if cores < x_last / ROOM {
+            let (x, top) = at(cores, y_last);
+            let line = vec![(x, top + 18), at(cores, 0.0)];
+            canvas.draw(&DashedPathElement::new(line, 2, 3, GREY.stroke_width(1)))?;
+            write(canvas, &counted(study.cores, "core"), (x, top + 8), true, 14, GREY)?;
+        }
+        let series = || stages.iter().rev().flat_map(|stage| kinds.iter().map(move |kind| (stage, kind)));
+        let points = |stage: &Stage, rows: &[usize]| -> Vec<Pixel> {
+            let point = |&row: &usize| Some(at(study.rows[row].p as f64, value(stage, row)?));
+            rows.iter().filter_map(point).collect()
+        };
+        for (stage, kind) in series() {
+            draw_line(canvas, &points(stage, &kind.rows), kind, stage)?;
+        }
+        // On top of all lines.
+        for (stage, kind) in series() {
+            for point in points(stage, &kind.marked) {
+                draw_mark(canvas, point, kind, stage)?;
+            }
+        }
+        Ok(())
+    }
+}

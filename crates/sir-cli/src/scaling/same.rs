@@ -1,0 +1,43 @@
+//! All runs of a measurement must have the same result.
+
+use super::{ScalingError, Workers};
+use crate::report::{Report, StageReport};
+
+/// A run: its workers, and which repeat it is, from 1.
+pub(crate) type Which = (Workers, usize);
+
+/// Checks that a run has the same result as the first one.
+pub(crate) fn check(first: (Which, &Report), this: (Which, &Report)) -> Result<(), ScalingError> {
+    let (a, b) = (first.1, this.1);
+    let inputs =
+        |r: &Report| (r.version, r.program.clone(), r.pipeline.text.clone(), r.seed, r.scene.clone());
+    if inputs(a) != inputs(b) {
+        return Err(ScalingError::Changed);
+    }
+    let different = |what| Err(ScalingError::DifferentResults { this: this.0, first: first.0, what });
+    if a.stages.len() != b.stages.len() {
+        return different("it has another number of stages".into());
+    }
+    match a.stages.iter().zip(&b.stages).find_map(|(a, b)| difference(a, b)) {
+        Some(what) => different(what),
+        None => Ok(()),
+    }
+}
+
+/// What is different in a stage, besides the time.
+fn difference(a: &StageReport, b: &StageReport) -> Option<String> {
+    if a.name != b.name {
+        return Some(format!("`{}` instead of `{}`", b.name, a.name));
+    }
+    let what = match (&a.lines, &b.lines) {
+        (Some(a), Some(b)) if a.tally_hash != b.tally_hash => {
+            format!("tally_hash {} instead of {}", b.tally_hash, a.tally_hash)
+        }
+        (Some(a), Some(b)) if a.balance != b.balance => {
+            format!("balance {:?} instead of {:?}", b.balance, a.balance)
+        }
+        (a, b) if a != b => "the same tallies and balance, but other counts or errors".into(),
+        _ => return None,
+    };
+    Some(format!("`{}` has {what}", a.name))
+}

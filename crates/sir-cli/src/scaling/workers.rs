@@ -1,0 +1,112 @@
+//! Who shares the work of a run, and which combinations are measured.
+
+use std::fmt;
+use std::num::NonZeroUsize;
+
+use serde::Serialize;
+
+/// Ranks, and threads of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Workers {
+    /// Processes that talk by MPI; one without it.
+    pub ranks: NonZeroUsize,
+    /// Threads of each process.
+    pub threads: NonZeroUsize,
+}
+
+impl Workers {
+    /// One rank with one thread, to which all others are compared.
+    pub const BASELINE: Self = Self { ranks: NonZeroUsize::MIN, threads: NonZeroUsize::MIN };
+
+    /// Number of workers `p`: all threads of all ranks.
+    #[must_use]
+    pub fn count(self) -> usize {
+        self.ranks.get().saturating_mul(self.threads.get())
+    }
+}
+
+impl fmt::Display for Workers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (ranks, threads) = (counted(self.ranks.get(), "rank"), counted(self.threads.get(), "thread"));
+        write!(f, "{ranks} × {threads}")
+    }
+}
+
+/// A number of things, such as `1 thread` or `2 threads`.
+pub(crate) fn counted(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
+}
+
+/// Which combinations are measured, and how often.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// The combinations, fewest workers first, each of them once. The first is [`Workers::BASELINE`].
+    pub workers: Vec<Workers>,
+    /// Whether the baseline is there although nobody asked for it.
+    pub baseline_added: bool,
+    /// Runs of each combination.
+    pub repeats: NonZeroUsize,
+}
+
+impl Plan {
+    /// Every number of ranks with every number of threads, and the baseline.
+    #[must_use]
+    pub fn new(ranks: &[NonZeroUsize], threads: &[NonZeroUsize], repeats: NonZeroUsize) -> Self {
+        let pairs = ranks.iter().flat_map(|&ranks| threads.iter().map(move |&threads| (ranks, threads)));
+        let mut workers: Vec<Workers> = pairs.map(|(ranks, threads)| Workers { ranks, threads }).collect();
+        let baseline_added = !workers.contains(&Workers::BASELINE);
+        if baseline_added {
+            workers.push(Workers::BASELINE);
+        }
+        workers.sort_by_key(|w| (w.count(), w.ranks));
+        workers.dedup();
+        Self { workers, baseline_added, repeats }
+    }
+
+    /// The largest number of ranks.
+    #[must_use]
+    pub fn most_ranks(&self) -> usize {
+        self.workers.iter().map(|w| w.ranks.get()).max().unwrap_or(1)
+    }
+
+    /// All runs, interleaved: every combination once, then every one again. A machine that becomes slower
+    /// while it is measured slows down all of them.
+    pub fn runs(&self) -> impl Iterator<Item = (usize, usize)> {
+        let combinations = self.workers.len();
+        (0..self.repeats.get()).flat_map(move |repeat| (0..combinations).map(move |index| (repeat, index)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers<const N: usize>(numbers: [usize; N]) -> [NonZeroUsize; N] {
+        numbers.map(|n| NonZeroUsize::new(n).unwrap())
+    }
+
+    #[test]
+    fn combinations_are_in_order_and_unique() {
+        let plan = Plan::new(&numbers([2, 1, 2]), &numbers([1, 4, 2]), NonZeroUsize::MIN);
+        let found: Vec<_> = plan.workers.iter().map(|w| (w.ranks.get(), w.threads.get())).collect();
+        assert_eq!(found, [(1, 1), (1, 2), (2, 1), (1, 4), (2, 2), (2, 4)]);
+        assert!(!plan.baseline_added);
+        assert_eq!(plan.most_ranks(), 2);
+    }
+
+    #[test]
+    fn the_baseline_is_always_there() {
+        let [two] = numbers([2]);
+        let plan = Plan::new(&[two], &[two], two);
+        assert_eq!(plan.workers, [Workers::BASELINE, Workers { ranks: two, threads: two }]);
+        assert!(plan.baseline_added);
+        assert_eq!(plan.runs().collect::<Vec<_>>(), [(0, 0), (0, 1), (1, 0), (1, 1)]);
+    }
+
+    #[test]
+    fn names_count_properly() {
+        let [one, two] = numbers([1, 2]);
+        assert_eq!(Workers { ranks: two, threads: one }.to_string(), "2 ranks × 1 thread");
+        assert_eq!(Workers { ranks: one, threads: two }.to_string(), "1 rank × 2 threads");
+    }
+}

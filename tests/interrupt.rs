@@ -1,0 +1,216 @@
+//! Runs that are stopped, killed, or find the disk full, and go on: with the real program and real signals.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+/// Some seconds of work, with outputs in between.
+const PIPELINE: &str = r#"Pipeline(
+    stages: [
+        Load(path: "furnace.gltf"),
+        Subdivide(patches: 3_000),
+        FirstShot(lines: 4_000_000),
+        Save([Table(path: "direct.npy")]),
+        Multipath(lines: 8_000_000),
+        Save([Table(path: "patches.csv"), Gltf(path: "lit.glb")]),
+    ],
+)"#;
+
+fn sir() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_sir"))
+}
+
+/// A folder with a scene and a pipeline of that name and text.
+fn folder(text: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace/furnace.gltf");
+    fs::copy(scene, folder.path().join("furnace.gltf")).unwrap();
+    fs::write(folder.path().join("work.ron"), text).unwrap();
+    folder
+}
+
+fn in_replicas() -> String {
+    PIPELINE.replace("Multipath(lines: 8_000_000)", "Multipath(lines: 16_000_000, replicas: 3)")
+}
+
+/// Starts a run, or goes on with the one in this directory if there is a checkpoint.
+fn start(folder: &Path, out: &str, threads: usize, every: &str) -> Child {
+    let mut command = sir();
+    if folder.join(out).join("checkpoint").exists() {
+        command.args(["resume", out]);
+    } else {
+        command.args(["run", "work.ron", "--out", out]);
+    }
+    command.args(["--threads", &threads.to_string(), "--checkpoint-every", every]);
+    command.current_dir(folder).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+fn finish(folder: &Path, out: &str) {
+    let Output { status, stderr, .. } = start(folder, out, 2, "300").wait_with_output().unwrap();
+    assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
+}
+
+fn signal(child: &Child, name: &str) {
+    Command::new("kill").args([name, &child.id().to_string()]).status().unwrap();
+}
+
+/// All files of a finished run; of the report all but the times.
+fn files(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let entries = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path());
+    entries
+        .map(|path| {
+            let mut bytes = fs::read(&path).unwrap();
+            if path.ends_with("result.json") {
+                let mut report: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
+                report["time"] = 0.into();
+                report["stages"]
+                    .as_array_mut()
+                    .unwrap()
+                    .iter_mut()
+                    .for_each(|stage| stage["time"] = 0.into());
+                bytes = serde_json::to_vec(&report).unwrap();
+            }
+            (path.strip_prefix(directory).unwrap().to_owned(), bytes)
+        })
+        .collect()
+}
+
+#[track_caller]
+fn assert_same(folder: &Path, out: &str, whole: &str) {
+    let (a, b) = (files(&folder.join(out)), files(&folder.join(whole)));
+    assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
+    for (name, bytes) in &a {
+        assert!(*bytes == b[name], "{} differs from that of a run which was never stopped", name.display());
+    }
+}
+
+#[test]
+fn a_run_that_is_killed_twenty_times_gives_the_same_bytes() {
+    let folder = folder(PIPELINE);
+    let folder = folder.path();
+    finish(folder, "whole");
+    let (mut kills, mut runs) = (0, 0);
+    // Pauses that are scattered enough, the same ones each time.
+    let mut pause = (0..).map(|i: u64| Duration::from_millis(40 + i * 7919 % 450));
+    while kills < 20 {
+        let out = format!("run-{runs}");
+        loop {
+            let mut child = start(folder, &out, 1 + kills % 3, "0.05");
+            sleep(pause.next().unwrap());
+            if child.try_wait().unwrap().is_none() && kills < 20 {
+                signal(&child, "-KILL");
+                kills += 1;
+            }
+            let Output { status, stderr, .. } = child.wait_with_output().unwrap();
+            if status.success() {
+                break;
+            }
+            assert_eq!(status.code(), None, "{}", String::from_utf8_lossy(&stderr));
+        }
+        assert_same(folder, &out, "whole");
+        runs += 1;
+    }
+    println!("{kills} kills in {runs} runs");
+}
+
+#[test]
+fn ctrl_c_and_sigterm_save_the_state_and_exit_with_130() {
+    for (name, text) in [("batches", PIPELINE.to_owned()), ("replicas", in_replicas())] {
+        let folder = folder(&text);
+        let folder = folder.path();
+        finish(folder, "whole");
+        for which in ["-INT", "-TERM", "-INT"] {
+            let child = start(folder, "stopped", 1, "300");
+            while !folder.join("stopped/checkpoint").exists() {
+                sleep(Duration::from_millis(10));
+            }
+            sleep(Duration::from_millis(300));
+            signal(&child, which);
+            let Output { status, stderr, .. } = child.wait_with_output().unwrap();
+            let stderr = String::from_utf8(stderr).unwrap();
+            assert_eq!(status.code(), Some(130), "{name}: {stderr}");
+            assert!(
+                stderr.contains("interrupted") && stderr.contains("`sir resume stopped` goes on"),
+                "{stderr}"
+            );
+            assert!(!folder.join("stopped/result.json").exists());
+        }
+        finish(folder, "stopped");
+        assert_same(folder, "stopped", "whole");
+    }
+}
+
+/// A limit on the size of files stands for a disk that is full: it is large enough for the first checkpoint only.
+#[test]
+fn a_full_disk_is_an_error_that_leaves_the_checkpoint_before_it() {
+    let folder = folder(PIPELINE);
+    let folder = folder.path();
+    finish(folder, "whole");
+    let script = "trap '' XFSZ; ulimit -f 100; exec \"$0\" run work.ron --out full --checkpoint-every 0";
+    let sir = env!("CARGO_BIN_EXE_sir");
+    let Output { status, stderr, .. } =
+        Command::new("sh").args(["-c", script, sir]).current_dir(folder).output().unwrap();
+    let stderr = String::from_utf8(stderr).unwrap();
+    assert_eq!(status.code(), Some(1), "{stderr}");
+    let last = stderr.lines().last().unwrap();
+    assert!(last.starts_with("error: cannot write the checkpoint full/checkpoint; "), "{stderr}");
+    assert!(last.contains("still whole") && last.contains("too large"), "{stderr}");
+    finish(folder, "full");
+    assert_same(folder, "full", "whole");
+}
+
+#[test]
+fn what_cannot_be_resumed_is_refused_with_the_reason() {
+    let folder = folder(PIPELINE);
+    let folder = folder.path();
+    let child = start(folder, "stopped", 1, "300");
+    sleep(Duration::from_millis(500));
+    signal(&child, "-TERM");
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
+    let refused = |directory: &str| {
+        let Output { status, stderr, .. } =
+            sir().args(["resume", directory]).current_dir(folder).output().unwrap();
+        let stderr = String::from_utf8(stderr).unwrap();
+        assert_eq!(status.code(), Some(2), "{stderr}");
+        let last = stderr.lines().last().unwrap().to_owned();
+        assert!(last.starts_with(&format!("error: the run in {directory} cannot be resumed: ")), "{stderr}");
+        last
+    };
+    // Something is changed, and changed back.
+    let with = |file: &str, change: &dyn Fn(Vec<u8>) -> Vec<u8>| {
+        let path = folder.join(file);
+        let before = fs::read(&path).unwrap();
+        fs::write(&path, change(before.clone())).unwrap();
+        let error = refused("stopped");
+        fs::write(&path, before).unwrap();
+        error
+    };
+    let text = |from: &'static str, to: &'static str| {
+        move |bytes| String::from_utf8(bytes).unwrap().replacen(from, to, 1).into_bytes()
+    };
+    let error = with("work.ron", &text("8_000_000", "9_000_000"));
+    assert!(error.contains("work.ron has changed; put it back, or begin anew"), "{error}");
+    let error = with("furnace.gltf", &text("0.5", "0.25"));
+    assert!(error.contains("furnace.gltf has changed; put it back, or begin anew"), "{error}");
+    let flip = |mut bytes: Vec<u8>| {
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        bytes
+    };
+    assert!(with("stopped/checkpoint", &flip).contains("damaged"));
+    let cut = |bytes: Vec<u8>| bytes[..bytes.len() / 2].to_vec();
+    assert!(with("stopped/checkpoint", &cut).contains("damaged"));
+    let other = |bytes: Vec<u8>| [b"SIR checkpoint 0\n", &bytes[..]].concat();
+    assert!(with("stopped/checkpoint", &other).contains("another version"));
+    finish(folder, "stopped");
+    assert!(refused("stopped").contains("the run is finished: its result is there"));
+    assert!(refused("nowhere").contains("there is no such directory"));
+    fs::create_dir(folder.join("empty")).unwrap();
+    assert!(refused("empty").contains("it holds no checkpoint; begin anew with `sir run`"));
+}
