@@ -57,7 +57,8 @@ fn finish(folder: &Path, out: &str) {
 }
 
 fn signal(child: &Child, name: &str) {
-    Command::new("kill").args([name, &child.id().to_string()]).status().unwrap();
+    // The shell's own, because not every system has a program of that name.
+    Command::new("sh").args(["-c", &format!("kill {name} {}", child.id())]).status().unwrap();
 }
 
 /// All files of a finished run; of the report all but the times.

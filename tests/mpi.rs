@@ -160,10 +160,15 @@ fn assert_resumes(folder: &Path, ranks: usize) {
     assert!(result(&folder.join("run")) == result(&folder.join("whole")));
 }
 
-/// The processes whose parent is `child`.
-fn ranks_of(child: &Child) -> Vec<String> {
-    let output = Command::new("pgrep").args(["-P", &child.id().to_string()]).output().unwrap();
-    String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect()
+/// The processes whose parent is `child`: Linux only.
+fn ranks_of(child: &Child) -> Vec<u32> {
+    let pid = child.id();
+    let children = fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap();
+    children.split_whitespace().map(|pid| pid.parse().unwrap()).collect()
+}
+
+fn kill(signal: &str, pid: u32) {
+    Command::new("sh").args(["-c", &format!("kill {signal} {pid}")]).status().unwrap();
 }
 
 #[test]
@@ -174,7 +179,7 @@ fn a_killed_rank_ends_the_run_and_the_last_checkpoint_resumes() {
         let ranks = ranks_of(&child);
         assert_eq!(ranks.len(), 3);
         let start = Instant::now();
-        Command::new("kill").args(["-KILL", &ranks[1]]).status().unwrap();
+        kill("-KILL", ranks[1]);
         let (code, _, stderr) = reap(child);
         assert!(start.elapsed() < Duration::from_secs(30), "the other ranks waited: {stderr}");
         assert!(code.is_some_and(|code| code != 0), "{code:?}: {stderr}");
@@ -189,7 +194,7 @@ fn signals_to_mpirun_save_the_state_of_all_ranks() {
     for signal in ["-USR1", "-TERM"] {
         let folder = folder(&pipeline(1_000_000, "30_000_000"));
         let child = under_way(folder.path(), 2);
-        Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        kill(signal, child.id());
         let (code, _, stderr) = reap(child);
         assert!(code.is_some_and(|code| code != 0), "{code:?}: {stderr}");
         assert_eq!(stderr.matches("error: interrupted after").count(), 1, "{signal}: {stderr}");

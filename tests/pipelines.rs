@@ -136,7 +136,7 @@ fn assert_balanced(report: &Report) {
         if made_up > 0.0 {
             assert!((ratio - 1.0).abs() < 1e-12, "batches sent {ratio} of what was left to them");
             // Each unit of power that is unshot would have been received at least once.
-            assert!(left < 0.02 && made_up >= left, "{left} unshot, {made_up} made up");
+            assert!(left < 0.05 && made_up >= left, "{left} unshot, {made_up} made up");
         } else {
             assert!((ratio - 1.0).abs() < 0.05, "multipath sent {ratio} of what was left to it");
             assert!(left < 1e-3, "the tail sends on what is left, but for {left}");

@@ -1,5 +1,5 @@
 //! How much light the transports lose, and how that depends on the number of workers: the table of docs/parallel.md.
-//! `cargo run --release -p sir-parallel --example bias`
+//! `cargo run --release -p sir-parallel --example bias docs/images/bias.svg`
 //!
 //! The inside of a sphere, where every patch sees all others alike: whatever the first shot has brought, the exact
 //! answer is that all reflected power `U` is received `U / (1 − ρ)` times.
@@ -8,6 +8,7 @@
 use std::num::NonZeroUsize;
 
 use glam::DVec3;
+use plotters::prelude::*;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::Domain;
@@ -18,39 +19,106 @@ use sir_radiosity::{Model, MultipathSettings, Shot, Transported};
 /// Crossings of a patch by all lines together.
 const CROSSINGS: u64 = 2560;
 
+/// Numbers of workers.
+const WORKERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
+
+/// Relative errors of the reflected power, and noise of a patch, in the order of [`NAMES`].
+struct Row {
+    reflectance: f64,
+    workers: usize,
+    bias: [f64; 3],
+    noise: [f64; 3],
+}
+
+const NAMES: [&str; 3] = ["replicas, no tail", "replicas, a tenth is tail", "batches"];
+
+impl Row {
+    /// What theory says about replicas without a tail: −ρ/(1−ρ) P/n.
+    fn expected(&self) -> f64 {
+        -self.reflectance / (1.0 - self.reflectance) * self.workers as f64 / CROSSINGS as f64
+    }
+}
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    println!(
-        "   ρ  workers   Replicas, no tail   −ρ/(1−ρ) P/n   Replicas, a tenth of tail   Batches   noise of a patch:"
-    );
+    let mut rows = Vec::new();
+    println!("| ρ | workers P | −ρ/(1−ρ) P/n | {} | {} | {} | noise of a patch |", NAMES[0], NAMES[1], NAMES[2]);
+    println!("|--:|--:|--:|--:|--:|--:|--:|");
     for reflectance in [0.5, 0.8] {
         let model = sphere(reflectance)?;
-        let domain = Domain::Sphere(model.scene.bounding_sphere());
-        // Every line crosses two patches.
-        let lines = CROSSINGS * model.mesh.side_count() as u64 / 2;
-        for workers in [1, 8, 64] {
-            let crew = &mut Crew::of(NonZeroUsize::new(workers).unwrap_or(NonZeroUsize::MIN));
-            let shot = first_shot(&model, 4_000_000, 1, crew, None)?.outcome;
-            let mut replicas = |tail| {
-                let settings = MultipathSettings { lines, tail, replicas: workers as u64, domain };
-                multipath(&model, shot.clone(), settings, 1, crew, None)
-            };
-            let published = replicas(0)?.outcome;
-            let tail = replicas(lines / 10)?.outcome;
-            let frozen = batches(&model, shot.clone(), lines, domain, 1, crew, None)?.outcome;
-            let formula = -reflectance / (1.0 - reflectance) * workers as f64 / CROSSINGS as f64;
-            let bias = |run| 100.0 * bias(&shot, run, reflectance);
-            println!(
-                "{reflectance:4.1} {workers:8} {:17.3} % {:12.3} % {:25.3} % {:7.3} %   {:.2} %, {:.2} %, {:.2} %",
-                bias(&published),
-                100.0 * formula,
-                bias(&tail),
-                bias(&frozen),
-                100.0 * noise(&model, &shot, &published),
-                100.0 * noise(&model, &shot, &tail),
-                100.0 * noise(&model, &shot, &frozen),
-            );
+        for workers in WORKERS {
+            let row = measure(&model, reflectance, workers)?;
+            let [published, tail, batches] = row.bias.map(|bias| format!("{:.3} %", 100.0 * bias));
+            let noise = row.noise.map(|noise| format!("{:.2} %", 100.0 * noise)).join(", ");
+            let expected = 100.0 * row.expected();
+            println!("| {reflectance} | {workers} | {expected:.3} % | {published} | {tail} | {batches} | {noise} |");
+            rows.push(row);
         }
     }
+    match std::env::args().nth(1) {
+        Some(path) => plot(&path, &rows),
+        None => Ok(()),
+    }
+}
+
+fn measure(model: &Model, reflectance: f64, workers: usize) -> Result<Row, Box<dyn std::error::Error>> {
+    let domain = Domain::Sphere(model.scene.bounding_sphere());
+    // Every line crosses two patches.
+    let lines = CROSSINGS * model.mesh.side_count() as u64 / 2;
+    let crew = &mut Crew::of(NonZeroUsize::new(workers).unwrap_or(NonZeroUsize::MIN));
+    let shot = first_shot(model, 4_000_000, 1, crew, None)?.outcome;
+    let mut replicas = |tail| {
+        let settings = MultipathSettings { lines, tail, replicas: workers as u64, domain };
+        multipath(model, shot.clone(), settings, 1, crew, None)
+    };
+    let (published, tail) = (replicas(0)?.outcome, replicas(lines / 10)?.outcome);
+    let frozen = batches(model, shot.clone(), lines, domain, 1, crew, None)?.outcome;
+    let runs = [&published, &tail, &frozen];
+    let bias = runs.map(|run| bias(&shot, run, reflectance));
+    let noise = runs.map(|run| noise(model, &shot, run));
+    Ok(Row { reflectance, workers, bias, noise })
+}
+
+/// The bias over the number of workers, with logarithmic scales.
+fn plot(path: &str, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
+    const LEAST: f64 = 1e-4;
+    let root = SVGBackend::new(path, (900, 420)).into_drawing_area();
+    root.fill(&WHITE)?;
+    for (area, reflectance) in root.split_evenly((1, 2)).iter().zip([0.5, 0.8]) {
+        let mut chart = ChartBuilder::on(area)
+            .caption(format!("light missing in a sphere, ρ = {reflectance}"), ("sans-serif", 18))
+            .margin(12)
+            .set_label_area_size(LabelAreaPosition::Left, 60)
+            .set_label_area_size(LabelAreaPosition::Bottom, 40)
+            .build_cartesian_2d((0.9..72.0).log_scale(), (LEAST..20.0).log_scale())?;
+        chart
+            .configure_mesh()
+            .x_desc("workers, P")
+            .y_desc("% of the reflected light (less than 0.0001 is drawn as that)")
+            .x_label_formatter(&|x| format!("{x:.0}"))
+            .y_label_formatter(&|y| format!("{y}"))
+            .light_line_style(WHITE)
+            .draw()?;
+        let of = || rows.iter().filter(|row| row.reflectance == reflectance);
+        let formula = of().map(|row| (row.workers as f64, -100.0 * row.expected()));
+        chart
+            .draw_series(LineSeries::new(formula, BLACK.mix(0.4)))?
+            .label("ρ/(1−ρ) P/n")
+            .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], BLACK.mix(0.4)));
+        for (k, colour) in [RED, MAGENTA, BLUE].into_iter().enumerate() {
+            let points = || of().map(move |row| (row.workers as f64, (-100.0 * row.bias[k]).max(LEAST)));
+            chart
+                .draw_series(LineSeries::new(points(), colour).point_size(4))?
+                .label(NAMES[k])
+                .legend(move |(x, y)| Circle::new((x + 9, y), 4, colour.filled()));
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperLeft)
+            .background_style(WHITE)
+            .border_style(BLACK.mix(0.3))
+            .draw()?;
+    }
+    root.present()?;
     Ok(())
 }
 
