@@ -216,7 +216,11 @@ fn a_furnace_has_the_radiosity_of_the_geometric_series() {
             values += 3;
         }
     }
-    assert_within_four_sigma(&means, exact, "furnace");
+    // Batches lose nothing, and what is unshot is made up for: the mean over all patches is exact in each run, but for
+    // the rounding of tables.
+    for mean in means {
+        assert!((mean / exact - 1.0).abs().max_element() < 1e-6, "furnace: {mean}, exact {exact}");
+    }
     // A normal deviate is beyond 4σ once in 16 000 times; a patch's error bar is itself an estimate.
     println!("{far} of {values} patches are beyond 4σ");
     assert!(far * 1000 <= values, "{far} of {values} patches are beyond 4σ");

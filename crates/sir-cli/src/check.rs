@@ -88,17 +88,17 @@ fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, Solve
         match stage.action {
             Action::FirstShot { lines } => {
                 let first_shot = FirstShot::new(model, lines, pipeline.seed)?;
-                let (tally, mut books) = (first_shot.tally(), Books::default());
-                let rate = rate(lines, |block| first_shot.trace(block, &tally, &mut books));
+                let (tally, mut books) = (first_shot.tally(1), Books::default());
+                let rate = rate(lines, |block| first_shot.trace(0, block, &tally, &mut books));
                 shot = Some(first_shot.finish(tally, books)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::Multipath { lines, .. } => {
                 let Some(shot) = shot.take() else { continue };
                 // Both transports trace the same lines at about the same rate.
-                let transport = Batches::new(model, shot, lines, domain(model), pipeline.seed);
+                let transport = Batches::new(model, shot, lines, domain(model), pipeline.seed, 1);
                 let mut books = Books::default();
-                let rate = rate(lines, |block| transport.trace(block, &mut books));
+                let rate = rate(lines, |block| transport.trace(0, block, &mut books));
                 estimates.push(StageEstimate { name, lines, rate });
             }
             _ => {}

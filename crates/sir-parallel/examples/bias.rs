@@ -41,7 +41,10 @@ impl Row {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut rows = Vec::new();
-    println!("| ρ | workers P | −ρ/(1−ρ) P/n | {} | {} | {} | noise of a patch |", NAMES[0], NAMES[1], NAMES[2]);
+    println!(
+        "| ρ | workers P | −ρ/(1−ρ) P/n | {} | {} | {} | noise of a patch |",
+        NAMES[0], NAMES[1], NAMES[2]
+    );
     println!("|--:|--:|--:|--:|--:|--:|--:|");
     for reflectance in [0.5, 0.8] {
         let model = sphere(reflectance)?;
@@ -50,7 +53,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let [published, tail, batches] = row.bias.map(|bias| format!("{:.3} %", 100.0 * bias));
             let noise = row.noise.map(|noise| format!("{:.2} %", 100.0 * noise)).join(", ");
             let expected = 100.0 * row.expected();
-            println!("| {reflectance} | {workers} | {expected:.3} % | {published} | {tail} | {batches} | {noise} |");
+            println!(
+                "| {reflectance} | {workers} | {expected:.3} % | {published} | {tail} | {batches} | {noise} |"
+            );
             rows.push(row);
         }
     }

@@ -71,8 +71,8 @@ impl StageTime {
 
 /// What a stage of lines can do for its crew.
 pub(crate) trait Work: Sync {
-    /// Traces some lines.
-    fn trace(&self, lines: Range<u64>, books: &mut Books);
+    /// Traces some lines, by the thread of this number.
+    fn trace(&self, thread: usize, lines: Range<u64>, books: &mut Books);
     /// Shows the whole state to a visitor.
     fn visit(&mut self, visitor: &mut dyn Visitor);
 }
@@ -223,7 +223,9 @@ impl<'c, 'a> Shift<'c, 'a> {
             let mine = share(lines, self.crew.comm.rank() as u64, self.crew.comm.size() as u64);
             let mine = position.next + mine.start..position.next + mine.end;
             let start = Instant::now();
-            position.books += spread(self.threads(), mine, &|lines, books| work.trace(lines, books));
+            position.books += spread(self.threads(), mine, &|thread, lines, books| {
+                work.trace(thread, lines, books);
+            });
             self.time.tracing += start.elapsed();
             self.traced(lines);
             position.next += lines;
@@ -293,25 +295,29 @@ impl Position {
 }
 
 /// Traces lines on several threads, block by block; returns the sum of their books.
-fn spread(threads: usize, lines: Range<u64>, trace: &(impl Fn(Range<u64>, &mut Books) + Sync)) -> Books {
+fn spread(
+    threads: usize,
+    lines: Range<u64>,
+    trace: &(impl Fn(usize, Range<u64>, &mut Books) + Sync),
+) -> Books {
     let length = lines.end - lines.start;
     // Towards the end of few lines no thread should wait for long.
     let block = BLOCK.min(length / (8 * threads as u64)).max(16);
     let next = AtomicU64::new(lines.start);
-    let work = || {
+    let work = &|thread: usize| {
         let mut books = Books::default();
         loop {
             let start = next.fetch_add(block, Relaxed);
             if start >= lines.end {
                 return books;
             }
-            trace(start..lines.end.min(start + block), &mut books);
+            trace(thread, start..lines.end.min(start + block), &mut books);
         }
     };
     let helpers = (threads as u64 - 1).min(length / block);
     thread::scope(|scope| {
-        let others: Vec<_> = (0..helpers).map(|_| scope.spawn(work)).collect();
-        let mut books = work();
+        let others: Vec<_> = (1..=helpers as usize).map(|thread| scope.spawn(move || work(thread))).collect();
+        let mut books = work(0);
         others.into_iter().map(join).for_each(|part| books += part);
         books
     })
@@ -343,10 +349,12 @@ mod tests {
         for threads in [1, 2, 3, 7] {
             for lines in [0..0, 5..6, 100..1_000, 7..123_456] {
                 let seen = Mutex::new(Vec::new());
-                let books = spread(threads, lines.clone(), &|block: Range<u64>, books: &mut Books| {
-                    books.counts.lines += block.end - block.start;
-                    seen.lock().unwrap().extend(block);
-                });
+                let books =
+                    spread(threads, lines.clone(), &|thread, block: Range<u64>, books: &mut Books| {
+                        assert!(thread < threads);
+                        books.counts.lines += block.end - block.start;
+                        seen.lock().unwrap().extend(block);
+                    });
                 assert_eq!(books.counts.lines, lines.end - lines.start);
                 let mut seen = seen.into_inner().unwrap();
                 seen.sort_unstable();

@@ -78,12 +78,12 @@ impl<'m> Replicas<'m> {
         let threads = shift.threads().min(waiting.len());
         let queue = Mutex::new(std::mem::take(waiting));
         let take = || queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner).pop_front();
-        let work = |()| {
+        let work = |thread| {
             let (mut books, mut left) = (Books::default(), lines);
             while let Some(Task { number, replica }) = take() {
                 let mut replica = replica.unwrap_or_else(|| stage.replica(number));
                 let before = replica.lines_left();
-                stage.trace(&mut replica, left, &mut books);
+                stage.trace(thread, &mut replica, left, &mut books);
                 left -= before - replica.lines_left();
                 if replica.lines_left() > 0 {
                     return (books, Some(Task { number, replica: Some(replica) }));
@@ -94,7 +94,7 @@ impl<'m> Replicas<'m> {
             }
             (books, None)
         };
-        let outcomes = shift.each_tracing(vec![(); threads], work);
+        let outcomes = shift.each_tracing((0..threads).collect(), work);
         *waiting = queue.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
         for (part, task) in outcomes.into_iter().rev() {
             position.books += part;

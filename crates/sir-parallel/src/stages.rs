@@ -30,8 +30,8 @@ struct FirstShotWork<'m> {
 }
 
 impl Work for FirstShotWork<'_> {
-    fn trace(&self, lines: Range<u64>, books: &mut Books) {
-        self.stage.trace(lines, &self.tally, books);
+    fn trace(&self, thread: usize, lines: Range<u64>, books: &mut Books) {
+        self.stage.trace(thread, lines, &self.tally, books);
     }
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
@@ -53,7 +53,7 @@ pub fn first_shot(
 ) -> Result<StageRun<Shot>, RunError> {
     let mut shift = Shift::begin(crew, lines, &[1, model.mesh.side_count() as u64, lines, seed]);
     let stage = FirstShot::new(model, lines, seed)?;
-    let mut work = FirstShotWork { tally: stage.tally(), stage };
+    let mut work = FirstShotWork { tally: stage.tally(shift.threads()), stage };
     let mut position = Position::default();
     if let Some(saved) = saved {
         shift.restore(saved, &mut position, &mut |visitor| work.visit(visitor))?;
@@ -69,8 +69,8 @@ pub fn first_shot(
 }
 
 impl Work for Batches<'_> {
-    fn trace(&self, lines: Range<u64>, books: &mut Books) {
-        self.trace(lines, books);
+    fn trace(&self, thread: usize, lines: Range<u64>, books: &mut Books) {
+        self.trace(thread, lines, books);
     }
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
@@ -94,7 +94,7 @@ pub fn batches(
     saved: Option<Saved>,
 ) -> Result<StageRun<Transported>, RunError> {
     let mut shift = Shift::begin(crew, lines, &[2, model.mesh.side_count() as u64, lines, seed]);
-    let mut stage = Batches::new(model, shot, lines, domain, seed);
+    let mut stage = Batches::new(model, shot, lines, domain, seed, shift.threads());
     let mut position = Position::default();
     let open = |stage: &mut Batches<'_>, shift: &mut Shift<'_, '_>| {
         let parts = stage.parts(shift.threads()).collect();
@@ -142,7 +142,7 @@ pub fn multipath(
     let MultipathSettings { lines, tail, replicas, .. } = settings;
     let identity = [3, model.mesh.side_count() as u64, lines, seed, tail, replicas];
     let mut shift = Shift::begin(crew, lines, &identity);
-    let stage = Multipath::new(model, shot, settings, seed);
+    let stage = Multipath::new(model, shot, settings, seed, shift.threads());
     let mut replicas = Replicas::new(stage, settings, shift.comm());
     if let Some(saved) = saved {
         replicas.restore(saved, &mut shift)?;

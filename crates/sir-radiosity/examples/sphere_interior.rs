@@ -22,13 +22,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (seed, lines) = (1, 2_000_000);
     let shot = FirstShot::new(&model, lines, seed)?;
-    let (tally, mut books) = (shot.tally(), Books::default());
-    shot.trace(0..lines, &tally, &mut books);
+    let (tally, mut books) = (shot.tally(1), Books::default());
+    shot.trace(0, 0..lines, &tally, &mut books);
     let domain = Domain::Sphere(model.scene.bounding_sphere());
     let settings = MultipathSettings::new(lines, domain);
-    let multipath = Multipath::new(&model, shot.finish(tally, books)?, settings, seed);
+    let multipath = Multipath::new(&model, shot.finish(tally, books)?, settings, seed, 1);
     let mut books = Books::default();
-    multipath.trace(&mut multipath.replica(0), lines, &mut books);
+    multipath.trace(0, &mut multipath.replica(0), lines, &mut books);
     let done = multipath.finish(books)?;
 
     let power: f64 = sources(&model.scene).iter().map(|s| s.power.x).sum();

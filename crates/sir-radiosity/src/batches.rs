@@ -23,7 +23,7 @@ use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global;
-use crate::ledger::{Counters, Ledger, SquareUnit, visit_floats, visit_quanta};
+use crate::ledger::{Counters, Ledger, SquareUnit, copies, visit_floats, visit_quanta};
 use crate::segments::End;
 use crate::state::{visit_counts, visit_float};
 use crate::{
@@ -132,9 +132,10 @@ pub struct Part<'a> {
 }
 
 impl<'m> Batches<'m> {
-    /// Prepares the transport of the reflected direct power of a first shot along `lines` lines.
+    /// Prepares the transport of the reflected direct power of a first shot along `lines` lines, for this number of
+    /// workers: how many there are has no effect on the result, but on the time.
     #[must_use]
-    pub fn new(model: &'m Model, shot: Shot, lines: u64, domain: Domain, seed: u64) -> Self {
+    pub fn new(model: &'m Model, shot: Shot, lines: u64, domain: Domain, seed: u64, workers: usize) -> Self {
         let Shot { received, unit, balance, .. } = shot;
         let sides = model.mesh.side_count();
         let (mut unshot, mut noted) = (Vec::with_capacity(sides), Vec::with_capacity(sides));
@@ -157,7 +158,7 @@ impl<'m> Batches<'m> {
                 brightest[band] = f64::max(brightest[band], share);
             }
         });
-        let ledger = Ledger::new(sides, SquareUnit::new(brightest, most));
+        let ledger = Ledger::new(sides, copies(sides, workers, 1), SquareUnit::new(brightest, most));
         // Lines that cross a typical patch once: typical of where the area is.
         let once = domain.surface() * area / (2.0 * square);
         let parts = (lines as f64 / once / CROSSINGS_PER_PART) as u64;
@@ -190,15 +191,15 @@ impl<'m> Batches<'m> {
         self.plan.number
     }
 
-    /// Traces some lines of the current batch.
-    pub fn trace(&self, lines: Range<u64>, books: &mut Books) {
+    /// Traces some lines of the current batch; `worker` is the number of who does.
+    pub fn trace(&self, worker: usize, lines: Range<u64>, books: &mut Books) {
         let Books { balance, counts } = books;
         let ledger = &self.ledger;
         let leave = |side: SideId| {
-            ledger.leave(side);
-            ledger.share(side)
+            ledger.leave(worker, side);
+            ledger.share(worker, side)
         };
-        let give = |side, power| ledger.give(side, power, ledger.squares(power));
+        let give = |side, power| ledger.give(worker, side, power, ledger.squares(power));
         global::trace(self.model, &self.domain, &self.streams, lines, counts, |_, segment| {
             match (segment.from, segment.to) {
                 (End::Side(i, _), End::Side(j, _)) => {
@@ -393,7 +394,7 @@ impl<'a> Part<'a> {
             for i in sides {
                 let (side, k) = (SideId(i), (i - self.first) as usize);
                 let (power, crossings) = self.ledger.take(side);
-                let sent = self.ledger.share(side).times(i64::from(crossings));
+                let sent = self.ledger.share(0, side).times(i64::from(crossings));
                 let reflected = power.scaled(reflectance);
                 self.power[k] += power;
                 self.unshot[k] += reflected - sent;

@@ -7,7 +7,7 @@ use std::ops::Range;
 use sir_geom::{Line, Rgb, Side};
 use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
 
-use crate::ledger::{Counters, SquareUnit};
+use crate::ledger::{Counters, SquareUnit, copies};
 use crate::sources::{Source, sources};
 use crate::{
     Balance, Books, Counts, Ledger, Model, PowerUnit, Quanta, Received, Solution, SolveError, Visitor,
@@ -88,16 +88,18 @@ impl<'m> FirstShot<'m> {
         Ok(Self { model, sources, per_line, allocation, streams, unit, lines })
     }
 
-    /// An empty tally.
+    /// An empty tally, for this number of workers: how many there are has no effect on the result, but on the time.
     #[must_use]
-    pub fn tally(&self) -> FirstShotTally {
+    pub fn tally(&self, workers: usize) -> FirstShotTally {
         let largest = |band: usize| self.per_line.iter().map(|q| q.0[band] as f64).fold(0.0, f64::max);
         let squares = SquareUnit::new([0, 1, 2].map(largest), self.lines as f64);
-        FirstShotTally { ledger: Ledger::new(self.model.mesh.side_count(), squares) }
+        // There is room for two copies: later stages need more per side than this one.
+        let sides = self.model.mesh.side_count();
+        FirstShotTally { ledger: Ledger::new(sides, copies(sides, workers, 2), squares) }
     }
 
-    /// Traces some of the lines. Each line should be traced once, by whomever.
-    pub fn trace(&self, lines: Range<u64>, tally: &FirstShotTally, books: &mut Books) {
+    /// Traces some of the lines. Each line should be traced once, by whomever; `worker` is the number of who does.
+    pub fn trace(&self, worker: usize, lines: Range<u64>, tally: &FirstShotTally, books: &mut Books) {
         let Model { scene, mesh, accel } = self.model;
         let mut tracer = accel.tracer();
         for index in lines {
@@ -121,7 +123,7 @@ impl<'m> FirstShot<'m> {
                 Some(hit) => {
                     books.counts.crossings += 1;
                     match mesh.side_at(hit.triangle, hit.point, hit.side) {
-                        Some(side) => tally.ledger.give(side, power, tally.ledger.squares(power)),
+                        Some(side) => tally.ledger.give(worker, side, power, tally.ledger.squares(power)),
                         None => books.balance.blocked += power,
                     }
                 }

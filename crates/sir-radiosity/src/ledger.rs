@@ -21,11 +21,23 @@ struct Record {
 
 /// Power that sides receive in a stage, and the share that each of them sends with a line.
 ///
-/// Writing needs no more than `&self`: all counters are atomic.
+/// Writing needs no more than `&self`: all counters are atomic. Where that is affordable there are several copies of all
+/// records, because two cores that write to the same cache line wait for each other; only sums over the copies count.
 #[derive(Debug)]
 pub struct Ledger {
+    /// All sides in the first copy, then all in the second, and so on.
     records: Vec<Record>,
+    sides: usize,
     unit: SquareUnit,
+}
+
+/// Size of all copies together up to which every worker gets one of its own \[bytes\]: about what caches hold.
+const AFFORDABLE: usize = 16 << 20;
+
+/// How many copies a ledger should have for some workers, `least` of them however large it is.
+pub(crate) fn copies(sides: usize, workers: usize, least: usize) -> usize {
+    let affordable = workers * sides * size_of::<Record>() <= AFFORDABLE;
+    if affordable { workers.max(1) } else { workers.clamp(1, least) }
 }
 
 /// Which counters of a [`Ledger`] a visitor goes through.
@@ -44,10 +56,23 @@ const CHUNK: usize = 1 << 14;
 
 impl Ledger {
     /// An empty ledger.
-    pub(crate) fn new(sides: usize, unit: SquareUnit) -> Self {
-        let mut records = Vec::with_capacity(sides);
-        records.resize_with(sides, Record::default);
-        Self { records, unit }
+    pub(crate) fn new(sides: usize, copies: usize, unit: SquareUnit) -> Self {
+        let mut records = Vec::with_capacity(sides * copies);
+        records.resize_with(sides * copies, Record::default);
+        Self { records, sides, unit }
+    }
+
+    /// The records of a side, one in each copy.
+    fn of(&self, side: usize) -> impl Iterator<Item = &Record> {
+        self.records[side..].iter().step_by(self.sides)
+    }
+
+    /// The record of a side in the copy of a worker.
+    #[inline]
+    fn mine(&self, worker: usize, side: SideId) -> &Record {
+        let copies = self.records.len() / self.sides;
+        let copy = if copies == 1 { 0 } else { worker % copies };
+        &self.records[copy * self.sides + side.index()]
     }
 
     /// Squares of a gift, in the unit of this ledger.
@@ -58,50 +83,59 @@ impl Ledger {
 
     /// A line brings power to a side; `squares` is the [square](Self::squares) of the same power.
     #[inline]
-    pub(crate) fn give(&self, side: SideId, power: Quanta, squares: [i64; 3]) {
-        let record = &self.records[side.index()];
+    pub(crate) fn give(&self, worker: usize, side: SideId, power: Quanta, squares: [i64; 3]) {
+        let record = self.mine(worker, side);
         record.power.iter().zip(power.0).for_each(|(sum, power)| _ = sum.fetch_add(power, Relaxed));
         record.squares.iter().zip(squares).for_each(|(sum, square)| _ = sum.fetch_add(square, Relaxed));
     }
 
     /// What a side sends with a line.
     #[inline]
-    pub(crate) fn share(&self, side: SideId) -> Quanta {
-        let record = &self.records[side.index()];
+    pub(crate) fn share(&self, worker: usize, side: SideId) -> Quanta {
+        let record = self.mine(worker, side);
         Quanta(std::array::from_fn(|band| f32::from_bits(record.share[band].load(Relaxed)) as i64))
     }
 
     /// Sets what a side sends with a line, rounded to 24 significant bits.
     pub(crate) fn set_share(&self, side: SideId, share: [f64; 3]) {
-        let record = &self.records[side.index()];
-        for (place, share) in record.share.iter().zip(share) {
-            place.store((share as f32).to_bits(), Relaxed);
+        for record in self.of(side.index()) {
+            for (place, share) in record.share.iter().zip(share) {
+                place.store((share as f32).to_bits(), Relaxed);
+            }
         }
     }
 
     /// A line leaves a side.
     #[inline]
-    pub(crate) fn leave(&self, side: SideId) {
-        self.records[side.index()].crossings.fetch_add(1, Relaxed);
+    pub(crate) fn leave(&self, worker: usize, side: SideId) {
+        self.mine(worker, side).crossings.fetch_add(1, Relaxed);
     }
 
     /// Power received by a side.
     pub(crate) fn power(&self, side: SideId) -> Quanta {
-        Quanta(std::array::from_fn(|band| self.records[side.index()].power[band].load(Relaxed)))
+        let copies = self.of(side.index()).map(Record::power);
+        copies.fold(Quanta::ZERO, |sum, power| sum + power)
     }
 
     /// Takes out the power received by a side and the number of lines that left it.
     pub(crate) fn take(&self, side: SideId) -> (Quanta, u32) {
-        let record = &self.records[side.index()];
-        let power = Quanta(std::array::from_fn(|band| record.power[band].swap(0, Relaxed)));
-        (power, record.crossings.swap(0, Relaxed))
+        let (mut power, mut crossings) = (Quanta::ZERO, 0);
+        for record in self.of(side.index()) {
+            power += record.power();
+            crossings += record.crossings.load(Relaxed);
+            record.power.iter().for_each(|power| power.store(0, Relaxed));
+            record.crossings.store(0, Relaxed);
+        }
+        (power, crossings)
     }
 
     /// Variance of the power received by a side \[quanta²\]: the sum of the squares of what each line brought (compound
     /// Poisson).
     pub(crate) fn variance(&self, side: SideId) -> [f64; 3] {
-        let record = &self.records[side.index()];
-        std::array::from_fn(|band| record.squares[band].load(Relaxed) as f64 * self.unit.size[band])
+        std::array::from_fn(|band| {
+            let squares: i64 = self.of(side.index()).map(|record| record.squares[band].load(Relaxed)).sum();
+            squares as f64 * self.unit.size[band]
+        })
     }
 
     /// Adds the variances to those of what was received before.
@@ -127,28 +161,23 @@ impl Ledger {
 
     /// Shows counters of all sides to a visitor.
     pub(crate) fn visit(&self, counters: Counters, visitor: &mut dyn Visitor) {
+        let (batch, squares) = (counters != Counters::Squares, counters != Counters::Batch);
+        let width = if batch { 4 } else { 0 } + if squares { 3 } else { 0 };
         let mut words = Vec::new();
-        for chunk in self.records.chunks(CHUNK) {
+        for start in (0..self.sides).step_by(CHUNK) {
+            let sides = start..self.sides.min(start + CHUNK);
             words.clear();
-            for record in chunk {
-                if counters != Counters::Squares {
-                    words.extend(record.power.iter().map(|p| p.load(Relaxed)));
-                    words.push(i64::from(record.crossings.load(Relaxed)));
-                }
-                if counters != Counters::Batch {
-                    words.extend(record.squares.iter().map(|s| s.load(Relaxed)));
+            words.resize(width * sides.len(), 0);
+            for copy in self.records.chunks(self.sides) {
+                for (record, words) in copy[sides.clone()].iter().zip(words.chunks_mut(width)) {
+                    record.counters(batch, squares).zip(words).for_each(|(counter, word)| *word += counter);
                 }
             }
             visitor.sum(&mut words);
-            let mut seen = words.iter().copied();
-            let mut next = || seen.next().unwrap_or_default();
-            for record in chunk {
-                if counters != Counters::Squares {
-                    record.power.iter().for_each(|p| p.store(next(), Relaxed));
-                    record.crossings.store(next() as u32, Relaxed);
-                }
-                if counters != Counters::Batch {
-                    record.squares.iter().for_each(|s| s.store(next(), Relaxed));
+            // The first copy takes it all.
+            for (i, copy) in self.records.chunks(self.sides).enumerate() {
+                for (record, words) in copy[sides.clone()].iter().zip(words.chunks(width)) {
+                    record.set(batch, squares, words.iter().map(|&word| if i == 0 { word } else { 0 }));
                 }
             }
         }
@@ -157,12 +186,41 @@ impl Ledger {
     /// Shows the shares of all sides to a visitor.
     pub(crate) fn visit_shares(&self, visitor: &mut dyn Visitor) {
         let mut words = Vec::new();
-        for chunk in self.records.chunks(CHUNK) {
+        for start in (0..self.sides).step_by(CHUNK) {
+            let sides = start..self.sides.min(start + CHUNK);
             words.clear();
-            words.extend(chunk.iter().flat_map(|r| r.share.iter().map(|s| i64::from(s.load(Relaxed)))));
+            let shares = self.records[sides.clone()].iter().flat_map(|record| &record.share);
+            words.extend(shares.map(|share| i64::from(share.load(Relaxed))));
             visitor.same(&mut words);
-            let places = chunk.iter().flat_map(|r| &r.share);
-            places.zip(&words).for_each(|(share, word)| share.store(*word as u32, Relaxed));
+            for copy in self.records.chunks(self.sides) {
+                let places = copy[sides.clone()].iter().flat_map(|record| &record.share);
+                places.zip(&words).for_each(|(share, word)| share.store(*word as u32, Relaxed));
+            }
+        }
+    }
+}
+
+impl Record {
+    fn power(&self) -> Quanta {
+        Quanta(std::array::from_fn(|band| self.power[band].load(Relaxed)))
+    }
+
+    /// Power and crossings, and squares, as far as they are asked for.
+    fn counters(&self, batch: bool, squares: bool) -> impl Iterator<Item = i64> {
+        let crossings = std::iter::once(i64::from(self.crossings.load(Relaxed)));
+        let batch = self.power().0.into_iter().chain(crossings).take(if batch { 4 } else { 0 });
+        batch.chain(self.squares.iter().map(|square| square.load(Relaxed)).take(if squares { 3 } else { 0 }))
+    }
+
+    /// Sets what [`counters`](Self::counters) gives.
+    fn set(&self, batch: bool, squares: bool, mut words: impl Iterator<Item = i64>) {
+        let mut next = || words.next().unwrap_or_default();
+        if batch {
+            self.power.iter().for_each(|power| power.store(next(), Relaxed));
+            self.crossings.store(next() as u32, Relaxed);
+        }
+        if squares {
+            self.squares.iter().for_each(|square| square.store(next(), Relaxed));
         }
     }
 }

@@ -36,15 +36,15 @@
 //!
 //! let (seed, lines) = (1, 100_000);
 //! let shot = FirstShot::new(&model, lines, seed)?;
-//! let (tally, mut books) = (shot.tally(), Books::default());
-//! shot.trace(0..lines, &tally, &mut books);
+//! let (tally, mut books) = (shot.tally(1), Books::default());
+//! shot.trace(0, 0..lines, &tally, &mut books);
 //! let shot = shot.finish(tally, books)?;
 //!
 //! let domain = Domain::Sphere(model.scene.bounding_sphere());
 //! let settings = MultipathSettings::new(lines, domain);
-//! let multipath = Multipath::new(&model, shot, settings, seed);
+//! let multipath = Multipath::new(&model, shot, settings, seed, 1);
 //! let mut books = Books::default();
-//! multipath.trace(&mut multipath.replica(0), lines, &mut books);
+//! multipath.trace(0, &mut multipath.replica(0), lines, &mut books);
 //! let solution = multipath.finish(books)?.solution;
 //!
 //! model.mesh.for_each_side(|triangle, _, _, side| {

@@ -20,7 +20,7 @@ use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global;
-use crate::ledger::{Counters, Ledger, SquareUnit, visit_quanta};
+use crate::ledger::{Counters, Ledger, SquareUnit, copies, visit_quanta};
 use crate::segments::{End, Segment};
 use crate::state::visit_float;
 use crate::{
@@ -108,12 +108,13 @@ pub struct Transported {
 }
 
 impl<'m> Multipath<'m> {
-    /// Prepares the transport of the reflected direct power of a first shot.
+    /// Prepares the transport of the reflected direct power of a first shot, for this number of workers: how many there
+    /// are has no effect on the result, but on the time.
     ///
     /// A side of a patch of area `A` is left by `n = N · 2A/S` of the `N` lines that are not in a tail on average, so
     /// each takes `1/n` of its reflected direct power along.
     #[must_use]
-    pub fn new(model: &'m Model, shot: Shot, settings: MultipathSettings, seed: u64) -> Self {
+    pub fn new(model: &'m Model, shot: Shot, settings: MultipathSettings, seed: u64, workers: usize) -> Self {
         let forecast = settings.domain.forecast(settings.lines.saturating_sub(settings.tail));
         let mut shares = Vec::with_capacity(model.mesh.side_count());
         let (mut largest, mut most) = ([0.0; 3], 0.0);
@@ -128,7 +129,8 @@ impl<'m> Multipath<'m> {
             most = f64::max(most, crossings);
             shares.push(share);
         });
-        let ledger = Ledger::new(shares.len(), SquareUnit::new(largest, most));
+        let copies = copies(shares.len(), workers, 1);
+        let ledger = Ledger::new(shares.len(), copies, SquareUnit::new(largest, most));
         for (i, share) in shares.into_iter().enumerate() {
             ledger.set_share(SideId::new(i), share);
         }
@@ -145,15 +147,16 @@ impl<'m> Multipath<'m> {
         Replica { lines, tail, unshot: vec![Quanta::ZERO; self.model.mesh.side_count()] }
     }
 
-    /// Traces at most `count` of the next lines of a replica. At its end, what is unshot is booked.
-    pub fn trace(&self, replica: &mut Replica, count: u64, books: &mut Books) {
+    /// Traces at most `count` of the next lines of a replica; `worker` is the number of who does. At its end, what is
+    /// unshot is booked.
+    pub fn trace(&self, worker: usize, replica: &mut Replica, count: u64, books: &mut Books) {
         let Replica { lines, tail, unshot } = replica;
         let now = lines.start..lines.end.min(lines.start.saturating_add(count));
         lines.start = now.end;
         let Books { balance, counts } = books;
         let model = self.model;
         global::trace(model, &self.settings.domain, &self.streams, now, counts, |index, segment| {
-            exchange(model, &self.ledger, unshot, balance, segment, index < *tail);
+            exchange(model, (&self.ledger, worker), unshot, balance, segment, index < *tail);
         });
         if lines.is_empty() {
             for unshot in std::mem::take(unshot) {
@@ -217,7 +220,7 @@ impl Replica {
 #[inline]
 fn exchange(
     model: &Model,
-    ledger: &Ledger,
+    (ledger, worker): (&Ledger, usize),
     unshot: &mut [Quanta],
     balance: &mut Balance,
     segment: Segment,
@@ -225,15 +228,15 @@ fn exchange(
 ) {
     // Takes all unshot power of a side and, if the line emits, its share of the reflected direct power.
     let mut take = |side: SideId| {
-        let emission = if emits { ledger.share(side) } else { Quanta::ZERO };
+        let emission = if emits { ledger.share(worker, side) } else { Quanta::ZERO };
         balance.emitted += emission;
         std::mem::take(&mut unshot[side.index()]) + emission
     };
     match (segment.from, segment.to) {
         (End::Side(i, triangle_i), End::Side(j, triangle_j)) => {
             let (from_i, from_j) = (take(i), take(j));
-            give(model, ledger, unshot, balance, (j, triangle_j), from_i);
-            give(model, ledger, unshot, balance, (i, triangle_i), from_j);
+            give(model, (ledger, worker), unshot, balance, (j, triangle_j), from_i);
+            give(model, (ledger, worker), unshot, balance, (i, triangle_i), from_j);
         }
         (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
             let power = take(i);
@@ -251,13 +254,13 @@ fn exchange(
 #[inline]
 fn give(
     model: &Model,
-    ledger: &Ledger,
+    (ledger, worker): (&Ledger, usize),
     unshot: &mut [Quanta],
     balance: &mut Balance,
     (side, triangle): (SideId, TriangleId),
     power: Quanta,
 ) {
-    ledger.give(side, power, ledger.squares(power));
+    ledger.give(worker, side, power, ledger.squares(power));
     let reflected = power.scaled(model.scene.material(triangle).reflectance);
     unshot[side.index()] += reflected;
     balance.absorbed += power - reflected;

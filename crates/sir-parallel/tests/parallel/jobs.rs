@@ -142,16 +142,16 @@ impl Job {
         let run = match self {
             Self::FirstShot => {
                 let stage = FirstShot::new(model, LINES, SEED).unwrap();
-                let tally = stage.tally();
-                stage.trace(0..LINES, &tally, &mut books);
+                let tally = stage.tally(1);
+                stage.trace(0, 0..LINES, &tally, &mut books);
                 let outcome = stage.finish(tally, books).unwrap();
                 return Outcome::of_shot(StageRun { outcome, time: Default::default(), batches: 1 });
             }
             Self::Batches => {
-                let mut stage = Batches::new(model, shot, LINES, room.domain(), SEED);
+                let mut stage = Batches::new(model, shot, LINES, room.domain(), SEED, 1);
                 loop {
                     stage.parts(1).for_each(|mut part| part.open());
-                    stage.trace(stage.lines(), &mut books);
+                    stage.trace(0, stage.lines(), &mut books);
                     let mut totals = Totals::default();
                     stage.parts(1).for_each(|mut part| totals += part.close());
                     if !stage.advance(totals) {
@@ -163,9 +163,9 @@ impl Job {
             }
             Self::Multipath { replicas, tail } => {
                 let settings = Self::settings(replicas, tail, room.domain());
-                let stage = Multipath::new(model, shot, settings, SEED);
+                let stage = Multipath::new(model, shot, settings, SEED, 1);
                 for number in 0..replicas {
-                    stage.trace(&mut stage.replica(number), u64::MAX, &mut books);
+                    stage.trace(0, &mut stage.replica(number), u64::MAX, &mut books);
                 }
                 StageRun {
                     outcome: stage.finish(books).unwrap(),

@@ -82,8 +82,9 @@ pub(crate) fn grey(m: f64, rho: f64) -> Material {
 
 pub(crate) fn shoot(model: &Model, lines: u64, seed: u64) -> Shot {
     let shot = FirstShot::new(model, lines, seed).unwrap();
-    let (tally, mut books) = (shot.tally(), Books::default());
-    shot.trace(0..lines, &tally, &mut books);
+    let (tally, mut books) = (shot.tally(2), Books::default());
+    shot.trace(0, 0..lines / 2, &tally, &mut books);
+    shot.trace(1, lines / 2..lines, &tally, &mut books);
     shot.finish(tally, books).unwrap()
 }
 
@@ -95,11 +96,11 @@ pub(crate) const TRANSPORTS: [(&str, Transport); 2] = [("batches", batches), ("m
 
 /// Frozen batches.
 pub(crate) fn batches(model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
-    let mut transport = Batches::new(model, shot, lines, domain(model), seed);
+    let mut transport = Batches::new(model, shot, lines, domain(model), seed, 1);
     let mut books = Books::default();
     loop {
         transport.parts(3).for_each(|mut part| part.open());
-        transport.trace(transport.lines(), &mut books);
+        transport.trace(0, transport.lines(), &mut books);
         let mut totals = Totals::default();
         transport.parts(2).for_each(|mut part| totals += part.close());
         if !transport.advance(totals) {
@@ -118,10 +119,10 @@ pub(crate) fn multipath(model: &Model, shot: Shot, lines: u64, seed: u64) -> Tra
 
 /// Multipath in any number of replicas.
 pub(crate) fn replicas(model: &Model, shot: Shot, settings: MultipathSettings, seed: u64) -> Transported {
-    let transport = Multipath::new(model, shot, settings, seed);
+    let transport = Multipath::new(model, shot, settings, seed, 1);
     let mut books = Books::default();
     for number in 0..settings.replicas {
-        transport.trace(&mut transport.replica(number), u64::MAX, &mut books);
+        transport.trace(0, &mut transport.replica(number), u64::MAX, &mut books);
     }
     transport.finish(books).unwrap()
 }
