@@ -169,15 +169,26 @@ impl Ledger {
             words.clear();
             words.resize(width * sides.len(), 0);
             for copy in self.records.chunks(self.sides) {
-                for (record, words) in copy[sides.clone()].iter().zip(words.chunks_mut(width)) {
-                    record.counters(batch, squares).zip(words).for_each(|(counter, word)| *word += counter);
+                for (record, words) in copy[sides.clone()].iter().zip(words.chunks_exact_mut(width)) {
+                    let counters = record.counters(batch, squares);
+                    words.iter_mut().zip(counters).for_each(|(word, counter)| *word += counter.load(Relaxed));
+                    if batch {
+                        words[width - 1] += i64::from(record.crossings.load(Relaxed));
+                    }
                 }
             }
             visitor.sum(&mut words);
             // The first copy takes it all.
             for (i, copy) in self.records.chunks(self.sides).enumerate() {
-                for (record, words) in copy[sides.clone()].iter().zip(words.chunks(width)) {
-                    record.set(batch, squares, words.iter().map(|&word| if i == 0 { word } else { 0 }));
+                if i > 0 {
+                    words.fill(0);
+                }
+                for (record, words) in copy[sides.clone()].iter().zip(words.chunks_exact(width)) {
+                    let counters = record.counters(batch, squares);
+                    words.iter().zip(counters).for_each(|(word, counter)| counter.store(*word, Relaxed));
+                    if batch {
+                        record.crossings.store(words[width - 1] as u32, Relaxed);
+                    }
                 }
             }
         }
@@ -205,23 +216,10 @@ impl Record {
         Quanta(std::array::from_fn(|band| self.power[band].load(Relaxed)))
     }
 
-    /// Power and crossings, and squares, as far as they are asked for.
-    fn counters(&self, batch: bool, squares: bool) -> impl Iterator<Item = i64> {
-        let crossings = std::iter::once(i64::from(self.crossings.load(Relaxed)));
-        let batch = self.power().0.into_iter().chain(crossings).take(if batch { 4 } else { 0 });
-        batch.chain(self.squares.iter().map(|square| square.load(Relaxed)).take(if squares { 3 } else { 0 }))
-    }
-
-    /// Sets what [`counters`](Self::counters) gives.
-    fn set(&self, batch: bool, squares: bool, mut words: impl Iterator<Item = i64>) {
-        let mut next = || words.next().unwrap_or_default();
-        if batch {
-            self.power.iter().for_each(|power| power.store(next(), Relaxed));
-            self.crossings.store(next() as u32, Relaxed);
-        }
-        if squares {
-            self.squares.iter().for_each(|square| square.store(next(), Relaxed));
-        }
+    /// The counters of 64 bits that are asked for: power, squares, or both.
+    fn counters(&self, batch: bool, squares: bool) -> impl Iterator<Item = &AtomicI64> {
+        let power = self.power.iter().take(if batch { 3 } else { 0 });
+        power.chain(self.squares.iter().take(if squares { 3 } else { 0 }))
     }
 }
 
