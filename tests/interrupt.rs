@@ -142,6 +142,8 @@ fn ctrl_c_and_sigterm_save_the_state_and_exit_with_130() {
             );
             assert!(!folder.join("stopped/result.json").exists());
         }
+        let again = sir().args(["run", "work.ron", "--out", "stopped"]).current_dir(folder).output().unwrap();
+        assert_eq!(again.status.code(), Some(2), "an interrupted run is not replaced by accident");
         finish(folder, "stopped");
         assert_same(folder, "stopped", "whole");
     }

@@ -63,8 +63,9 @@ pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error>
 fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
     let Model { scene, mesh, accel } = model;
     let sides = mesh.side_count();
-    // Power, its variance, what is unshot, what was noted, and a record of 64 bytes in the ledger.
-    let tracing = 2 * size_of::<Quanta>() + 2 * size_of::<[f32; 3]>() + 64;
+    // Power and its variance; in the first shot two records of 64 bytes in the ledger, later one, and less than 64 bytes
+    // for what is unshot.
+    let tracing = size_of::<Quanta>() + size_of::<[f32; 3]>() + 2 * 64;
     let solution = 2 * size_of::<Rgb>();
     let shown = pipeline.outputs().any(|o| o.content != Content::Table);
     let memory = vec![

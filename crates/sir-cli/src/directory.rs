@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::Error;
 use crate::report::FILE_NAME;
+use crate::resume::CHECKPOINT;
 
 /// The name of a pipeline's runs: the stem of its file, or the name of its folder if the file is called `pipeline`.
 pub(crate) fn run_name(pipeline: &Path) -> String {
@@ -28,10 +29,13 @@ pub(crate) fn make_given(directory: &Path, force: bool) -> Result<(), Error> {
     }
 }
 
-/// Refuses to overwrite a result unless forced to.
+/// Refuses to overwrite a result, or what an interrupted run needs to go on, unless forced to.
 pub(crate) fn check_given(directory: &Path, force: bool) -> Result<(), Error> {
     if !force && directory.join(FILE_NAME).exists() {
         return Err(Error::Exists { directory: directory.to_owned() });
+    }
+    if !force && directory.join(CHECKPOINT).exists() {
+        return Err(Error::ExistsInterrupted { directory: directory.to_owned() });
     }
     Ok(())
 }
@@ -79,5 +83,8 @@ mod tests {
         assert!(matches!(make_given(&directory, false), Err(Error::Exists { .. })));
         make_given(&directory, true).unwrap();
         assert!(!directory.join(FILE_NAME).exists());
+        fs::write(directory.join(CHECKPOINT), "").unwrap();
+        assert!(matches!(make_given(&directory, false), Err(Error::ExistsInterrupted { .. })));
+        make_given(&directory, true).unwrap();
     }
 }

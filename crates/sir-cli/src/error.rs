@@ -38,6 +38,15 @@ pub enum Error {
         /// The directory.
         directory: PathBuf,
     },
+    /// The run directory that was asked for holds an interrupted run.
+    #[error(
+        "{0} holds an interrupted run; go on with it by `sir resume {0}`, choose another --out, or replace it with --force",
+        directory.display()
+    )]
+    ExistsInterrupted {
+        /// The directory.
+        directory: PathBuf,
+    },
     /// The run directory cannot be made.
     #[error("cannot make the directory {}; choose another with --out", path.display())]
     Directory {
@@ -135,7 +144,8 @@ impl Error {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Pipeline(_) | Self::ReadPipeline { .. } | Self::NotText { .. } | Self::Exists { .. } => 2,
+            Self::Pipeline(_) | Self::ReadPipeline { .. } | Self::NotText { .. } => 2,
+            Self::Exists { .. } | Self::ExistsInterrupted { .. } => 2,
             Self::CannotResume { .. } => 2,
             Self::Interrupted { .. } | Self::InterruptedSaving { .. } => 130,
             Self::Run(RunError::Interrupted { .. }) => 130,
