@@ -94,23 +94,26 @@ fn plot(path: &str, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
             .margin(12)
             .set_label_area_size(LabelAreaPosition::Left, 60)
             .set_label_area_size(LabelAreaPosition::Bottom, 40)
-            .build_cartesian_2d((0.9..72.0).log_scale(), (LEAST..20.0).log_scale())?;
+            .build_cartesian_2d(-0.2..6.2, (LEAST..2000.0).log_scale())?;
         chart
             .configure_mesh()
             .x_desc("workers, P")
             .y_desc("% of the reflected light (less than 0.0001 is drawn as that)")
-            .x_label_formatter(&|x| format!("{x:.0}"))
+            .x_labels(7)
+            .x_label_formatter(&|x: &f64| format!("{:.0}", x.exp2()))
+            .bold_line_style(BLACK.mix(0.1))
             .y_label_formatter(&|y| format!("{y}"))
             .light_line_style(WHITE)
             .draw()?;
         let of = || rows.iter().filter(|row| row.reflectance == reflectance);
-        let formula = of().map(|row| (row.workers as f64, -100.0 * row.expected()));
+        let formula = of().map(|row| ((row.workers as f64).log2(), -100.0 * row.expected()));
         chart
-            .draw_series(LineSeries::new(formula, BLACK.mix(0.4)))?
+            .draw_series(LineSeries::new(formula, BLACK.mix(0.4).stroke_width(3)))?
             .label("ρ/(1−ρ) P/n")
             .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], BLACK.mix(0.4)));
         for (k, colour) in [RED, MAGENTA, BLUE].into_iter().enumerate() {
-            let points = || of().map(move |row| (row.workers as f64, (-100.0 * row.bias[k]).max(LEAST)));
+            let points =
+                || of().map(move |row| ((row.workers as f64).log2(), (-100.0 * row.bias[k]).max(LEAST)));
             chart
                 .draw_series(LineSeries::new(points(), colour).point_size(4))?
                 .label(NAMES[k])
