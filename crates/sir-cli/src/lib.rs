@@ -54,6 +54,8 @@ pub mod summary;
 
 use std::io::Write as _;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use clap::Parser as _;
 
@@ -82,10 +84,12 @@ pub fn main() -> ExitCode {
 fn execute(command: Command) -> Result<String, ExitCode> {
     match command {
         Command::Run(_) | Command::Resume { .. } => {
+            // Before anything that takes time: a signal must never find the program unprepared.
+            let stop = interrupt::flag();
             let comm = connect().map_err(|error| show(&error.into()))?;
-            work(command, &*comm).map_err(|error| show(&error))
+            work(command, &*comm, stop).map_err(|error| show(&error))
         }
-        alone => work(alone, &Alone).map_err(|error| show(&error)),
+        alone => work(alone, &Alone, Arc::default()).map_err(|error| show(&error)),
     }
 }
 
@@ -100,17 +104,16 @@ fn show(error: &Error) -> ExitCode {
     ExitCode::from(error.exit_code())
 }
 
-/// Executes a command, together with the other ranks.
-fn work(command: Command, comm: &dyn Communicator) -> Result<String, Error> {
+/// Executes a command, together with the other ranks, until it is done or `stop` becomes true.
+fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Result<String, Error> {
     match command {
         Command::Run(RunArgs { pipeline, out, seed, force, how }) => {
-            let options = RunOptions { out, seed, force, ..options(&how) };
+            let options = RunOptions { out, seed, force, ..options(&how, stop) };
             run::run_together(Pipeline::read(&pipeline), &options, comm)
                 .map(|result| told(&result, &how, comm))
         }
-        Command::Resume { directory, how } => {
-            run::resume_together(&directory, &options(&how), comm).map(|result| told(&result, &how, comm))
-        }
+        Command::Resume { directory, how } => run::resume_together(&directory, &options(&how, stop), comm)
+            .map(|result| told(&result, &how, comm)),
         Command::Check { pipeline } => {
             let pipeline = Pipeline::read(&pipeline)?;
             Ok(check::check(&pipeline, Progress::Quiet)?.to_string())
@@ -128,11 +131,11 @@ fn work(command: Command, comm: &dyn Communicator) -> Result<String, Error> {
 }
 
 /// Options of a run that can be stopped.
-fn options(how: &HowArgs) -> RunOptions {
+fn options(how: &HowArgs, stop: Arc<AtomicBool>) -> RunOptions {
     RunOptions {
         threads: how.threads,
         checkpoint_every: how.checkpoint_every,
-        stop: interrupt::flag(),
+        stop,
         progress: if how.quiet { Progress::Quiet } else { Progress::for_stderr() },
         ..RunOptions::default()
     }

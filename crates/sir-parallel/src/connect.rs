@@ -24,13 +24,21 @@ pub enum ConnectError {
 /// Whether this program can be run by several processes together.
 pub const HAS_MPI: bool = cfg!(feature = "mpi");
 
-/// The other processes that were started together with this one; call this once.
+/// What Open MPI, MPICH and its relatives, PMIx and Slurm set for the processes that they start.
+#[cfg(feature = "mpi")]
+const STARTED_BY_MPI: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "SLURM_PROCID"];
+
+/// The other processes that were started together with this one; call this once. A process that was started by itself does
+/// not start MPI.
 ///
 /// # Errors
 ///
 /// If there are some, and this program was built without the feature `mpi`, or MPI does not start.
 #[cfg(feature = "mpi")]
 pub fn connect() -> Result<Box<dyn Communicator>, ConnectError> {
+    if STARTED_BY_MPI.iter().all(|variable| std::env::var_os(variable).is_none()) {
+        return Ok(Box::new(crate::Alone));
+    }
     crate::mpi::World::new().map(|world| Box::new(world) as _).ok_or(ConnectError::Initialise)
 }
 
@@ -41,7 +49,7 @@ pub fn connect() -> Result<Box<dyn Communicator>, ConnectError> {
 /// If there are some, and this program was built without the feature `mpi`.
 #[cfg(not(feature = "mpi"))]
 pub fn connect() -> Result<Box<dyn Communicator>, ConnectError> {
-    // What Open MPI, MPICH and its relatives, and Slurm tell the processes that they start.
+    // What Open MPI, and MPICH and its relatives tell the processes that they start.
     for variable in ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"] {
         let size = std::env::var(variable).ok().and_then(|size| size.parse().ok());
         if let Some(size) = size.filter(|&size| size > 1) {
