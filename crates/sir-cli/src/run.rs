@@ -177,7 +177,7 @@ impl Run<'_> {
     fn finish(mut self, saved: Option<Saved>) -> Result<RunResult, Error> {
         let earlier = self.head.report.time.seconds;
         let path = self.directory.join(CHECKPOINT);
-        let mut checkpoints = Checkpoints::new(path.clone(), self.options.checkpoint_every);
+        let mut checkpoints = Checkpoints::new(path, self.options.checkpoint_every);
         if saved.is_none() {
             checkpoints.set_head(self.head.to_line());
             agree(
@@ -191,8 +191,7 @@ impl Run<'_> {
         let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
         agree(comm, written)?;
         if comm.is_first() {
-            // The result is there: nobody needs to hear that its checkpoint could not be removed.
-            let _ = fs::remove_file(path);
+            checkpoints.remove();
         }
         Ok(RunResult { directory, report: head.report })
     }

@@ -62,6 +62,22 @@ impl Checkpoints {
         self.save(comm, &[], &mut |_| {})
     }
 
+    /// Removes the file, which a finished run does not need, and what a killed one may have left half written beside it.
+    pub fn remove(&self) {
+        for path in [&self.path, &self.part()] {
+            // Often there is none; one that cannot be removed does no harm.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+
+    /// Where a file is written until it is whole.
+    fn part(&self) -> PathBuf {
+        // Added, not put in place of the extension: `run.1` and `run.2` may be saved at the same time.
+        let mut part = self.path.clone().into_os_string();
+        part.push(".part");
+        part.into()
+    }
+
     /// Whether the state should be saved now.
     pub(crate) fn are_due(&self) -> bool {
         self.last.elapsed() >= self.every
@@ -80,10 +96,7 @@ impl Checkpoints {
         identity: &[i64],
         show: &mut dyn FnMut(&mut dyn Visitor),
     ) -> Result<(), CheckpointError> {
-        // Added, not put in place of the extension: `run.1` and `run.2` may be saved at the same time.
-        let mut part = self.path.clone().into_os_string();
-        part.push(".part");
-        let part = PathBuf::from(part);
+        let part = self.part();
         // After a failure the other ranks must still be served.
         let writer = comm.is_first().then(|| Writer::create(&part, &self.head));
         let mut saver = Saver { comm, writer, words: Vec::new() };

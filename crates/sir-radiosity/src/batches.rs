@@ -194,24 +194,19 @@ impl<'m> Batches<'m> {
     /// Traces some lines of the current batch; `worker` is the number of who does.
     pub fn trace(&self, worker: usize, lines: Range<u64>, books: &mut Books) {
         let Books { balance, counts } = books;
-        let ledger = &self.ledger;
-        let leave = |side: SideId| {
-            ledger.leave(worker, side);
-            ledger.share(worker, side)
-        };
-        let give = |side, power| ledger.give(worker, side, power, ledger.squares(power));
+        let page = self.ledger.page(worker);
         global::trace(self.model, &self.domain, &self.streams, lines, counts, |_, segment| {
             match (segment.from, segment.to) {
                 (End::Side(i, _), End::Side(j, _)) => {
-                    let (from_i, from_j) = (leave(i), leave(j));
-                    give(j, from_i);
-                    give(i, from_j);
+                    let (from_i, from_j) = (page.leave(i), page.leave(j));
+                    page.give(j, from_i);
+                    page.give(i, from_j);
                 }
                 (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
-                    balance.escaped += leave(i);
+                    balance.escaped += page.leave(i);
                 }
                 (End::Side(i, _), End::Inactive) | (End::Inactive, End::Side(i, _)) => {
-                    balance.blocked += leave(i);
+                    balance.blocked += page.leave(i);
                 }
                 _ => {}
             }
@@ -261,9 +256,7 @@ impl<'m> Batches<'m> {
 
     /// Shows the state of the stage to a visitor.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
-        let mut quantum = self.unit.quantum();
-        visit_float(&mut quantum, visitor);
-        self.unit = PowerUnit::of_quantum(quantum);
+        self.unit.visit(visitor);
         self.plan.visit(visitor);
         self.ledger.visit_unit(visitor);
         self.ledger.visit(Counters::All, visitor);
@@ -355,8 +348,9 @@ impl Plan {
     }
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
-        let Self { lines, batch: [start, end], number, parts, least, guess, source, ceased, totals } = self;
-        visit_counts([lines, start, end, number, parts, least], visitor);
+        // The other fields follow from the scene and the number of lines.
+        let Self { batch: [start, end], number, guess, source, ceased, totals, .. } = self;
+        visit_counts([start, end, number], visitor);
         visit_float(guess, visitor);
         let Totals { unshot, sent, reflected, absorbed } = totals;
         for quanta in [source, ceased, unshot, sent, reflected, absorbed] {
@@ -394,7 +388,7 @@ impl<'a> Part<'a> {
             for i in sides {
                 let (side, k) = (SideId(i), (i - self.first) as usize);
                 let (power, crossings) = self.ledger.take(side);
-                let sent = self.ledger.share(0, side).times(i64::from(crossings));
+                let sent = self.ledger.share(side).times(i64::from(crossings));
                 let reflected = power.scaled(reflectance);
                 self.power[k] += power;
                 self.unshot[k] += reflected - sent;

@@ -7,11 +7,9 @@ use std::ops::Range;
 use sir_geom::{Line, Rgb, Side};
 use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
 
-use crate::ledger::{Counters, SquareUnit, copies};
+use crate::ledger::{Counters, Ledger, SquareUnit, copies};
 use crate::sources::{Source, sources};
-use crate::{
-    Balance, Books, Counts, Ledger, Model, PowerUnit, Quanta, Received, Solution, SolveError, Visitor,
-};
+use crate::{Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Solution, SolveError, Visitor};
 
 /// The lines of a first shot: what each one carries, and from where.
 #[derive(Clone, Debug)]
@@ -101,6 +99,7 @@ impl<'m> FirstShot<'m> {
     /// Traces some of the lines. Each line should be traced once, by whomever; `worker` is the number of who does.
     pub fn trace(&self, worker: usize, lines: Range<u64>, tally: &FirstShotTally, books: &mut Books) {
         let Model { scene, mesh, accel } = self.model;
+        let page = tally.ledger.page(worker);
         let mut tracer = accel.tracer();
         for index in lines {
             let k = self.allocation.owner(index);
@@ -123,7 +122,7 @@ impl<'m> FirstShot<'m> {
                 Some(hit) => {
                     books.counts.crossings += 1;
                     match mesh.side_at(hit.triangle, hit.point, hit.side) {
-                        Some(side) => tally.ledger.give(worker, side, power, tally.ledger.squares(power)),
+                        Some(side) => page.give(side, power),
                         None => books.balance.blocked += power,
                     }
                 }

@@ -24,7 +24,7 @@ struct Record {
 /// Writing needs no more than `&self`: all counters are atomic. Where that is affordable there are several copies of all
 /// records, because two cores that write to the same cache line wait for each other; only sums over the copies count.
 #[derive(Debug)]
-pub struct Ledger {
+pub(crate) struct Ledger {
     /// All sides in the first copy, then all in the second, and so on.
     records: Vec<Record>,
     sides: usize,
@@ -67,33 +67,15 @@ impl Ledger {
         self.records[side..].iter().step_by(self.sides)
     }
 
-    /// The record of a side in the copy of a worker.
-    #[inline]
-    fn mine(&self, worker: usize, side: SideId) -> &Record {
-        let copies = self.records.len() / self.sides;
-        let copy = if copies == 1 { 0 } else { worker % copies };
-        &self.records[copy * self.sides + side.index()]
-    }
-
-    /// Squares of a gift, in the unit of this ledger.
-    #[inline]
-    pub(crate) fn squares(&self, power: Quanta) -> [i64; 3] {
-        self.unit.counts(power)
-    }
-
-    /// A line brings power to a side; `squares` is the [square](Self::squares) of the same power.
-    #[inline]
-    pub(crate) fn give(&self, worker: usize, side: SideId, power: Quanta, squares: [i64; 3]) {
-        let record = self.mine(worker, side);
-        record.power.iter().zip(power.0).for_each(|(sum, power)| _ = sum.fetch_add(power, Relaxed));
-        record.squares.iter().zip(squares).for_each(|(sum, square)| _ = sum.fetch_add(square, Relaxed));
+    /// The copy that a worker writes to.
+    pub(crate) fn page(&self, worker: usize) -> Page<'_> {
+        let copy = worker % (self.records.len() / self.sides);
+        Page { records: &self.records[copy * self.sides..][..self.sides], unit: self.unit }
     }
 
     /// What a side sends with a line.
-    #[inline]
-    pub(crate) fn share(&self, worker: usize, side: SideId) -> Quanta {
-        let record = self.mine(worker, side);
-        Quanta(std::array::from_fn(|band| f32::from_bits(record.share[band].load(Relaxed)) as i64))
+    pub(crate) fn share(&self, side: SideId) -> Quanta {
+        self.records[side.index()].share()
     }
 
     /// Sets what a side sends with a line, rounded to 24 significant bits.
@@ -103,12 +85,6 @@ impl Ledger {
                 place.store((share as f32).to_bits(), Relaxed);
             }
         }
-    }
-
-    /// A line leaves a side.
-    #[inline]
-    pub(crate) fn leave(&self, worker: usize, side: SideId) {
-        self.mine(worker, side).crossings.fetch_add(1, Relaxed);
     }
 
     /// Power received by a side.
@@ -211,7 +187,43 @@ impl Ledger {
     }
 }
 
+/// One copy of a ledger.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Page<'a> {
+    records: &'a [Record],
+    unit: SquareUnit,
+}
+
+impl Page<'_> {
+    /// A line brings power to a side.
+    #[inline]
+    pub(crate) fn give(self, side: SideId, power: Quanta) {
+        let record = &self.records[side.index()];
+        let squares = self.unit.counts(power);
+        record.power.iter().zip(power.0).for_each(|(sum, power)| _ = sum.fetch_add(power, Relaxed));
+        record.squares.iter().zip(squares).for_each(|(sum, square)| _ = sum.fetch_add(square, Relaxed));
+    }
+
+    /// What a side sends with a line.
+    #[inline]
+    pub(crate) fn share(self, side: SideId) -> Quanta {
+        self.records[side.index()].share()
+    }
+
+    /// A line leaves a side and takes its share.
+    #[inline]
+    pub(crate) fn leave(self, side: SideId) -> Quanta {
+        self.records[side.index()].crossings.fetch_add(1, Relaxed);
+        self.share(side)
+    }
+}
+
 impl Record {
+    #[inline]
+    fn share(&self) -> Quanta {
+        Quanta(std::array::from_fn(|band| f32::from_bits(self.share[band].load(Relaxed)) as i64))
+    }
+
     fn power(&self) -> Quanta {
         Quanta(std::array::from_fn(|band| self.power[band].load(Relaxed)))
     }

@@ -14,7 +14,7 @@
 //! * [`Solution`]: irradiance and its standard error per side of a patch.
 //!
 //! Power is counted in whole [`Quanta`]: integers add up to the same sum in any order, by any number of workers who
-//! share a [`Ledger`], and the energy [`Balance`] closes exactly, not nearly. Lines become [`Segment`]s, which name the two sides that see each other:
+//! share a ledger, and the energy [`Balance`] closes exactly, not nearly. Lines become [`Segment`]s, which name the two sides that see each other:
 //! a new kind of line or a new transport needs to know nothing else.
 //!
 //! # Example
@@ -74,7 +74,6 @@ pub use balance::{Balance, Books, Counts};
 pub use batches::{Batches, Part, Totals};
 pub use error::SolveError;
 pub use first_shot::{FirstShot, FirstShotTally, Shot};
-pub use ledger::Ledger;
 pub use model::Model;
 pub use multipath::{Multipath, MultipathSettings, Replica, Transported, share};
 pub use power::{PowerUnit, Quanta};

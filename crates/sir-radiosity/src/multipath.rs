@@ -20,9 +20,8 @@ use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global;
-use crate::ledger::{Counters, Ledger, SquareUnit, copies, visit_quanta};
+use crate::ledger::{Counters, Ledger, Page, SquareUnit, copies, visit_quanta};
 use crate::segments::{End, Segment};
-use crate::state::visit_float;
 use crate::{
     Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Visitor,
 };
@@ -154,9 +153,9 @@ impl<'m> Multipath<'m> {
         let now = lines.start..lines.end.min(lines.start.saturating_add(count));
         lines.start = now.end;
         let Books { balance, counts } = books;
-        let model = self.model;
+        let (model, page) = (self.model, self.ledger.page(worker));
         global::trace(model, &self.settings.domain, &self.streams, now, counts, |index, segment| {
-            exchange(model, (&self.ledger, worker), unshot, balance, segment, index < *tail);
+            exchange(model, page, unshot, balance, segment, index < *tail);
         });
         if lines.is_empty() {
             for unshot in std::mem::take(unshot) {
@@ -167,9 +166,7 @@ impl<'m> Multipath<'m> {
 
     /// Shows the state of the stage to a visitor, but for that of the replicas which are under way.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
-        let mut quantum = self.unit.quantum();
-        visit_float(&mut quantum, visitor);
-        self.unit = PowerUnit::of_quantum(quantum);
+        self.unit.visit(visitor);
         self.ledger.visit_unit(visitor);
         self.ledger.visit(Counters::All, visitor);
         self.ledger.visit_shares(visitor);
@@ -220,7 +217,7 @@ impl Replica {
 #[inline]
 fn exchange(
     model: &Model,
-    (ledger, worker): (&Ledger, usize),
+    page: Page<'_>,
     unshot: &mut [Quanta],
     balance: &mut Balance,
     segment: Segment,
@@ -228,15 +225,15 @@ fn exchange(
 ) {
     // Takes all unshot power of a side and, if the line emits, its share of the reflected direct power.
     let mut take = |side: SideId| {
-        let emission = if emits { ledger.share(worker, side) } else { Quanta::ZERO };
+        let emission = if emits { page.share(side) } else { Quanta::ZERO };
         balance.emitted += emission;
         std::mem::take(&mut unshot[side.index()]) + emission
     };
     match (segment.from, segment.to) {
         (End::Side(i, triangle_i), End::Side(j, triangle_j)) => {
             let (from_i, from_j) = (take(i), take(j));
-            give(model, (ledger, worker), unshot, balance, (j, triangle_j), from_i);
-            give(model, (ledger, worker), unshot, balance, (i, triangle_i), from_j);
+            give(model, page, unshot, balance, (j, triangle_j), from_i);
+            give(model, page, unshot, balance, (i, triangle_i), from_j);
         }
         (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
             let power = take(i);
@@ -254,13 +251,13 @@ fn exchange(
 #[inline]
 fn give(
     model: &Model,
-    (ledger, worker): (&Ledger, usize),
+    page: Page<'_>,
     unshot: &mut [Quanta],
     balance: &mut Balance,
     (side, triangle): (SideId, TriangleId),
     power: Quanta,
 ) {
-    ledger.give(worker, side, power, ledger.squares(power));
+    page.give(side, power);
     let reflected = power.scaled(model.scene.material(triangle).reflectance);
     unshot[side.index()] += reflected;
     balance.absorbed += power - reflected;

@@ -4,6 +4,9 @@ use std::ops::{Add, AddAssign, Sub};
 
 use sir_geom::Rgb;
 
+use crate::Visitor;
+use crate::state::visit_float;
+
 /// Power per band in whole quanta of a [`PowerUnit`].
 ///
 /// Sums saturate instead of wrapping; the energy balance then does not close, which is reported.
@@ -81,9 +84,9 @@ impl PowerUnit {
         Self { quantum: 2f64.powi((exponent - 62).max(-1000)) }
     }
 
-    /// The unit with this many watts per quantum.
-    pub(crate) fn of_quantum(quantum: f64) -> Self {
-        Self { quantum }
+    /// Shows the unit to a visitor.
+    pub(crate) fn visit(&mut self, visitor: &mut dyn Visitor) {
+        visit_float(&mut self.quantum, visitor);
     }
 
     /// The nearest whole number of quanta; saturates.
