@@ -138,10 +138,11 @@ fn ranks_that_read_something_else_are_found_out() {
 /// Starts a long run with checkpoints, and waits until there is one with some lines in it.
 fn under_way(folder: &Path, ranks: usize) -> Child {
     let arguments = ["run", "room.ron", "--out", "run", "--checkpoint-every", "0.2", "--threads", "1"];
-    let child =
+    let mut child =
         mpirun(folder, ranks, &arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let checkpoint = folder.join("run/checkpoint");
     while fs::metadata(&checkpoint).map_or(0, |file| file.len()) < 1_000_000 {
+        assert!(child.try_wait().unwrap().is_none(), "the run ended before it could be interrupted");
         sleep(Duration::from_millis(20));
     }
     child

@@ -1,10 +1,10 @@
 //! What a pipeline will do and cost, without doing it.
 
 use std::fmt;
-use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
 
 use sir_geom::{Rgb, Scene};
+use sir_parallel::cores;
 use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, SolveError};
 
 use crate::Error;
@@ -117,8 +117,7 @@ fn rate(lines: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
         trace(done..end);
         done = end;
     }
-    let threads = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    threads as f64 * done as f64 / start.elapsed().as_secs_f64().max(1e-9)
+    cores().get() as f64 * done as f64 / start.elapsed().as_secs_f64().max(1e-9)
 }
 
 impl fmt::Display for Estimate {

@@ -14,9 +14,14 @@ pub(crate) fn run_name(pipeline: &Path) -> String {
     if stem != "pipeline" {
         return if stem.is_empty() { "run".into() } else { stem };
     }
-    let absolute = std::path::absolute(pipeline).unwrap_or_default();
-    let folder = absolute.parent().and_then(Path::file_name);
+    let pipeline = absolute(pipeline);
+    let folder = pipeline.parent().and_then(Path::file_name);
     folder.map_or(stem, |name| name.to_string_lossy().into_owned())
+}
+
+/// The path from the root of the file system, as far as that can be told.
+pub(crate) fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
 /// Makes the directory that the user asked for, and removes the report of an older run in it.

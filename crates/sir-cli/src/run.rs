@@ -10,11 +10,11 @@ use std::time::Duration;
 
 use sir_geom::Rgb;
 use sir_lines::Domain;
-use sir_parallel::{Alone, Checkpoints, Communicator, Crew, RunError, Saved, StageTime};
+use sir_parallel::{Alone, Checkpoints, Communicator, Crew, RunError, Saved, StageTime, cores};
 use sir_radiosity::{Model, MultipathSettings, Quanta, Shot, Solution};
 
 use crate::Error;
-use crate::directory::{check_given, make_given, make_new, run_name};
+use crate::directory::{absolute, check_given, make_given, make_new, run_name};
 use crate::fingerprint::{self, PROGRAM};
 use crate::pipeline::{Action, Output, Pipeline, Transport};
 use crate::prepare::{Prepared, prepare};
@@ -124,7 +124,7 @@ pub fn run_together(
     };
     let head = Head {
         fingerprint: fingerprint::hex(fingerprint),
-        pipeline: std::path::absolute(&pipeline.path).unwrap_or_else(|_| pipeline.path.clone()),
+        pipeline: absolute(&pipeline.path),
         stage: 0,
         report,
     };
@@ -215,8 +215,7 @@ impl Run<'_> {
     ) -> Result<(), Error> {
         let model = &self.prepared.model;
         let seed = self.head.report.seed;
-        let available = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        let threads = self.options.threads.unwrap_or(available);
+        let threads = self.options.threads.unwrap_or_else(cores);
         // What the first shot leaves to multipath, and the light so far.
         let mut shot: Option<Shot> = None;
         let mut solution: Option<Solution> = None;

@@ -1,8 +1,7 @@
 //! What `sir run` prints when it is done.
 
-use std::path::Path;
-
 use crate::check::duration;
+use crate::directory::absolute;
 use crate::fields::grouped;
 use crate::report::{FILE_NAME, LinesReport, Report};
 use crate::run::RunResult;
@@ -18,7 +17,7 @@ pub fn summary(result: &RunResult) -> String {
     files.push(FILE_NAME);
     let mut text = String::new();
     for file in files {
-        text += &format!("{}\n", absolute(&directory.join(file)));
+        text += &format!("{}\n", absolute(&directory.join(file)).display());
     }
     text += &format!(
         "\n{} triangles, {} patches; {} in all\n",
@@ -68,8 +67,4 @@ fn error(report: &Report) -> String {
             "estimated relative error of a patch's irradiance: {r:.2} % red, {g:.2} % green, {b:.2} % blue\n"
         )
     })
-}
-
-fn absolute(path: &Path) -> String {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string()
 }

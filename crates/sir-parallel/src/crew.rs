@@ -28,10 +28,16 @@ pub struct Crew<'a> {
     pub checkpoints: Option<&'a mut Checkpoints>,
 }
 
+/// Processor cores that this process may use.
+#[must_use]
+pub fn cores() -> NonZeroUsize {
+    thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
+}
+
 impl Default for Crew<'_> {
     /// All cores of this machine, unwatched.
     fn default() -> Self {
-        Self::of(thread::available_parallelism().unwrap_or(NonZeroUsize::MIN))
+        Self::of(cores())
     }
 }
 
@@ -222,11 +228,9 @@ impl<'c, 'a> Shift<'c, 'a> {
             let lines = orders.slice.min(end - position.next);
             let mine = share(lines, self.crew.comm.rank() as u64, self.crew.comm.size() as u64);
             let mine = position.next + mine.start..position.next + mine.end;
-            let start = Instant::now();
-            position.books += spread(self.threads(), mine, &|thread, lines, books| {
-                work.trace(thread, lines, books);
-            });
-            self.time.tracing += start.elapsed();
+            let threads = self.threads();
+            position.books += self
+                .tracing(|| spread(threads, mine, |thread, lines, books| work.trace(thread, lines, books)));
             self.traced(lines);
             position.next += lines;
             self.progress(position.next);
@@ -237,30 +241,29 @@ impl<'c, 'a> Shift<'c, 'a> {
         Ok(())
     }
 
-    /// Lets every thread do something with one of `items`, of which there should be as many as threads at most.
-    pub(crate) fn each<I: Send, T: Send>(&mut self, items: Vec<I>, job: impl Fn(I) -> T + Sync) -> Vec<T> {
-        let job = &job;
-        let mut items = items.into_iter();
-        let Some(mine) = items.next() else { return Vec::new() };
-        thread::scope(|scope| {
-            let others: Vec<_> = items.map(|item| scope.spawn(move || job(item))).collect();
-            let mut outcomes = vec![job(mine)];
-            outcomes.extend(others.into_iter().map(join));
-            outcomes
-        })
-    }
-
-    /// As [`each`](Self::each), for jobs that trace lines.
-    pub(crate) fn each_tracing<I: Send, T: Send>(
-        &mut self,
-        items: Vec<I>,
-        job: impl Fn(I) -> T + Sync,
-    ) -> Vec<T> {
+    /// Traces lines: the time of whatever `work` does counts as such.
+    pub(crate) fn tracing<T>(&mut self, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
-        let outcomes = self.each(items, job);
+        let outcome = work();
         self.time.tracing += start.elapsed();
-        outcomes
+        outcome
     }
+}
+
+/// Lets a thread each do something with every item; the calling thread takes the first.
+pub(crate) fn each<I: Send, T: Send>(
+    items: impl IntoIterator<Item = I>,
+    job: impl Fn(I) -> T + Sync,
+) -> Vec<T> {
+    let job = &job;
+    let mut items = items.into_iter();
+    let Some(mine) = items.next() else { return Vec::new() };
+    thread::scope(|scope| {
+        let others: Vec<_> = items.map(|item| scope.spawn(move || job(item))).collect();
+        let mut outcomes = vec![job(mine)];
+        outcomes.extend(others.into_iter().map(join));
+        outcomes
+    })
 }
 
 fn micros(time: Duration) -> u64 {
@@ -295,16 +298,12 @@ impl Position {
 }
 
 /// Traces lines on several threads, block by block; returns the sum of their books.
-fn spread(
-    threads: usize,
-    lines: Range<u64>,
-    trace: &(impl Fn(usize, Range<u64>, &mut Books) + Sync),
-) -> Books {
+fn spread(threads: usize, lines: Range<u64>, trace: impl Fn(usize, Range<u64>, &mut Books) + Sync) -> Books {
     let length = lines.end - lines.start;
     // Towards the end of few lines no thread should wait for long.
     let block = BLOCK.min(length / (8 * threads as u64)).max(16);
     let next = AtomicU64::new(lines.start);
-    let work = &|thread: usize| {
+    let work = |thread: usize| {
         let mut books = Books::default();
         loop {
             let start = next.fetch_add(block, Relaxed);
@@ -315,12 +314,9 @@ fn spread(
         }
     };
     let helpers = (threads as u64 - 1).min(length / block);
-    thread::scope(|scope| {
-        let others: Vec<_> = (1..=helpers as usize).map(|thread| scope.spawn(move || work(thread))).collect();
-        let mut books = work(0);
-        others.into_iter().map(join).for_each(|part| books += part);
-        books
-    })
+    let mut books = Books::default();
+    each(0..=helpers as usize, work).into_iter().for_each(|part| books += part);
+    books
 }
 
 /// Waits for a thread; if it panicked, so does this one.
@@ -349,12 +345,11 @@ mod tests {
         for threads in [1, 2, 3, 7] {
             for lines in [0..0, 5..6, 100..1_000, 7..123_456] {
                 let seen = Mutex::new(Vec::new());
-                let books =
-                    spread(threads, lines.clone(), &|thread, block: Range<u64>, books: &mut Books| {
-                        assert!(thread < threads);
-                        books.counts.lines += block.end - block.start;
-                        seen.lock().unwrap().extend(block);
-                    });
+                let books = spread(threads, lines.clone(), |thread, block: Range<u64>, books: &mut Books| {
+                    assert!(thread < threads);
+                    books.counts.lines += block.end - block.start;
+                    seen.lock().unwrap().extend(block);
+                });
                 assert_eq!(books.counts.lines, lines.end - lines.start);
                 let mut seen = seen.into_inner().unwrap();
                 seen.sort_unstable();

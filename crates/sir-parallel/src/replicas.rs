@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use sir_radiosity::{Books, Multipath, MultipathSettings, Replica, Transported, Visitor};
 
-use crate::crew::{Position, Shift};
+use crate::crew::{Position, Shift, each};
 use crate::{CheckpointError, Communicator, RunError, Saved};
 
 /// The replicas of a transport. Those whose numbers leave the remainder `rank` when divided by the number of ranks belong
@@ -94,7 +94,7 @@ impl<'m> Replicas<'m> {
             }
             (books, None)
         };
-        let outcomes = shift.each_tracing((0..threads).collect(), work);
+        let outcomes = shift.tracing(|| each(0..threads, work));
         *waiting = queue.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
         for (part, task) in outcomes.into_iter().rev() {
             position.books += part;

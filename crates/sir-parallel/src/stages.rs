@@ -8,7 +8,7 @@ use sir_radiosity::{
     Transported, Visitor,
 };
 
-use crate::crew::{Position, Shift, Work};
+use crate::crew::{Position, Shift, Work, each};
 use crate::replicas::Replicas;
 use crate::{Crew, RunError, Saved, StageTime};
 
@@ -97,8 +97,7 @@ pub fn batches(
     let mut stage = Batches::new(model, shot, lines, domain, seed, shift.threads());
     let mut position = Position::default();
     let open = |stage: &mut Batches<'_>, shift: &mut Shift<'_, '_>| {
-        let parts = stage.parts(shift.threads()).collect();
-        shift.each(parts, |mut part| part.open());
+        each(stage.parts(shift.threads()), |mut part| part.open());
     };
     match saved {
         None => open(&mut stage, &mut shift),
@@ -108,9 +107,9 @@ pub fn batches(
         let end = stage.lines().end;
         shift.trace(&mut stage, &mut position, end)?;
         shift.add_up(|visitor| stage.visit_batch(visitor));
-        let parts = stage.parts(shift.threads()).collect();
         let mut totals = Totals::default();
-        shift.each(parts, |mut part| part.close()).into_iter().for_each(|part| totals += part);
+        let parts = stage.parts(shift.threads());
+        each(parts, |mut part| part.close()).into_iter().for_each(|part| totals += part);
         if !stage.advance(totals) {
             break;
         }

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::{ScalingError, Workers};
 use crate::Error;
+use crate::directory::absolute;
 use crate::report::Report;
 
 /// Open MPI refuses to start as root, as which one is in a container, unless it is told twice. Others ignore
@@ -43,8 +44,7 @@ impl Launcher {
             tried.map_err(|source| ScalingError::Mpirun { command, source })?;
         }
         let program = std::env::current_exe().map_err(ScalingError::Program)?;
-        let pipeline = std::path::absolute(pipeline).unwrap_or_else(|_| pipeline.to_owned());
-        Ok(Self { program, pipeline, mpirun, stop })
+        Ok(Self { program, pipeline: absolute(pipeline), mpirun, stop })
     }
 
     /// Runs the pipeline in a temporary directory inside `folder`, where there is room for the real results,

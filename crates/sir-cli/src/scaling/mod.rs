@@ -28,7 +28,6 @@ mod table;
 mod workers;
 
 use std::fs;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 pub use error::ScalingError;
@@ -42,7 +41,7 @@ pub use table::{markdown, text};
 pub use workers::{Plan, Workers};
 
 use crate::Error;
-use crate::directory::{make_new, run_name};
+use crate::directory::{absolute, make_new, run_name};
 use crate::interrupt;
 use crate::pipeline::Pipeline;
 use crate::progress::Progress;
@@ -59,7 +58,7 @@ const RESULTS: &str = "results";
 pub fn command(args: &ScalingArgs) -> Result<String, Error> {
     // A mistake in the pipeline is told once, before anything runs.
     let pipeline = Pipeline::read(&args.pipeline)?;
-    let cores = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let cores = sir_parallel::cores();
     let plan = args.plan(cores);
     let launcher = Launcher::new(&pipeline.path, &args.mpirun, plan.most_ranks(), interrupt::flag())?;
     let name = run_name(&pipeline.path);
@@ -79,6 +78,7 @@ pub fn command(args: &ScalingArgs) -> Result<String, Error> {
 
 /// The output directory.
 struct Folder {
+    /// From the root: other processes, perhaps on other machines, get it.
     path: PathBuf,
     /// Whether it was not there before.
     new: bool,
@@ -111,11 +111,6 @@ impl Folder {
         let names = ["scaling.svg", "scaling.md", "scaling.csv", files::JSON];
         names.iter().map(|name| format!("{}\n", self.path.join(name).display())).collect()
     }
-}
-
-/// Other processes, perhaps on other machines, get this path.
-fn absolute(path: &Path) -> PathBuf {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
 #[cfg(test)]
