@@ -18,6 +18,8 @@ pub(crate) struct Grid {
     centre: DVec3,
     /// Steps per unit of length.
     scale: f64,
+    /// Length of a step.
+    step: f64,
 }
 
 /// A line on the grid. Origin and direction hold numbers that doubles and integers represent exactly.
@@ -31,20 +33,18 @@ pub(crate) struct GridLine {
     pub(crate) start: f64,
 }
 
-/// Nearest integer, for numbers well inside 64 bits; never touches the rounding mode.
-#[inline]
+/// Nearest integer, for numbers below 2⁵¹: what the sum has no digits for is rounded off.
+#[inline(always)]
 fn nearest(x: f64) -> f64 {
-    (x + 0.5f64.copysign(x)) as i64 as f64
-}
-
-#[inline]
-fn nearest_vector(p: DVec3) -> DVec3 {
-    DVec3::new(nearest(p.x), nearest(p.y), nearest(p.z))
+    const SHIFT: f64 = 1.5 * (1u64 << 52) as f64;
+    (x + SHIFT) - SHIFT
 }
 
 impl Grid {
     pub(crate) fn new(sphere: BoundingSphere) -> Self {
-        Self { centre: sphere.centre, scale: RADIUS / sphere.radius }
+        // Two steps less than the radius: differences of coordinates then fit 32 bits.
+        let scale = (RADIUS - 2.0) / sphere.radius;
+        Self { centre: sphere.centre, scale, step: 1.0 / scale }
     }
 
     /// The grid point next to a point of the scene.
@@ -53,7 +53,7 @@ impl Grid {
     }
 
     /// The grid line next to a line; `None` if it passes far from the scene.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn line(&self, line: &Line) -> Option<GridLine> {
         let mut origin = (line.origin - self.centre) * self.scale;
         let mut start = 0.0;
@@ -65,21 +65,29 @@ impl Grid {
                 return None;
             }
         }
-        Some(GridLine {
-            origin: nearest_vector(origin * FINE) / FINE,
-            direction: nearest_vector(line.direction * UNIT) / UNIT,
-            start,
-        })
+        // All six numbers alike, for vector instructions.
+        let [o, d] = [origin.to_array(), line.direction.to_array()];
+        let fine = [FINE, FINE, FINE, 0.0, UNIT, UNIT, UNIT, 0.0];
+        let numbers = [o[0], o[1], o[2], 0.0, d[0], d[1], d[2], 0.0];
+        let coarse = [1.0 / FINE, 1.0 / FINE, 1.0 / FINE, 0.0, 1.0 / UNIT, 1.0 / UNIT, 1.0 / UNIT, 0.0];
+        let n: [f64; 8] = std::array::from_fn(|i| nearest(numbers[i] * fine[i]) * coarse[i]);
+        let (origin, direction) = (DVec3::new(n[0], n[1], n[2]), DVec3::new(n[4], n[5], n[6]));
+        Some(GridLine { origin, direction, start })
     }
 
     /// A distance in steps as a length of the scene.
     #[inline]
     pub(crate) fn length(&self, steps: f64) -> f64 {
-        steps / self.scale
+        steps * self.step
     }
 }
 
 impl GridLine {
+    /// A line that passes far from the scene.
+    pub(crate) fn far() -> Self {
+        Self { origin: DVec3::X * (REACH * RADIUS), direction: DVec3::Y, start: 0.0 }
+    }
+
     /// On which side of the line the edge from `a` to `b` passes: the sign of `d · ((a − o) × (b − o))`, exactly,
     /// with the line shifted by an infinitesimal if it is zero. Zero only for an edge parallel to the line in a
     /// plane with it; no triangle with such an edge can be crossed.

@@ -40,19 +40,31 @@
 //! # Ok::<(), sir_geom::SceneError>(())
 //! ```
 
+mod build;
 mod grid;
 mod hit;
+mod kits;
+mod lanes;
+mod leaf;
+mod search;
 mod tracer;
 mod tree;
 mod triangle;
 
 pub use hit::Hit;
-pub use tracer::Tracer;
+pub use tracer::{LineHits, Ray, Tracer};
 
 use sir_geom::Scene;
 
 use crate::grid::Grid;
+use crate::kits::Kits;
 use crate::tree::Tree;
+
+/// Begins to bring something to the caches, because it will soon be needed: a hint, without any other effect.
+#[inline]
+pub fn prefetch<T>(what: &T) {
+    lanes::prefetch(std::ptr::from_ref(what).cast(), size_of::<T>());
+}
 
 /// The triangles of a scene, arranged for lines to be traced.
 #[derive(Clone, Debug)]
@@ -73,7 +85,7 @@ impl Accel {
     /// Something to trace lines with; make one per thread.
     #[must_use]
     pub fn tracer(&self) -> Tracer<'_> {
-        Tracer::new(self)
+        Tracer::new(self, Kits::best())
     }
 
     /// Memory in use \[bytes\].

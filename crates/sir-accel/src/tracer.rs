@@ -1,159 +1,262 @@
 //! Tracing lines.
 
+use std::ops::Range;
+
 use sir_geom::{Line, Side, TriangleId};
 
-use crate::grid::{GridLine, RADIUS};
+use crate::Accel;
+use crate::grid::{Grid, GridLine, RADIUS};
 use crate::hit::{self, Hit};
-use crate::tree::{BoxLine, Child, WIDTH};
+use crate::kits::Kits;
+use crate::leaf::Span;
+use crate::search::{AllScratch, ClosestScratch, LINES, Rays};
+use crate::tree::Tree;
 use crate::triangle::{Crossing, GridTriangle};
-use crate::{Accel, grid::Grid};
+
+/// A ray, and the surface that it leaves.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// The ray starts at the origin of the line.
+    pub line: Line,
+    /// A ray that leaves a surface names its triangle: that triangle is not met again, and among surfaces in contact with
+    /// it only those are met that lie on top of the side which the ray leaves.
+    pub leaving: Option<TriangleId>,
+}
+
+impl From<Line> for Ray {
+    /// A ray that leaves no surface.
+    fn from(line: Line) -> Self {
+        Self { line, leaving: None }
+    }
+}
 
 /// Traces lines through a scene. Holds scratch memory, so it belongs to one thread.
 #[derive(Clone, Debug)]
 pub struct Tracer<'a> {
     accel: &'a Accel,
-    stack: Vec<(Child, f32)>,
-    found: Vec<Found>,
-    hits: Vec<Hit>,
-}
-
-/// A crossing and the place of its triangle in the tree's list.
-#[derive(Clone, Copy, Debug)]
-struct Found {
-    crossing: Crossing,
-    id: TriangleId,
-    place: u32,
+    kits: Kits,
+    closest: ClosestScratch,
+    all: AllScratch,
 }
 
 impl<'a> Tracer<'a> {
-    pub(crate) fn new(accel: &'a Accel) -> Self {
-        Self { accel, stack: Vec::with_capacity(256), found: Vec::new(), hits: Vec::new() }
+    pub(crate) fn new(accel: &'a Accel, kits: Kits) -> Self {
+        Self { accel, kits, closest: ClosestScratch::default(), all: AllScratch::default() }
     }
 
     /// The first triangle that a ray meets.
+    pub fn closest(&mut self, ray: &Ray) -> Option<Hit> {
+        let mut first = None;
+        self.closest_each(std::slice::from_ref(ray), |_, hit| first = hit);
+        first
+    }
+
+    /// The first triangles that rays meet: `visit` gets the number of a ray and its hit, in any order.
     ///
-    /// A ray that leaves a surface names its triangle in `leaving`: that triangle is not met again, and among
-    /// surfaces in contact with it only those are met that lie on top of the side which the ray leaves.
-    pub fn closest(&mut self, ray: &Line, leaving: Option<TriangleId>) -> Option<Hit> {
-        let line = self.accel.grid.line(ray)?;
-        let start = leaving.map(|id| Start::new(self.accel, id, &line));
-        let mut best: Option<Found> = None;
-        let mut limit = f32::INFINITY;
-        let boxes = BoxLine::new(&line);
-        let slack = (2.0 * hit::CONTACT) as f32;
-        self.stack.clear();
-        self.stack.push((Child::default(), 0.0));
-        while let Some((child, entry)) = self.stack.pop() {
-            if entry > limit {
-                continue;
-            }
-            if child.count == 0 {
-                let node = &self.accel.tree.nodes[child.first as usize];
-                let enter = node.enter(&boxes, -slack, limit);
-                push_far_to_near(&mut self.stack, &enter, |lane| node.child(lane));
-                continue;
-            }
-            for place in child.first..child.first + child.count {
-                let triangle = &self.accel.tree.triangles[place as usize];
-                let Some(crossing) = triangle.cross(&line) else { continue };
-                let candidate = Found { crossing, id: triangle.id, place };
-                let begins = match &start {
-                    Some(s) => s.is_before(&candidate, &line, self.accel),
-                    None => crossing.t + line.start >= 0.0,
-                };
-                if begins && best.is_none_or(|b| precedes(&candidate, &b, self.accel)) {
-                    best = Some(candidate);
-                    limit = (crossing.t / RADIUS) as f32 + slack;
-                }
-            }
-        }
-        best.map(|f| f.hit(&self.accel.grid, &line))
+    /// Many rays at once are several times faster than each by itself.
+    pub fn closest_each(&mut self, rays: &[Ray], visit: impl FnMut(usize, Option<Hit>)) {
+        let mut search = ClosestHits { accel: self.accel, rays, next: 0, close: Vec::new(), visit };
+        self.kits.closest(&self.accel.tree, &mut self.closest, &mut search);
     }
 
     /// All triangles that the infinite line crosses, in order along it, those behind its origin included.
     pub fn all_hits(&mut self, line: &Line) -> &[Hit] {
-        self.hits.clear();
-        let Some(line) = self.accel.grid.line(line) else { return &self.hits };
-        self.found.clear();
-        let boxes = BoxLine::new(&line);
-        self.stack.clear();
-        self.stack.push((Child::default(), 0.0));
-        while let Some((child, _)) = self.stack.pop() {
-            if child.count == 0 {
-                let node = &self.accel.tree.nodes[child.first as usize];
-                let enter = node.enter(&boxes, f32::NEG_INFINITY, f32::INFINITY);
-                for (lane, t) in enter.iter().enumerate() {
-                    if *t < f32::INFINITY {
-                        self.stack.push((node.child(lane), 0.0));
+        self.all_hits_together(std::slice::from_ref(line));
+        self.all.hits()
+    }
+
+    /// As [`all_hits`](Self::all_hits) for many lines, in order: `visit` gets the hits of some of them at a time.
+    ///
+    /// Many lines at once are several times faster than each by itself.
+    pub fn all_hits_each(&mut self, lines: &[Line], mut visit: impl FnMut(&LineHits<'_>)) {
+        for lines in lines.chunks(LINES) {
+            self.all_hits_together(lines);
+            visit(&LineHits { starts: &self.all.starts[..=lines.len()], hits: self.all.hits() });
+        }
+    }
+
+    fn all_hits_together(&mut self, lines: &[Line]) {
+        let Self { accel: Accel { grid, tree }, kits, all, .. } = self;
+        kits.all(grid, tree, lines, all);
+        for (line, _) in all.close.iter().take(lines.len()).enumerate().filter(|(_, close)| **close) {
+            let hits = &mut all.hits[all.starts[line] as usize..all.starts[line + 1] as usize];
+            sort_contacts(hits, grid.length(hit::CONTACT * RADIUS), tree);
+        }
+    }
+}
+
+/// All hits of some consecutive lines.
+#[derive(Clone, Copy, Debug)]
+pub struct LineHits<'a> {
+    starts: &'a [u32],
+    hits: &'a [Hit],
+}
+
+impl<'a> LineHits<'a> {
+    /// The hits of all lines, line by line, in order along each.
+    #[must_use]
+    pub fn hits(&self) -> &'a [Hit] {
+        self.hits
+    }
+
+    /// Where in [`hits`](Self::hits) those of each line are.
+    pub fn lines(&self) -> impl ExactSizeIterator<Item = Range<usize>> + use<'a> {
+        self.starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
+    }
+}
+
+fn hit_of(crossing: &Crossing, grid: &Grid, line: &GridLine) -> Hit {
+    let Crossing { t, point, side, id } = *crossing;
+    Hit { t: grid.length(t + line.start), triangle: id, point, side }
+}
+
+/// A search for closest hits.
+struct ClosestHits<'a, F> {
+    accel: &'a Accel,
+    rays: &'a [Ray],
+    next: usize,
+    /// Crossings that lie close to another one, with the number of their ray.
+    close: Vec<(usize, Crossing)>,
+    visit: F,
+}
+
+/// A ray that is searched for.
+struct Traced {
+    index: usize,
+    leaving: Option<TriangleId>,
+    /// The crossing with the smallest distance.
+    best: Option<Crossing>,
+    /// Whether there were others close to it.
+    close: bool,
+}
+
+/// How many rays ahead memory is asked for.
+const AHEAD: usize = 16;
+
+/// Nothing of the scene is farther from the origin of a line on the grid \[radii\].
+const FAR: f32 = 4.0;
+
+/// Distance within which the first hits are compared by their rule \[steps of the grid\].
+const SLACK: f64 = 2.0 * hit::CONTACT * RADIUS;
+
+impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
+    type Ray = Traced;
+
+    fn next(&mut self) -> Option<(Traced, GridLine, Span, u32)> {
+        loop {
+            let index = self.next;
+            let ray = self.rays.get(index)?;
+            self.next += 1;
+            let tree = &self.accel.tree;
+            let Some(line) = self.accel.grid.line(&ray.line) else {
+                (self.visit)(index, None);
+                continue;
+            };
+            let from = if ray.leaving.is_some() { 0.0 } else { -line.start };
+            let from = ((from - SLACK) / RADIUS) as f32;
+            let span = Span { from: from.clamp(-FAR, FAR), to: FAR };
+            let leaving = ray.leaving.map_or(u32::MAX, |id| tree.place(id));
+            // The next rays leave triangles that may not be in the caches.
+            if let Some(id) = self.rays.get(index + AHEAD).and_then(|ray| ray.leaving) {
+                tree.prefetch_place(id);
+            }
+            break Some((
+                Traced { index, leaving: ray.leaving, best: None, close: false },
+                line,
+                span,
+                leaving,
+            ));
+        }
+    }
+
+    #[inline(always)]
+    fn cross(&mut self, ray: &mut Traced, line: &GridLine, crossing: Crossing) -> f32 {
+        let tree = &self.accel.tree;
+        let begins = match ray.leaving {
+            Some(id) => is_ahead(id, &crossing, line, tree),
+            None => crossing.t + line.start >= 0.0,
+        };
+        if begins {
+            match &mut ray.best {
+                None => ray.best = Some(crossing),
+                Some(best) => {
+                    // What is within the slack of the first one, in whatever order it is found, is put in order at the end.
+                    if (crossing.t - best.t).abs() <= SLACK {
+                        ray.close = true;
+                        self.close.extend([(ray.index, crossing), (ray.index, *best)]);
+                    }
+                    if (crossing.t, crossing.id) < (best.t, best.id) {
+                        *best = crossing;
                     }
                 }
-                continue;
-            }
-            for place in child.first..child.first + child.count {
-                let triangle = &self.accel.tree.triangles[place as usize];
-                if let Some(crossing) = triangle.cross(&line) {
-                    self.found.push(Found { crossing, id: triangle.id, place });
-                }
             }
         }
-        self.sort();
-        self.hits.extend(self.found.iter().map(|f| f.hit(&self.accel.grid, &line)));
-        &self.hits
+        ray.best.map_or(f32::INFINITY, |best| ((best.t + SLACK) / RADIUS) as f32)
     }
 
-    /// Sorts what was found along the line: by distance, then hits in contact by their rule.
-    fn sort(&mut self) {
-        self.found.sort_unstable_by(|a, b| a.crossing.t.total_cmp(&b.crossing.t).then(a.id.cmp(&b.id)));
-        for i in 1..self.found.len() {
-            for j in (1..=i).rev() {
-                let (first, second) = (self.found[j - 1], self.found[j]);
-                if !in_contact(&first, &second, self.accel) || contact_order(&first, &second) {
-                    break;
-                }
-                self.found.swap(j - 1, j);
-            }
-        }
+    fn done(&mut self, ray: Traced, line: &GridLine) {
+        let hit = match ray.best {
+            Some(best) if ray.close => Some(self.first_of_close(ray.index, best, line)),
+            best => best.map(|crossing| hit_of(&crossing, &self.accel.grid, line)),
+        };
+        (self.visit)(ray.index, hit);
     }
 }
 
-impl Found {
-    fn hit(&self, grid: &Grid, line: &GridLine) -> Hit {
-        let Crossing { t, point, side } = self.crossing;
-        Hit { t: grid.length(t + line.start), triangle: self.id, point, side }
-    }
-
-    fn triangle<'a>(&self, accel: &'a Accel) -> &'a GridTriangle {
-        &accel.tree.triangles[self.place as usize]
+impl<F> ClosestHits<'_, F> {
+    /// The first, by their rule, of hits that are close together.
+    #[cold]
+    fn first_of_close(&mut self, index: usize, best: Crossing, line: &GridLine) -> Hit {
+        let Accel { grid, tree } = self.accel;
+        let mut hits = vec![hit_of(&best, grid, line)];
+        self.close.retain(|(of_ray, crossing)| {
+            if *of_ray == index
+                && crossing.t <= best.t + SLACK
+                && hits.iter().all(|hit| hit.triangle != crossing.id)
+            {
+                hits.push(hit_of(crossing, grid, line));
+            }
+            *of_ray != index
+        });
+        sort_contacts(&mut hits, grid.length(hit::CONTACT * RADIUS), tree);
+        hits[0]
     }
 }
 
-/// The surface that a ray leaves.
-struct Start<'a> {
-    triangle: &'a GridTriangle,
-    /// The side that the ray does not leave: it would face the origin if the line were followed from behind.
-    side: Side,
+/// Whether a crossing lies ahead of the surface that a ray leaves.
+#[inline]
+fn is_ahead(leaving: TriangleId, other: &Crossing, line: &GridLine, tree: &Tree) -> bool {
+    if other.t.abs() > hit::CONTACT * RADIUS { other.t > 0.0 } else { is_on_top(leaving, other, line, tree) }
 }
 
-impl<'a> Start<'a> {
-    fn new(accel: &'a Accel, id: TriangleId, line: &GridLine) -> Self {
-        let triangle = accel.tree.triangle(id);
-        let side = if triangle.scaled_normal().dot(line.direction) > 0.0 { Side::Back } else { Side::Front };
-        Self { triangle, side }
+/// Whether a crossing close to the surface that a ray leaves lies ahead of it.
+#[cold]
+fn is_on_top(leaving: TriangleId, other: &Crossing, line: &GridLine, tree: &Tree) -> bool {
+    let triangle = tree.triangle(leaving);
+    if !parallel(triangle, tree.triangle(other.id)) {
+        return other.t > 0.0;
     }
+    // The side that the ray does not leave: it would face the origin if the line were followed from behind.
+    let along = triangle.scaled_normal().dot(line.direction) > 0.0;
+    let side = if along { Side::Back } else { Side::Front };
+    // A line that does not cross the start itself left it on an edge, and this is its neighbour there.
+    triangle.cross(line).is_some() && hit::contact_order((leaving, side), (other.id, other.side))
+}
 
-    /// Whether a crossing lies ahead of the start.
-    fn is_before(&self, other: &Found, line: &GridLine, accel: &Accel) -> bool {
-        if other.id == self.triangle.id {
-            return false;
-        }
-        let t = other.crossing.t;
-        let near = t.abs() <= hit::CONTACT * RADIUS;
-        if near && parallel(self.triangle, other.triangle(accel)) {
-            // A line that does not cross the start itself left it on an edge, and this is its neighbour there.
-            self.triangle.cross(line).is_some()
-                && hit::contact_order((self.triangle.id, self.side), (other.id, other.crossing.side))
-        } else {
-            t > 0.0
+/// Puts hits in contact, of those of a line in order of distance, in the order of their rule.
+#[cold]
+fn sort_contacts(hits: &mut [Hit], contact: f64, tree: &Tree) {
+    hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+    for i in 1..hits.len() {
+        for j in (1..=i).rev() {
+            let (first, second) = (hits[j - 1], hits[j]);
+            let apart = (first.t - second.t).abs() > contact
+                || !parallel(tree.triangle(first.triangle), tree.triangle(second.triangle));
+            let order = hit::contact_order((first.triangle, first.side), (second.triangle, second.side));
+            if apart || order {
+                break;
+            }
+            hits.swap(j - 1, j);
         }
     }
 }
@@ -162,36 +265,4 @@ impl<'a> Start<'a> {
 fn parallel(a: &GridTriangle, b: &GridTriangle) -> bool {
     let (a, b) = (a.scaled_normal(), b.scaled_normal());
     a.cross(b).length_squared() <= hit::PARALLEL * a.length_squared() * b.length_squared()
-}
-
-/// Whether two crossings are of surfaces in contact.
-#[inline]
-fn in_contact(a: &Found, b: &Found, accel: &Accel) -> bool {
-    (a.crossing.t - b.crossing.t).abs() <= hit::CONTACT * RADIUS
-        && parallel(a.triangle(accel), b.triangle(accel))
-}
-
-fn contact_order(a: &Found, b: &Found) -> bool {
-    hit::contact_order((a.id, a.crossing.side), (b.id, b.crossing.side))
-}
-
-/// Whether `a` comes before `b` along the line.
-fn precedes(a: &Found, b: &Found, accel: &Accel) -> bool {
-    if in_contact(a, b, accel) { contact_order(a, b) } else { (a.crossing.t, a.id) < (b.crossing.t, b.id) }
-}
-
-/// Pushes the children that are entered so that the nearest is popped first.
-#[inline]
-fn push_far_to_near(stack: &mut Vec<(Child, f32)>, enter: &[f32; WIDTH], child: impl Fn(usize) -> Child) {
-    let base = stack.len();
-    for (lane, &t) in enter.iter().enumerate() {
-        if t < f32::INFINITY {
-            stack.push((child(lane), t));
-            let mut i = stack.len() - 1;
-            while i > base && stack[i - 1].1 < t {
-                stack.swap(i - 1, i);
-                i -= 1;
-            }
-        }
-    }
 }

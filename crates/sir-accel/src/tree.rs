@@ -1,96 +1,67 @@
-//! The bounding volume hierarchy: built by `obvhs`, flattened into nodes of eight boxes.
+//! The bounding volume hierarchy as it is searched: nodes of many boxes, leaves of many triangles.
 
-use glam::Vec3A;
-use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
+use std::ops::Range;
+
 use sir_geom::{Scene, TriangleId};
 
-use crate::grid::{Grid, GridLine, RADIUS};
+use crate::build::{self, Hierarchy};
+use crate::grid::Grid;
+use crate::lanes::{BOXES, Kit};
+use crate::leaf::Leaf;
 use crate::triangle::GridTriangle;
 
-/// Boxes per node.
-pub(crate) const WIDTH: usize = 8;
-
 /// How much boxes are enlarged, in radii of the scene: more than single precision loses on the way through a node.
-const MARGIN: f32 = 3e-6;
+pub(crate) const MARGIN: f32 = 3e-6;
 
-/// Up to eight boxes, one lane each, in radii of the scene about its centre.
+/// Boxes, one lane each, in radii of the scene about its centre.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
-    /// Smallest and largest coordinates per axis; an unused lane has an empty box.
-    bounds: [[[f32; WIDTH]; 3]; 2],
-    children: [Child; WIDTH],
+    /// Smallest coordinates per axis, then largest; an unused lane has an empty box.
+    pub(crate) bounds: [[f32; BOXES]; 6],
+    /// What the boxes contain.
+    pub(crate) children: [u32; BOXES],
 }
 
-/// What a box contains: a node, or triangles.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Child {
-    /// Number of the node or of the first triangle.
-    pub(crate) first: u32,
-    /// How many triangles; zero for a node.
-    pub(crate) count: u32,
-}
-
-/// A line as the boxes see it.
+/// One of the bounds of a node: smallest coordinates per axis, then largest. The number inside is below 6.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BoxLine {
-    origin: [f32; 3],
-    inverse: [f32; 3],
-    /// Per axis: 1 if the direction is negative, so that the far bound is met first.
-    reversed: [usize; 3],
-}
+pub(crate) struct Bound(u8);
 
-impl BoxLine {
-    #[inline]
-    pub(crate) fn new(line: &GridLine) -> Self {
-        let direction = line.direction.to_array();
-        Self {
-            origin: (line.origin / RADIUS).to_array().map(|x| x as f32),
-            // A component of zero becomes a tiny one: the slab is then passed or missed as a whole.
-            inverse: direction.map(|d| if d.abs() < 1e-20 { 1e20 } else { (1.0 / d) as f32 }),
-            reversed: direction.map(|d| usize::from(d < 0.0)),
-        }
+impl Bound {
+    /// The smallest or the largest coordinates of an axis.
+    pub(crate) fn new(largest: bool, axis: usize) -> Self {
+        Self(3 * u8::from(largest) + (axis % 3) as u8)
     }
 }
 
 impl Node {
-    /// Distances, in radii, at which the line enters each box, or infinity where it misses the part between `from`
-    /// and `to`.
-    #[inline]
-    pub(crate) fn enter(&self, line: &BoxLine, from: f32, to: f32) -> [f32; WIDTH] {
-        let mut near = [from; WIDTH];
-        let mut far = [to; WIDTH];
-        for axis in 0..3 {
-            let entry = &self.bounds[line.reversed[axis]][axis];
-            let exit = &self.bounds[1 - line.reversed[axis]][axis];
-            let (o, inverse) = (line.origin[axis], line.inverse[axis]);
-            for lane in 0..WIDTH {
-                let t0 = (entry[lane] - o) * inverse;
-                let t1 = (exit[lane] - o) * inverse;
-                near[lane] = if t0 > near[lane] { t0 } else { near[lane] };
-                far[lane] = if t1 < far[lane] { t1 } else { far[lane] };
-            }
+    /// A bound of all boxes.
+    #[inline(always)]
+    pub(crate) fn bound(&self, bound: Bound) -> &[f32; BOXES] {
+        // SAFETY: the only way to make a bound gives a number below 6.
+        #[allow(unsafe_code, reason = "six checks per node take a tenth of the time of a search")]
+        unsafe {
+            self.bounds.get_unchecked(usize::from(bound.0))
         }
-        std::array::from_fn(|lane| if near[lane] <= far[lane] { near[lane] } else { f32::INFINITY })
-    }
-
-    #[inline]
-    pub(crate) fn child(&self, lane: usize) -> Child {
-        self.children[lane]
     }
 }
+
+/// The highest bit of a child: set if it is the number of a leaf, and clear if it is that of a node.
+pub(crate) const LEAF: u32 = 1 << 31;
 
 /// The hierarchy. Node 0 is the root.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
+    pub(crate) leaves: Vec<Leaf>,
+    /// Where in `triangles` those of each leaf begin.
+    pub(crate) firsts: Vec<u32>,
     /// In the order of the leaves.
     pub(crate) triangles: Vec<GridTriangle>,
     /// Where in `triangles` each triangle of the scene is.
     places: Vec<u32>,
+    /// Most children that wait while the tree is searched in depth.
+    pub(crate) most_waiting: usize,
 }
 
 impl Tree {
@@ -99,73 +70,61 @@ impl Tree {
             .triangle_ids()
             .map(|t| GridTriangle::new(scene.corners(t).map(|p| grid.vertex(p)), t))
             .collect();
-        let boxes: Vec<Aabb> = triangles.iter().map(bounding_box).collect();
-        let parameters = BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::medium_build() };
-        let binary = build_bvh2(&boxes, parameters, &mut std::time::Duration::default());
-        let mut nodes = Vec::with_capacity(binary.nodes.len() / WIDTH + 1);
-        flatten(&binary, &mut nodes);
+        let Hierarchy { nodes, leaves: ranges, order } = build::hierarchy(&triangles);
         let mut places = vec![0; triangles.len()];
-        for (place, &i) in binary.primitive_indices.iter().enumerate() {
-            places[i as usize] = place as u32;
-        }
-        let triangles = binary.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
-        Self { nodes, triangles, places }
+        order.iter().zip(0..).for_each(|(&i, place)| places[i as usize] = place);
+        let triangles: Vec<GridTriangle> = order.iter().map(|&i| triangles[i as usize]).collect();
+        let of = |range: &Range<u32>| triangles[range.start as usize..range.end as usize].iter();
+        let leaves = ranges.iter().map(|range| Leaf::new(of(range))).collect();
+        let firsts = ranges.iter().map(|range| range.start).collect();
+        let most_waiting = most_waiting(&nodes, 0);
+        Self { nodes, leaves, firsts, triangles, places, most_waiting }
     }
 
+    /// Begins to bring a child to the caches.
+    #[inline(always)]
+    pub(crate) fn prefetch<K: Kit>(&self, child: u32) {
+        let (nodes, leaves) = (self.nodes.as_ptr().cast::<u8>(), self.leaves.as_ptr().cast::<u8>());
+        let (number, leaf) = ((child & !LEAF) as usize, child & LEAF != 0);
+        let (list, size) = if leaf { (leaves, size_of::<Leaf>()) } else { (nodes, size_of::<Node>()) };
+        K::prefetch(list.wrapping_add(number * size), size_of::<Node>());
+        K::prefetch(self.firsts.as_ptr().wrapping_add(number).cast(), 1);
+    }
+
+    /// Begins to bring the place of a triangle to the caches.
+    #[inline]
+    pub(crate) fn prefetch_place(&self, id: TriangleId) {
+        crate::prefetch(&self.places[id.index()]);
+    }
+
+    /// Begins to bring a triangle to the caches.
+    #[inline(always)]
+    pub(crate) fn prefetch_triangle<K: Kit>(&self, place: u32) {
+        let triangle = self.triangles.as_ptr().wrapping_add(place as usize);
+        K::prefetch(triangle.cast(), size_of::<GridTriangle>());
+    }
+
+    /// A triangle of the scene.
     pub(crate) fn triangle(&self, id: TriangleId) -> &GridTriangle {
-        &self.triangles[self.places[id.index()] as usize]
+        &self.triangles[self.place(id) as usize]
+    }
+
+    /// Where in `triangles` a triangle of the scene is.
+    pub(crate) fn place(&self, id: TriangleId) -> u32 {
+        self.places[id.index()]
     }
 
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice())
+            + size_of_val(self.leaves.as_slice())
+            + size_of_val(self.firsts.as_slice())
             + size_of_val(self.triangles.as_slice())
             + size_of_val(self.places.as_slice())
     }
 }
 
-fn bounding_box(triangle: &GridTriangle) -> Aabb {
-    let points = triangle.corners().map(|p| Vec3A::from_array(p.map(|x| (f64::from(x) / RADIUS) as f32)));
-    let mut b = Aabb::from_points(&points);
-    b.min -= MARGIN;
-    b.max += MARGIN;
-    b
-}
-
-/// Makes nodes of up to eight boxes by opening, again and again, the largest box of a node that can be opened.
-fn flatten(binary: &Bvh2, nodes: &mut Vec<Node>) {
-    let empty = Node {
-        bounds: [[[f32::INFINITY; WIDTH]; 3], [[f32::NEG_INFINITY; WIDTH]; 3]],
-        children: [Child::default(); WIDTH],
-    };
-    nodes.push(empty);
-    // Pairs of a wide node that waits to be filled and the binary node it stands for.
-    let mut waiting = vec![(0usize, 0usize)];
-    while let Some((wide, root)) = waiting.pop() {
-        let mut members = vec![root];
-        while members.len() < WIDTH {
-            let largest =
-                members.iter().enumerate().filter(|&(_, &m)| !binary.nodes[m].is_leaf()).max_by(|a, b| {
-                    let area = |m: usize| binary.nodes[m].aabb.half_area();
-                    area(*a.1).total_cmp(&area(*b.1)).then(b.0.cmp(&a.0))
-                });
-            let Some((position, &opened)) = largest else { break };
-            let first = binary.nodes[opened].first_index as usize;
-            members[position] = first;
-            members.push(first + 1);
-        }
-        for (lane, &m) in members.iter().enumerate() {
-            let node = &binary.nodes[m];
-            for axis in 0..3 {
-                nodes[wide].bounds[0][axis][lane] = node.aabb.min[axis];
-                nodes[wide].bounds[1][axis][lane] = node.aabb.max[axis];
-            }
-            nodes[wide].children[lane] = if node.is_leaf() {
-                Child { first: node.first_index, count: node.prim_count }
-            } else {
-                waiting.push((nodes.len(), m));
-                nodes.push(empty);
-                Child { first: nodes.len() as u32 - 1, count: 0 }
-            };
-        }
-    }
+fn most_waiting(nodes: &[Node], root: usize) -> usize {
+    let children = nodes[root].children.iter().filter(|&&child| child != 0);
+    let below = children.clone().filter(|&child| child & LEAF == 0);
+    children.count() + below.map(|&child| most_waiting(nodes, child as usize)).max().unwrap_or(0)
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use glam::DVec3;
-use sir_accel::Accel;
+use sir_accel::{Accel, Ray};
 use sir_geom::{Line, Material, Rgb, Scene, SceneBuilder, Side, shapes};
 
 /// Squares in the plane through `height`, facing up or down, in the order given.
@@ -56,8 +56,8 @@ fn a_ray_from_the_common_edge_of_coplanar_triangles_is_free() {
         let [a, b, c] = scene.corners(t);
         for (p, q) in [(a, b), (b, c), (c, a)] {
             for direction in [scene.normal(t), (scene.normal(t) + 0.3 * DVec3::X).normalize()] {
-                let ray = Line { origin: p.midpoint(q), direction };
-                assert_eq!(accel.tracer().closest(&ray, Some(t)), None);
+                let ray = Ray { line: Line { origin: p.midpoint(q), direction }, leaving: Some(t) };
+                assert_eq!(accel.tracer().closest(&ray), None);
             }
         }
     }
@@ -77,11 +77,11 @@ fn rays_follow_the_same_rule() {
     let mut tracer = accel.tracer();
     for t in scene.triangle_ids() {
         let [a, b, c] = scene.corners(t);
-        let ray = Line { origin: (a + b + c) / 3.0, direction: scene.normal(t) };
-        let met = tracer.closest(&ray, Some(t)).map(|h| scene.triangle(h.triangle).face.0);
+        let line = Line { origin: (a + b + c) / 3.0, direction: scene.normal(t) };
+        let met = tracer.closest(&Ray { line, leaving: Some(t) }).map(|h| scene.triangle(h.triangle).face.0);
         let lower = scene.triangle(t).face.0 == 0;
         assert_eq!(met, lower.then_some(1), "{t}");
-        let from_above = Line { origin: ray.at(0.5), direction: -ray.direction };
-        assert_eq!(tracer.closest(&from_above, None).map(|h| h.side), Some(Side::Front));
+        let from_above = Line { origin: line.at(0.5), direction: -line.direction };
+        assert_eq!(tracer.closest(&from_above.into()).map(|h| h.side), Some(Side::Front));
     }
 }

@@ -10,15 +10,13 @@ use sir_geom::Barycentric;
 /// the two; points outside the triangle (by rounding) to the nearest in their row or column.
 #[inline]
 pub(crate) fn locate(n: u32, p: Barycentric) -> u32 {
-    if n == 1 {
-        return 0;
-    }
     let scaled = |x: f64| (x * f64::from(n)).max(0.0);
     let (x, y) = (scaled(p.v), scaled(p.w));
     // A cast of a float to an integer saturates, so anything out of range is caught by `min`.
     let j = (y as u32).min(n - 1);
     let i = (x as u32).min(n - 1 - j);
-    let inverted = i + j + 1 < n && (x - f64::from(i)) + (y - f64::from(j)) > 1.0;
+    // No short cut: a branch would be guessed wrong half of the time.
+    let inverted = (i + j + 1 < n) & ((x - f64::from(i)) + (y - f64::from(j)) > 1.0);
     j * (2 * n - j) + 2 * i + u32::from(inverted)
 }
 

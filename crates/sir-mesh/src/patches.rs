@@ -34,15 +34,30 @@ pub enum MeshError {
     TooMany,
 }
 
+/// What is needed to find a side of a triangle: no more than that, so that it stays in the caches.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    first_side: u32,
+    /// Parts of an edge, `n`, below 2¹⁶; the triangle has `n²` patches.
+    divisions: u16,
+    /// Sides per patch, 1 or 2.
+    sides: u16,
+}
+
+impl Cut {
+    fn divisions(self) -> u32 {
+        u32::from(self.divisions)
+    }
+
+    fn sides(self) -> u32 {
+        u32::from(self.sides)
+    }
+}
+
 /// The patches of one triangle.
 #[derive(Clone, Copy, Debug)]
-struct TrianglePatches {
-    first_patch: u32,
-    first_side: u32,
-    /// Parts of an edge, `n`; the triangle has `n²` patches.
-    divisions: u32,
-    /// Sides per patch, 1 or 2.
-    sides: u32,
+struct Patches {
+    first: u32,
     /// Area of each patch.
     area: f64,
 }
@@ -50,7 +65,8 @@ struct TrianglePatches {
 /// All patches of a scene. Uses 28 bytes per *triangle* and nothing per patch.
 #[derive(Clone, Debug)]
 pub struct PatchMesh {
-    triangles: Vec<TrianglePatches>,
+    cuts: Vec<Cut>,
+    patches_of: Vec<Patches>,
     /// One triangle of every patch, in the order of their numbers: of a merged face the first.
     owners: Vec<TriangleId>,
     patches: u32,
@@ -66,27 +82,26 @@ impl PatchMesh {
     pub fn new(scene: &Scene, subdivision: Subdivision) -> Result<Self, MeshError> {
         let divisions = subdivision.divisions(scene)?;
         let mut mesh = Self {
-            triangles: Vec::with_capacity(divisions.len()),
+            cuts: Vec::with_capacity(divisions.len()),
+            patches_of: Vec::with_capacity(divisions.len()),
             owners: scene.triangle_ids().collect(),
             patches: 0,
             sides: 0,
         };
         for (t, &n) in scene.triangle_ids().zip(&divisions) {
             let per_triangle = n.checked_mul(n).ok_or(MeshError::TooMany)?;
+            let divisions = u16::try_from(n).map_err(|_| MeshError::TooMany)?;
             let sides = match scene.material(t).sides {
                 Sides::Front => 1,
                 Sides::Both => 2,
             };
-            mesh.triangles.push(TrianglePatches {
-                first_patch: mesh.patches,
-                first_side: mesh.sides,
-                divisions: n,
-                sides,
-                area: scene.area(t) / f64::from(per_triangle),
-            });
+            mesh.cuts.push(Cut { first_side: mesh.sides, divisions, sides });
+            mesh.patches_of
+                .push(Patches { first: mesh.patches, area: scene.area(t) / f64::from(per_triangle) });
             let more = |count: u32, by: u32| count.checked_add(by).ok_or(MeshError::TooMany);
             mesh.patches = more(mesh.patches, per_triangle)?;
-            mesh.sides = more(mesh.sides, per_triangle.checked_mul(sides).ok_or(MeshError::TooMany)?)?;
+            mesh.sides =
+                more(mesh.sides, per_triangle.checked_mul(u32::from(sides)).ok_or(MeshError::TooMany)?)?;
         }
         if subdivision == Subdivision::PerFace {
             mesh.merge_faces(scene);
@@ -106,16 +121,17 @@ impl PatchMesh {
         for t in scene.triangle_ids() {
             if let Some(members) = faces.get(&scene.triangle(t).face) {
                 if t != members[0] {
-                    self.triangles[t.index()] = self.triangles[members[0].index()];
+                    self.cuts[t.index()] = self.cuts[members[0].index()];
+                    self.patches_of[t.index()] = self.patches_of[members[0].index()];
                     continue;
                 }
-                self.triangles[t.index()].area = members.iter().map(|&m| scene.area(m)).sum();
+                self.patches_of[t.index()].area = members.iter().map(|&m| scene.area(m)).sum();
             }
             self.owners.push(t);
-            let record = &mut self.triangles[t.index()];
-            (record.first_patch, record.first_side) = (self.patches, self.sides);
+            self.patches_of[t.index()].first = self.patches;
+            self.cuts[t.index()].first_side = self.sides;
             self.patches += 1;
-            self.sides += record.sides;
+            self.sides += self.cuts[t.index()].sides();
         }
     }
 
@@ -134,40 +150,40 @@ impl PatchMesh {
     /// Numbers of the patches of a triangle.
     #[must_use]
     pub fn patches_of(&self, triangle: TriangleId) -> Range<u32> {
-        let r = &self.triangles[triangle.index()];
-        r.first_patch..r.first_patch + r.divisions * r.divisions
+        let (first, n) = (self.patches_of[triangle.index()].first, self.divisions(triangle));
+        first..first + n * n
     }
 
     /// Parts into which each edge of a triangle is cut.
     #[must_use]
     pub fn divisions(&self, triangle: TriangleId) -> u32 {
-        self.triangles[triangle.index()].divisions
+        self.cuts[triangle.index()].divisions()
     }
 
     /// Area of each patch of a triangle; of a merged face, the area of the whole face.
     #[inline]
     #[must_use]
     pub fn patch_area(&self, triangle: TriangleId) -> f64 {
-        self.triangles[triangle.index()].area
+        self.patches_of[triangle.index()].area
     }
 
     /// The patch of a triangle in which a point lies.
     #[inline]
     #[must_use]
     pub fn patch_at(&self, triangle: TriangleId, point: Barycentric) -> PatchId {
-        let r = &self.triangles[triangle.index()];
-        PatchId(r.first_patch + barycentric::locate(r.divisions, point))
+        let within = barycentric::locate(self.divisions(triangle), point);
+        PatchId(self.patches_of[triangle.index()].first + within)
     }
 
     /// The given side of a patch of a triangle; `None` if that side does not take part in light transport.
     #[inline]
     #[must_use]
     pub fn side_of(&self, triangle: TriangleId, patch: PatchId, side: Side) -> Option<SideId> {
-        let r = &self.triangles[triangle.index()];
-        let within = (patch.0 - r.first_patch) * r.sides;
+        let cut = self.cuts[triangle.index()];
+        let within = (patch.0 - self.patches_of[triangle.index()].first) * cut.sides();
         match side {
-            Side::Front => Some(SideId(r.first_side + within)),
-            Side::Back if r.sides == 2 => Some(SideId(r.first_side + within + 1)),
+            Side::Front => Some(SideId(cut.first_side + within)),
+            Side::Back if cut.sides == 2 => Some(SideId(cut.first_side + within + 1)),
             Side::Back => None,
         }
     }
@@ -176,15 +192,28 @@ impl PatchMesh {
     #[inline]
     #[must_use]
     pub fn side_at(&self, triangle: TriangleId, point: Barycentric, side: Side) -> Option<SideId> {
-        self.side_of(triangle, self.patch_at(triangle, point), side)
+        let (front, back) = self.sides_at(triangle, point);
+        match side {
+            Side::Front => Some(front),
+            Side::Back => back,
+        }
+    }
+
+    /// The front and, if it takes part in light transport, the back of the patch in which a point of a triangle lies.
+    #[inline]
+    #[must_use]
+    pub fn sides_at(&self, triangle: TriangleId, point: Barycentric) -> (SideId, Option<SideId>) {
+        let cut = self.cuts[triangle.index()];
+        let front = SideId(cut.first_side + barycentric::locate(cut.divisions(), point) * cut.sides());
+        (front, (cut.sides == 2).then_some(SideId(front.0 + 1)))
     }
 
     /// Corners of a patch as points of its triangle, in the triangle's orientation. For a merged face, those
     /// of the given triangle.
     #[must_use]
     pub fn patch_corners(&self, triangle: TriangleId, patch: PatchId) -> [Barycentric; 3] {
-        let r = &self.triangles[triangle.index()];
-        barycentric::corners(r.divisions, patch.0 - r.first_patch)
+        let first = self.patches_of[triangle.index()].first;
+        barycentric::corners(self.divisions(triangle), patch.0 - first)
     }
 
     /// Calls `visit` once for every active side, in the order of [`SideId`], with one triangle of its patch.
@@ -204,8 +233,8 @@ impl PatchMesh {
     /// its patches, all of the same area and material.
     pub fn sides_within(&self, sides: Range<u32>) -> impl Iterator<Item = (TriangleId, Range<u32>)> {
         let of = |triangle: TriangleId| {
-            let r = &self.triangles[triangle.index()];
-            r.first_side..r.first_side + r.divisions * r.divisions * r.sides
+            let (cut, n) = (self.cuts[triangle.index()], self.divisions(triangle));
+            cut.first_side..cut.first_side + n * n * cut.sides()
         };
         let first = self.owners.partition_point(|&t| of(t).end <= sides.start);
         self.owners[first..]

@@ -195,7 +195,8 @@ impl<'m> Batches<'m> {
     pub fn trace(&self, worker: usize, lines: Range<u64>, books: &mut Books) {
         let Books { balance, counts } = books;
         let page = self.ledger.page(worker);
-        global::trace(self.model, &self.domain, &self.streams, lines, counts, |_, segment| {
+        let soon = |side| page.prefetch(side);
+        global::trace(self.model, &self.domain, &self.streams, lines, counts, soon, |_, segment| {
             match (segment.from, segment.to) {
                 (End::Side(i, _), End::Side(j, _)) => {
                     let (from_i, from_j) = (page.leave(i), page.leave(j));

@@ -4,12 +4,16 @@
 
 use std::ops::Range;
 
+use sir_accel::Ray;
 use sir_geom::{Line, Rgb, Side};
 use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
 
 use crate::ledger::{Counters, Ledger, SquareUnit, copies};
 use crate::sources::{Source, sources};
 use crate::{Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Solution, SolveError, Visitor};
+
+/// Rays that are made at a time.
+const RAYS: usize = 1024;
 
 /// The lines of a first shot: what each one carries, and from where.
 #[derive(Clone, Debug)]
@@ -96,37 +100,61 @@ impl<'m> FirstShot<'m> {
         FirstShotTally { ledger: Ledger::new(sides, copies(sides, workers, 2), squares) }
     }
 
+    /// The ray of a line.
+    #[must_use]
+    pub fn ray(&self, index: u64) -> Ray {
+        self.ray_of(self.allocation.owner(index), index)
+    }
+
+    /// The ray of a line of a source.
+    fn ray_of(&self, source: usize, index: u64) -> Ray {
+        let Source { triangle, side, .. } = self.sources[source];
+        let scene = &self.model.scene;
+        let mut stream = self.streams.line(index);
+        let origin = point_on_triangle(&mut stream).point(scene.corners(triangle));
+        let normal = match side {
+            Side::Front => scene.normal(triangle),
+            Side::Back => -scene.normal(triangle),
+        };
+        let line = Line { origin, direction: cosine_direction(normal, &mut stream) };
+        Ray { line, leaving: Some(triangle) }
+    }
+
     /// Traces some of the lines. Each line should be traced once, by whomever; `worker` is the number of who does.
     pub fn trace(&self, worker: usize, lines: Range<u64>, tally: &FirstShotTally, books: &mut Books) {
-        let Model { scene, mesh, accel } = self.model;
+        let Model { mesh, accel, .. } = self.model;
         let page = tally.ledger.page(worker);
         let mut tracer = accel.tracer();
-        for index in lines {
-            let k = self.allocation.owner(index);
-            let Source { triangle, side, .. } = self.sources[k];
-            let mut stream = self.streams.line(index);
-            let origin = point_on_triangle(&mut stream).point(scene.corners(triangle));
-            let normal = match side {
-                Side::Front => scene.normal(triangle),
-                Side::Back => -scene.normal(triangle),
-            };
-            let ray = Line { origin, direction: cosine_direction(normal, &mut stream) };
-            let power = self.per_line[k];
-            books.balance.emitted += power;
-            books.counts.lines += 1;
-            match tracer.closest(&ray, Some(triangle)) {
-                None => {
-                    books.balance.escaped += power;
-                    books.counts.empty += 1;
-                }
-                Some(hit) => {
-                    books.counts.crossings += 1;
-                    match mesh.side_at(hit.triangle, hit.point, hit.side) {
-                        Some(side) => page.give(side, power),
-                        None => books.balance.blocked += power,
+        let (mut rays, mut powers) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
+        let mut first = lines.start;
+        while first < lines.end {
+            let end = lines.end.min(first + RAYS as u64);
+            rays.clear();
+            powers.clear();
+            for index in first..end {
+                let source = self.allocation.owner(index);
+                rays.push(self.ray_of(source, index));
+                powers.push(self.per_line[source]);
+            }
+            first = end;
+            tracer.closest_each(&rays, |i, hit| {
+                let power = powers[i];
+                books.balance.emitted += power;
+                books.counts.lines += 1;
+                match hit {
+                    None => {
+                        books.balance.escaped += power;
+                        books.counts.empty += 1;
+                    }
+                    Some(hit) => {
+                        books.counts.crossings += 1;
+                        match mesh.side_at(hit.triangle, hit.point, hit.side) {
+                            Some(side) => page.give(side, power),
+                            None => books.balance.blocked += power,
+                        }
                     }
                 }
-            }
+            });
         }
     }
 

@@ -3,28 +3,57 @@
 use std::ops::Range;
 
 use sir_lines::{Domain, Streams};
+use sir_mesh::SideId;
 
-use crate::segments::{Segment, segments};
+use crate::segments::{End, Segment, Segments};
 use crate::{Counts, Model};
 
+/// How many segments ahead memory is asked for.
+const AHEAD: usize = 8;
+
+/// Lines that are made at a time.
+const LINES: usize = 1024;
+
 /// Traces global lines in order, counts what they meet, and calls `visit` for each of their segments with the number
-/// of the line.
+/// of the line. Some time before, `soon` gets the sides at its ends.
 pub(crate) fn trace(
     model: &Model,
     domain: &Domain,
     streams: &Streams,
     lines: Range<u64>,
     counts: &mut Counts,
+    soon: impl Fn(SideId),
     mut visit: impl FnMut(u64, Segment),
 ) {
     let mut tracer = model.accel.tracer();
-    for index in lines {
-        let line = domain.sample(&mut streams.line(index));
-        let hits = tracer.all_hits(&line);
-        counts.lines += 1;
-        counts.empty += u64::from(hits.is_empty());
-        counts.odd += hits.len() as u64 % 2;
-        counts.crossings += hits.len() as u64;
-        segments(&model.mesh, hits, |segment| visit(index, segment));
+    let mut segments = Segments::default();
+    let mut some = Vec::with_capacity(LINES);
+    let mut first = lines.start;
+    while first < lines.end {
+        let end = lines.end.min(first + LINES as u64);
+        some.clear();
+        some.extend((first..end).map(|index| domain.sample(&mut streams.line(index))));
+        let mut line = first;
+        tracer.all_hits_each(&some, |hits| {
+            for hits in hits.lines() {
+                counts.lines += 1;
+                counts.empty += u64::from(hits.is_empty());
+                counts.odd += hits.len() as u64 % 2;
+                counts.crossings += hits.len() as u64;
+            }
+            segments.find(&model.mesh, hits);
+            for (i, (of_line, segment)) in segments.iter().enumerate() {
+                if let Some((_, Segment { from, to })) = segments.get(i + AHEAD) {
+                    for end in [from, to] {
+                        if let End::Side(side, _) = end {
+                            soon(side);
+                        }
+                    }
+                }
+                visit(line + of_line as u64, segment);
+            }
+            line += hits.lines().len() as u64;
+        });
+        first = end;
     }
 }

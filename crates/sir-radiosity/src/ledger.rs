@@ -195,6 +195,12 @@ pub(crate) struct Page<'a> {
 }
 
 impl Page<'_> {
+    /// Says that a side will soon be needed.
+    #[inline]
+    pub(crate) fn prefetch(self, side: SideId) {
+        sir_accel::prefetch(&self.records[side.index()]);
+    }
+
     /// A line brings power to a side.
     #[inline]
     pub(crate) fn give(self, side: SideId, power: Quanta) {

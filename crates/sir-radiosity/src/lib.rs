@@ -78,7 +78,7 @@ pub use model::Model;
 pub use multipath::{Multipath, MultipathSettings, Replica, Transported, share};
 pub use power::{PowerUnit, Quanta};
 pub use received::Received;
-pub use segments::{End, Segment, segments};
+pub use segments::{End, Segment, Segments};
 pub use solution::Solution;
 pub use sources::{Source, sources};
 pub use state::Visitor;

@@ -154,7 +154,8 @@ impl<'m> Multipath<'m> {
         lines.start = now.end;
         let Books { balance, counts } = books;
         let (model, page) = (self.model, self.ledger.page(worker));
-        global::trace(model, &self.settings.domain, &self.streams, now, counts, |index, segment| {
+        let soon = |side| page.prefetch(side);
+        global::trace(model, &self.settings.domain, &self.streams, now, counts, soon, |index, segment| {
             exchange(model, page, unshot, balance, segment, index < *tail);
         });
         if lines.is_empty() {

@@ -1,7 +1,7 @@
 //! Segments: the pairs of surfaces that see each other along a line.
 
-use sir_accel::Hit;
-use sir_geom::TriangleId;
+use sir_accel::LineHits;
+use sir_geom::{Side, TriangleId};
 use sir_mesh::{PatchMesh, SideId};
 
 /// What is at one end of a segment.
@@ -24,22 +24,90 @@ pub struct Segment {
     pub to: End,
 }
 
-/// Calls `visit` for every segment of a line with these hits, in order, the two outer ones included. A line without
-/// hits has none.
-#[inline]
-pub fn segments(mesh: &PatchMesh, hits: &[Hit], mut visit: impl FnMut(Segment)) {
-    if hits.is_empty() {
-        return;
+/// An end in eight bytes: the number of the side, or what else there is, and of the triangle.
+#[derive(Clone, Copy, Debug)]
+struct Packed(u32, u32);
+
+impl Packed {
+    const OUTSIDE: Self = Self(u32::MAX, 0);
+    const INACTIVE: Self = Self(u32::MAX - 1, 0);
+
+    #[inline]
+    fn end(self) -> End {
+        match self {
+            Self(u32::MAX, _) => End::Outside,
+            Self(side, _) if side == Self::INACTIVE.0 => End::Inactive,
+            Self(side, triangle) => End::Side(SideId(side), TriangleId(triangle)),
+        }
     }
-    let mut from = End::Outside;
-    for hit in hits {
-        let patch = mesh.patch_at(hit.triangle, hit.point);
-        let end = |side| match mesh.side_of(hit.triangle, patch, side) {
-            Some(id) => End::Side(id, hit.triangle),
-            None => End::Inactive,
-        };
-        visit(Segment { from, to: end(hit.side) });
-        from = end(hit.side.flip());
+}
+
+/// Finds the segments of lines. Holds scratch memory, so it belongs to one thread.
+#[derive(Clone, Debug, Default)]
+pub struct Segments {
+    /// For each hit, the end towards the origin of the line and the opposite one.
+    ends: Vec<[Packed; 2]>,
+    /// For each hit, the number of its line if it is the first one of it, or `LATER`.
+    first_of: Vec<u32>,
+    /// The line and the ends of each segment.
+    found: Vec<(u32, [Packed; 2])>,
+}
+
+/// The mark of a hit that is not the first of its line.
+const LATER: u32 = u32::MAX;
+
+impl Segments {
+    /// Finds all segments of some lines, line by line and in order along each, the two outer ones included. A line without hits
+    /// has none.
+    pub fn find(&mut self, mesh: &PatchMesh, hits: &LineHits<'_>) {
+        // Loops over all hits, without a branch that depends on them: the processor then works at, and waits for, many of
+        // them at once.
+        let count = hits.hits().len();
+        self.ends.clear();
+        self.ends.extend(hits.hits().iter().map(|hit| {
+            let (front, back) = mesh.sides_at(hit.triangle, hit.point);
+            let front = Packed(front.0, hit.triangle.0);
+            let back = Packed(back.map_or(Packed::INACTIVE.0, |back| back.0), hit.triangle.0);
+            let from = usize::from(hit.side == Side::Back);
+            let around = [front, back, front];
+            [around[from], around[from + 1]]
+        }));
+        self.first_of.clear();
+        self.first_of.resize(count + 1, LATER);
+        for (line, range) in hits.lines().enumerate() {
+            // Of lines that begin at the same hit, all but the last are empty.
+            self.first_of[range.start] = line as u32;
+        }
+        self.first_of[count] = 0;
+        self.found.resize(2 * count, (0, [Packed::OUTSIDE; 2]));
+        let (mut next, mut line, mut from) = (0, 0, Packed::OUTSIDE);
+        for (&[to, behind], first) in self.ends.iter().zip(self.first_of.windows(2)) {
+            line = if first[0] == LATER { line } else { first[0] };
+            let last = first[1] != LATER;
+            self.found[next] = (line, [from, to]);
+            self.found[next + 1] = (line, [behind, Packed::OUTSIDE]);
+            next += 1 + usize::from(last);
+            from = if last { Packed::OUTSIDE } else { behind };
+        }
+        self.found.truncate(next);
     }
-    visit(Segment { from, to: End::Outside });
+
+    /// How many were found.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.found.len()
+    }
+
+    /// One of those that were found, with the number of its line among those that were given.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, i: usize) -> Option<(usize, Segment)> {
+        let &(line, [from, to]) = self.found.get(i)?;
+        Some((line as usize, Segment { from: from.end(), to: to.end() }))
+    }
+
+    /// All that were found.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, Segment)> {
+        (0..self.count()).filter_map(|i| self.get(i))
+    }
 }

@@ -9,7 +9,7 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{SceneBuilder, Sides};
 use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::Subdivision;
-use sir_radiosity::{End, Model, Segment, segments};
+use sir_radiosity::{End, Model, Segment, Segments};
 
 /// Counts, over uniform lines, how often each pair of sides faces each other: `count[i][j]` for light from `i` to
 /// `j`, with one more column for what is not a side.
@@ -23,19 +23,18 @@ fn facing_counts(model: &Model, lines: u64) -> Vec<Vec<u64>> {
         End::Side(side, _) => Some(side.index()),
         _ => None,
     };
-    for i in 0..lines {
-        segments(
-            &model.mesh,
-            tracer.all_hits(&domain.sample(&mut streams.line(i))),
-            |Segment { from, to }| {
-                for (a, b) in [(from, to), (to, from)] {
-                    if let Some(a) = index(a) {
-                        count[a][index(b).unwrap_or(n)] += 1;
-                    }
+    let lines: Vec<_> = (0..lines).map(|i| domain.sample(&mut streams.line(i))).collect();
+    let mut segments = Segments::default();
+    tracer.all_hits_each(&lines, |hits| {
+        segments.find(&model.mesh, hits);
+        for (_, Segment { from, to }) in segments.iter() {
+            for (a, b) in [(from, to), (to, from)] {
+                if let Some(a) = index(a) {
+                    count[a][index(b).unwrap_or(n)] += 1;
                 }
-            },
-        );
-    }
+            }
+        }
+    });
     count
 }
 

@@ -3,7 +3,7 @@
 use std::thread;
 
 use glam::DVec3;
-use sir_accel::{Accel, Hit, Tracer};
+use sir_accel::{Accel, Hit, Ray, Tracer};
 use sir_geom::{Camera, Line, Projection, Rgb, Scene};
 use sir_lines::{Stage, Streams};
 
@@ -118,11 +118,18 @@ impl Shader<'_> {
         let mut stream = Streams::new(0, Stage::PICTURE).line(index);
         let grid = grid.max(1);
         let (mut sum, mut weighted, mut weights) = (Rgb::ZERO, Rgb::ZERO, 0.0);
-        for cell in 0..grid * grid {
-            let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
-            let right = (f64::from(x) + within(cell % grid, stream.unit())) / f64::from(width);
-            let down = (f64::from(y) + within(cell / grid, stream.unit())) / f64::from(height);
-            let radiance = radiance_along(self.display, tracer, &self.rays.ray(right, down));
+        let rays: Vec<Ray> = (0..grid * grid)
+            .map(|cell| {
+                let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
+                let right = (f64::from(x) + within(cell % grid, stream.unit())) / f64::from(width);
+                let down = (f64::from(y) + within(cell / grid, stream.unit())) / f64::from(height);
+                self.rays.ray(right, down).into()
+            })
+            .collect();
+        let mut firsts = vec![None; rays.len()];
+        tracer.closest_each(&rays, |i, first| firsts[i] = first);
+        for (ray, first) in rays.iter().zip(firsts) {
+            let radiance = radiance_along(self.display, tracer, &ray.line, first);
             sum += radiance;
             let weight = 1.0 / (1.0 + luminance(radiance) / self.knee);
             weighted += weight * radiance;
@@ -135,17 +142,17 @@ impl Shader<'_> {
     }
 }
 
-/// Radiance `B/π` that comes in along a ray.
-fn radiance_along(display: &DisplayMesh<'_>, tracer: &mut Tracer<'_>, ray: &Line) -> Rgb {
-    let Some(hit) = first_visible(display.scene, tracer, ray) else { return Rgb::ZERO };
+/// Radiance `B/π` that comes in along a ray, given its first hit.
+fn radiance_along(display: &DisplayMesh<'_>, tracer: &mut Tracer<'_>, ray: &Line, first: Option<Hit>) -> Rgb {
+    let Some(hit) = first_visible(display.scene, tracer, ray, first) else { return Rgb::ZERO };
     let Some(e) = display.irradiance_at(hit.triangle, hit.point, hit.side) else { return Rgb::ZERO };
     display.radiosity(hit.triangle, hit.side, e) / std::f64::consts::PI
 }
 
-/// The first side along a ray that is not the back of a one-sided surface.
-pub(crate) fn first_visible(scene: &Scene, tracer: &mut Tracer<'_>, ray: &Line) -> Option<Hit> {
+/// The first side along a ray that is not the back of a one-sided surface, given its first hit.
+fn first_visible(scene: &Scene, tracer: &mut Tracer<'_>, ray: &Line, first: Option<Hit>) -> Option<Hit> {
     let is_visible = |hit: &Hit| scene.is_active(hit.triangle, hit.side);
-    let first = tracer.closest(ray, None)?;
+    let first = first?;
     if is_visible(&first) {
         return Some(first);
     }

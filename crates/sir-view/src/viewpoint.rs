@@ -160,7 +160,7 @@ impl<'a> Judge<'a> {
             for x in 0..RAYS.0 {
                 let middle = |k: u32, count: u32| (f64::from(k) + 0.5) / f64::from(count);
                 let ray = rays.ray(middle(x, RAYS.0), middle(y, RAYS.1));
-                let Some(hit) = tracer.closest(&ray, None) else { continue };
+                let Some(hit) = tracer.closest(&ray.into()) else { continue };
                 let Some(e) = self.display.irradiance_at(hit.triangle, hit.point, hit.side) else { continue };
                 let b = luminance(self.display.radiosity(hit.triangle, hit.side, e));
                 lit += if self.bright > 0.0 { (b / self.bright).min(1.0) } else { 1.0 };

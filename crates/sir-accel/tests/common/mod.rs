@@ -20,14 +20,6 @@ pub(crate) fn furnished_room() -> Scene {
     b.build().unwrap().scene
 }
 
-/// A sphere with this many halvings of an icosahedron's edges.
-pub(crate) fn ball(level: u32) -> Scene {
-    let mut b = SceneBuilder::new();
-    let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
-    shapes::sphere(&mut b, DVec3::new(0.1, -0.2, 0.3), 1.7, level, Facing::Outward, |_| m);
-    b.build().unwrap().scene
-}
-
 fn pick(count: usize, s: &mut Stream) -> usize {
     (s.unit() * count as f64) as usize
 }

@@ -1,0 +1,165 @@
+//! Builds the hierarchy: `obvhs` makes a binary tree, which is gathered into nodes of many boxes.
+
+use std::ops::Range;
+
+use glam::Vec3A;
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
+
+use crate::grid::RADIUS;
+use crate::lanes::{BOXES, TRIANGLES};
+use crate::tree::{LEAF, MARGIN, Node};
+use crate::triangle::GridTriangle;
+
+/// What a node costs in units of a triangle, when it is decided which triangles share a leaf. Between 2 and 6 the time of a
+/// search hardly changes; more saves memory.
+const COLLAPSE_COST: f32 = 4.0;
+
+/// A tree of triangles that are named by their place in `order`.
+pub(crate) struct Hierarchy {
+    pub(crate) nodes: Vec<Node>,
+    /// The triangles of each leaf.
+    pub(crate) leaves: Vec<Range<u32>>,
+    pub(crate) order: Vec<u32>,
+}
+
+/// Arranges triangles.
+pub(crate) fn hierarchy(triangles: &[GridTriangle]) -> Hierarchy {
+    let boxes: Vec<Aabb> = triangles.iter().map(bounding_box).collect();
+    let parameters = BvhBuildParams {
+        max_prims_per_leaf: TRIANGLES as u32,
+        collapse_traversal_cost: COLLAPSE_COST,
+        ..BvhBuildParams::medium_build()
+    };
+    let binary = build_bvh2(&boxes, parameters, &mut std::time::Duration::default());
+    let mut nodes = Vec::with_capacity(binary.nodes.len() / BOXES + 1);
+    let mut leaves = Vec::new();
+    flatten(&binary, &mut nodes, |range| {
+        leaves.push(range);
+        leaves.len() as u32 - 1
+    });
+    Hierarchy { nodes, leaves, order: binary.primitive_indices }
+}
+
+fn bounding_box(triangle: &GridTriangle) -> Aabb {
+    let points = triangle.corners.map(|p| Vec3A::from_array(p.map(|x| (f64::from(x) / RADIUS) as f32)));
+    let mut b = Aabb::from_points(&points);
+    b.min -= MARGIN;
+    b.max += MARGIN;
+    b
+}
+
+/// The cheapest ways to cut the binary tree into nodes of many boxes.
+///
+/// What a line costs is about the sum of the surfaces of the boxes of all nodes that it visits (surface-area heuristic).
+/// After Ylitie, Karras and Laine (2017), *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*: the
+/// least cost of a subtree that hangs on a wide node by at most `k` boxes follows from those of its two halves.
+struct Cuts {
+    /// Per binary node, for `k` boxes at most, `k − 1` being the index: the least cost.
+    costs: Vec<[f32; BOXES - 1]>,
+    /// How many of the `k` boxes the first half gets; 0 if the node itself is the only box.
+    firsts: Vec<[u8; BOXES - 1]>,
+    /// How many of all boxes of a wide node the first half gets.
+    of_node: Vec<u8>,
+}
+
+impl Cuts {
+    fn new(binary: &Bvh2) -> Self {
+        let count = binary.nodes.len();
+        let mut cuts = Self {
+            costs: vec![[0.0; BOXES - 1]; count],
+            firsts: vec![[0; BOXES - 1]; count],
+            of_node: vec![0; count],
+        };
+        // Children after their parents.
+        let mut order = vec![0usize];
+        let mut next = 0;
+        while next < order.len() {
+            let node = &binary.nodes[order[next]];
+            next += 1;
+            if !node.is_leaf() {
+                order.extend([node.first_index as usize, node.first_index as usize + 1]);
+            }
+        }
+        for &i in order.iter().rev() {
+            let node = &binary.nodes[i];
+            // The cost of a leaf does not depend on the cut.
+            if !node.is_leaf() {
+                let (a, b) = (node.first_index as usize, node.first_index as usize + 1);
+                let (a, b) = (cuts.costs[a], cuts.costs[b]);
+                let split = |k: usize| -> (f32, u8) {
+                    let of = |first: usize| (a[first - 1] + b[k - first - 1], first as u8);
+                    (1..k).map(of).min_by(|x, y| x.0.total_cmp(&y.0)).unwrap_or((f32::INFINITY, 0))
+                };
+                let (below, first) = split(BOXES);
+                cuts.of_node[i] = first;
+                let mut least = (node.aabb.half_area() + below, 0);
+                for k in 1..BOXES {
+                    let cut = split(k);
+                    if cut.0 < least.0 {
+                        least = cut;
+                    }
+                    (cuts.costs[i][k - 1], cuts.firsts[i][k - 1]) = least;
+                }
+            }
+        }
+        cuts
+    }
+
+    /// The binary nodes whose boxes a wide node has.
+    fn members(&self, binary: &Bvh2, root: usize) -> Vec<usize> {
+        let mut members = Vec::with_capacity(BOXES);
+        if binary.nodes[root].is_leaf() {
+            return vec![root];
+        }
+        let mut waiting = Vec::new();
+        let halves = |i: usize, first: u8, k: u8, waiting: &mut Vec<(usize, u8)>| {
+            let child = binary.nodes[i].first_index as usize;
+            waiting.extend([(child + 1, k - first), (child, first)]);
+        };
+        halves(root, self.of_node[root], BOXES as u8, &mut waiting);
+        while let Some((i, mut k)) = waiting.pop() {
+            // Not more boxes than are of use.
+            while k > 1 && self.costs[i][usize::from(k) - 2] == self.costs[i][usize::from(k) - 1] {
+                k -= 1;
+            }
+            let first = self.firsts[i][usize::from(k) - 1];
+            if binary.nodes[i].is_leaf() || first == 0 {
+                members.push(i);
+            } else {
+                halves(i, first, k, &mut waiting);
+            }
+        }
+        members
+    }
+}
+
+/// Makes nodes of many boxes.
+fn flatten(binary: &Bvh2, nodes: &mut Vec<Node>, mut leaf: impl FnMut(Range<u32>) -> u32) {
+    let cuts = Cuts::new(binary);
+    let empty = Node {
+        bounds: std::array::from_fn(|i| [if i < 3 { f32::INFINITY } else { f32::NEG_INFINITY }; BOXES]),
+        children: [0; BOXES],
+    };
+    nodes.push(empty);
+    // Pairs of a wide node that waits to be filled and the binary node it stands for.
+    let mut waiting = vec![(0usize, 0usize)];
+    while let Some((wide, root)) = waiting.pop() {
+        for (lane, m) in cuts.members(binary, root).into_iter().enumerate() {
+            let node = &binary.nodes[m];
+            for axis in 0..3 {
+                nodes[wide].bounds[axis][lane] = node.aabb.min[axis];
+                nodes[wide].bounds[3 + axis][lane] = node.aabb.max[axis];
+            }
+            nodes[wide].children[lane] = if node.is_leaf() {
+                LEAF | leaf(node.first_index..node.first_index + node.prim_count)
+            } else {
+                waiting.push((nodes.len(), m));
+                nodes.push(empty);
+                nodes.len() as u32 - 1
+            };
+        }
+    }
+}
