@@ -1,0 +1,348 @@
+//! How fast lines are traced, beside Embree 3 where it is installed (Debian: `libembree3-3`): the same triangles and the
+//! same rays, on one thread, by turns.
+//!
+//! ```text
+//! cargo bench --bench lines                        # all scenes that are there
+//! cargo bench --bench lines -- soda --rounds 3     # one of them
+//! cargo bench --bench lines -- patches growth build
+//! ```
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark that fails, fails like a test")]
+
+mod embree;
+mod scenes;
+
+use std::time::Instant;
+
+use sir::accel::{Accel, Ray};
+use sir::geom::Scene;
+use sir::lines::{Domain, Stage, Streams, cosine_direction, point_on_triangle};
+use sir::mesh::Subdivision;
+use sir::radiosity::{FirstShot, Model, Segments};
+
+use embree::{Embree, Peer, Quality, RayHit};
+
+/// Patches per scene, about as many as in the experiment of the paper.
+const PATCHES: u64 = 600_000;
+
+/// What to run, from the command line.
+struct Options {
+    names: Vec<String>,
+    rounds: usize,
+    lines: u64,
+}
+
+impl Options {
+    fn parse() -> Self {
+        let mut options = Self { names: Vec::new(), rounds: 7, lines: 1_000_000 };
+        let mut arguments = std::env::args().skip(1);
+        while let Some(argument) = arguments.next() {
+            let mut number = || arguments.next().and_then(|n| n.parse().ok()).expect("a number");
+            match argument.as_str() {
+                // Cargo adds this to every benchmark.
+                "--bench" => {}
+                "--rounds" => options.rounds = number() as usize,
+                "--lines" => options.lines = number(),
+                _ => options.names.push(argument),
+            }
+        }
+        options
+    }
+
+    fn wants(&self, name: &str) -> bool {
+        self.names.is_empty() || self.names.iter().any(|n| n == name)
+    }
+}
+
+fn main() {
+    let options = Options::parse();
+    let embree = Embree::load();
+    if let Err(reason) = &embree {
+        println!("Embree is not compared, because it cannot be loaded: {reason}");
+        println!("(On Debian: apt-get install libembree3-3)\n");
+    }
+    let embree = embree.ok();
+    println!("One thread, {} lines, median of {} rounds by turns.", options.lines, options.rounds);
+    println!(
+        "{:<16} {:<34} {:>10} {:>10} {:>7}  agreement",
+        "scene", "M per second", "ours", "Embree", "ratio"
+    );
+    for (name, load) in scenes::ALL {
+        if options.wants(name)
+            && let Some(scene) = load()
+        {
+            rates(name, scene, embree.as_ref(), &options);
+        }
+    }
+    if options.names.iter().any(|n| n == "prof") {
+        return;
+    }
+    if options.wants("patches") {
+        patches(&options);
+    }
+    if options.wants("growth") {
+        growth(embree.as_ref(), &options);
+    }
+}
+
+/// The seconds of a call.
+fn seconds(call: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    call();
+    start.elapsed().as_secs_f64()
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+/// Runs things by turns and gives the median of the seconds of each.
+fn by_turns(rounds: usize, calls: &mut [&mut dyn FnMut()]) -> Vec<f64> {
+    let mut times = vec![Vec::new(); calls.len()];
+    for _ in 0..rounds {
+        for (call, times) in calls.iter_mut().zip(&mut times) {
+            times.push(seconds(call));
+        }
+    }
+    times.into_iter().map(median).collect()
+}
+
+/// Prints a row: counts per second of ours and of peers.
+fn row(scene: &str, what: &str, counts: (f64, f64), times: &[f64], agreement: &str) {
+    let ours = counts.0 / times[0] / 1e6;
+    print!("{scene:<16} {what:<34} {ours:>10.2}");
+    match times.get(1) {
+        Some(peer) => {
+            let peer = counts.1 / peer / 1e6;
+            println!(" {peer:>10.2} {:>7.2}  {agreement}", ours / peer);
+        }
+        None => println!(),
+    }
+}
+
+/// The three rates of a scene.
+fn rates(name: &str, scene: Scene, embree: Option<&Embree>, options: &Options) {
+    let model = Model::new(scene, Subdivision::Patches(PATCHES)).unwrap();
+    let scene = &model.scene;
+    println!("{name:<16} {} triangles, {} patches", scene.triangles().len(), model.mesh.patch_count());
+    let closest = embree.map(|e| e.scene(scene, Quality::High, false));
+    let all = embree.map(|e| e.scene(scene, Quality::Medium, true));
+    if std::env::var("ONLY").ok().as_deref() == Some("c") {
+        return compare_all(name, &model, options.lines, None, options.rounds);
+    }
+    let cosine = cosine_rays(scene, options.lines);
+    compare_closest(name, "(a) cosine rays", &model.accel, &cosine, closest.as_ref(), options.rounds);
+    let shot = FirstShot::new(&model, options.lines, 1).unwrap();
+    let rays: Vec<Ray> = (0..options.lines).map(|i| shot.ray(i)).collect();
+    compare_closest(name, "(b) first-shot rays", &model.accel, &rays, closest.as_ref(), options.rounds);
+    if std::env::var_os("ONLY").is_some() {
+        return;
+    }
+    compare_all(name, &model, options.lines, all.as_ref(), options.rounds);
+}
+
+/// Rays that leave random points of all surfaces, to either side, as diffuse light does.
+fn cosine_rays(scene: &Scene, rays: u64) -> Vec<Ray> {
+    let mut areas: Vec<f64> = scene.triangle_ids().map(|t| scene.area(t)).collect();
+    for i in 1..areas.len() {
+        areas[i] += areas[i - 1];
+    }
+    let streams = Streams::new(1, Stage::PROBE);
+    (0..rays)
+        .map(|i| {
+            let mut stream = streams.line(i);
+            let area = stream.unit() * areas[areas.len() - 1];
+            let k = areas.partition_point(|&a| a <= area);
+            let triangle = scene.triangle_ids().nth(k).unwrap();
+            let normal = if stream.unit() < 0.5 { scene.normal(triangle) } else { -scene.normal(triangle) };
+            let origin = point_on_triangle(&mut stream).point(scene.corners(triangle));
+            let direction = cosine_direction(normal, &mut stream);
+            Ray { line: sir::geom::Line { origin, direction }, leaving: Some(triangle) }
+        })
+        .collect()
+}
+
+fn compare_closest(
+    name: &str,
+    what: &str,
+    accel: &Accel,
+    rays: &[Ray],
+    peer: Option<&Peer<'_>>,
+    rounds: usize,
+) {
+    let mut ours = vec![None; rays.len()];
+    let trace = |found: &mut [Option<u32>]| {
+        accel.tracer().closest_each(rays, |i, hit| found[i] = hit.map(|h| h.triangle.0));
+    };
+    trace(&mut ours);
+    let mut sum = 0u64;
+    let mut we =
+        || accel.tracer().closest_each(rays, |_, hit| sum += hit.map_or(0, |h| u64::from(h.triangle.0)));
+    if std::env::var_os("ONLY").is_some() {
+        let mut t: Vec<f64> = (0..40).map(|_| seconds(&mut we)).collect();
+        t.sort_by(f64::total_cmp);
+        println!("{name} {what} {:.2} ns per line", t[10] / rays.len() as f64 * 1e9);
+        return;
+    }
+    let Some(peer) = peer else {
+        let times = by_turns(rounds, &mut [&mut we]);
+        return row(name, what, (rays.len() as f64, 0.0), &times, "");
+    };
+    let far = rays.iter().map(|r| r.line.origin.length()).fold(0.0, f64::max);
+    let theirs: Vec<RayHit> = rays.iter().map(|r| RayHit::new(&r.line, (far * 1e-5) as f32)).collect();
+    let mut i = 0;
+    let mut same = 0;
+    peer.closest(&theirs, |triangle| {
+        same += usize::from(triangle == ours[i]);
+        i += 1;
+    });
+    let (mut sum1, mut sum2) = (0u64, 0u64);
+    let mut they = || peer.closest(&theirs, |triangle| sum1 += u64::from(triangle.unwrap_or(0)));
+    let mut streams = || peer.closest_streams(&theirs, |triangle| sum2 += u64::from(triangle.unwrap_or(0)));
+    let times = by_turns(rounds, &mut [&mut we, &mut they, &mut streams]);
+    let n = rays.len() as f64;
+    let agreement = format!("{:.3} % of the triangles", 100.0 * same as f64 / n);
+    row(name, what, (n, n), &times[..2], &agreement);
+    row(name, &format!("{what}, Embree's streams"), (n, n), &[times[0], times[2]], "");
+}
+
+fn compare_all(name: &str, model: &Model, lines: u64, peer: Option<&Peer<'_>>, rounds: usize) {
+    let sphere = model.scene.bounding_sphere();
+    let domain = Domain::Sphere(sphere);
+    let streams = Streams::new(1, Stage::GLOBAL);
+    let lines: Vec<_> = (0..lines).map(|i| domain.sample(&mut streams.line(i))).collect();
+    let (mut hits, mut odd) = (0, 0);
+    model.accel.tracer().all_hits_each(&lines, |found| {
+        hits += found.hits().len();
+        odd += found.lines().filter(|line| line.len() % 2 == 1).count();
+    });
+    let mut sides = 0;
+    let mut we = || {
+        let mut segments = Segments::default();
+        model.accel.tracer().all_hits_each(&lines, |found| {
+            segments.find(&model.mesh, found);
+            sides += segments.count();
+        });
+    };
+    if std::env::var_os("ONLY").is_some() {
+        let mut t: Vec<f64> = (0..60).map(|_| seconds(&mut we)).collect();
+        t.sort_by(f64::total_cmp);
+        println!("{name} {:.2} ns per line", t[15] / lines.len() as f64 * 1e9);
+        return;
+    }
+    let what = "(c) hits of global lines, in order";
+    let Some(peer) = peer else {
+        let times = by_turns(rounds, &mut [&mut we]);
+        return row(name, what, (hits as f64, 0.0), &times, "");
+    };
+    let theirs: Vec<RayHit> = lines.iter().map(|line| RayHit::new(line, 0.0)).collect();
+    let mut they_hit = 0;
+    peer.all_hits(&theirs, |found| they_hit += found.len());
+    let mut sum = 0;
+    let mut they = || {
+        peer.all_hits(&theirs, |found| {
+            sum += found
+                .iter()
+                .map(|f| f.triangle as usize + usize::from(f.front) + f.point[0].to_bits() as usize)
+                .sum::<usize>();
+        });
+    };
+    let times = by_turns(rounds, &mut [&mut we, &mut they]);
+    let n = lines.len() as f64;
+    let agreement = format!(
+        "{:.4} and {:.4} hits per line; {:.1} and {:.1} M lines/s; {odd} odd",
+        hits as f64 / n,
+        f64::from(they_hit as u32) / n,
+        n / times[0] / 1e6,
+        n / times[1] / 1e6
+    );
+    row(name, what, (hits as f64, f64::from(they_hit as u32)), &times, &agreement);
+}
+
+/// What a line costs if the same triangles are cut into ten times as many patches.
+fn patches(options: &Options) {
+    println!("\nTen times the patches, M lines per second with patch look-up:");
+    for (name, load) in scenes::ALL {
+        let Some(scene) = load() else { continue };
+        let models = [60_000, 600_000].map(|n| Model::new(scene.clone(), Subdivision::Patches(n)).unwrap());
+        let domain = Domain::Sphere(scene.bounding_sphere());
+        let streams = Streams::new(1, Stage::GLOBAL);
+        let lines: Vec<_> = (0..options.lines).map(|i| domain.sample(&mut streams.line(i))).collect();
+        let mut sides = 0;
+        let mut run = |model: &Model| {
+            let mut segments = Segments::default();
+            model.accel.tracer().all_hits_each(&lines, |found| {
+                segments.find(&model.mesh, found);
+                sides += segments.count();
+            });
+        };
+        let mut times = [Vec::new(), Vec::new()];
+        for _ in 0..options.rounds {
+            for (model, times) in models.iter().zip(&mut times) {
+                times.push(seconds(|| run(model)));
+            }
+        }
+        let [few, many] = times.map(median);
+        println!(
+            "{name:<16} {} patches: {:.2}, {} patches: {:.2}; time per line × {:.3}",
+            models[0].mesh.patch_count(),
+            options.lines as f64 / few / 1e6,
+            models[1].mesh.patch_count(),
+            options.lines as f64 / many / 1e6,
+            many / few
+        );
+    }
+}
+
+/// How the cost of a line, and of building, grows with the number of triangles.
+fn growth(embree: Option<&Embree>, options: &Options) {
+    println!("\nGrowth with the number of triangles (balls in a room), M per second; seconds to build");
+    println!(
+        "{:>10} {:>9} {:>9} {:>9} {:>9} {:>9}",
+        "triangles", "closest", "Embree", "all hits", "Embree", "build"
+    );
+    for level in 1..=6 {
+        let scene = scenes::balls(level);
+        let mut accel = None;
+        let build = seconds(|| accel = Some(Accel::new(&scene)));
+        let accel = accel.unwrap();
+        let rays = cosine_rays(&scene, options.lines / 4);
+        let domain = Domain::Sphere(scene.bounding_sphere());
+        let streams = Streams::new(1, Stage::GLOBAL);
+        let lines: Vec<_> = (0..options.lines / 4).map(|i| domain.sample(&mut streams.line(i))).collect();
+        let n = rays.len() as f64;
+        let mut sum = 0;
+        let mut sum2 = 0;
+        let times = by_turns(
+            options.rounds,
+            &mut [
+                &mut || accel.tracer().closest_each(&rays, |_, hit| sum += usize::from(hit.is_some())),
+                &mut || accel.tracer().all_hits_each(&lines, |found| sum2 += found.hits().len()),
+            ],
+        );
+        let peers = embree.map(|e| {
+            let closest = e.scene(&scene, Quality::High, false);
+            let all = e.scene(&scene, Quality::Medium, true);
+            let rays: Vec<RayHit> = rays.iter().map(|r| RayHit::new(&r.line, 1e-5)).collect();
+            let lines: Vec<RayHit> = lines.iter().map(|l| RayHit::new(l, 0.0)).collect();
+            by_turns(
+                options.rounds,
+                &mut [&mut || closest.closest(&rays, |hit| sum += usize::from(hit.is_some())), &mut || {
+                    all.all_hits(&lines, |hits| sum2 += hits.len())
+                }],
+            )
+        });
+        let rate = |times: &[f64], i: usize| format!("{:.2}", n / times[i] / 1e6);
+        let peer = |i| peers.as_ref().map_or_else(|| "-".to_owned(), |times| rate(times, i));
+        println!(
+            "{:>10} {:>9} {:>9} {:>9} {:>9} {:>9.2}",
+            scene.triangles().len(),
+            rate(&times, 0),
+            peer(0),
+            rate(&times, 1),
+            peer(1),
+            build
+        );
+    }
+}

@@ -1,0 +1,47 @@
+//! Where triangles come from.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use sir::geom::{LoadOptions, Material, Rgb, Scene, SceneBuilder, load, shapes};
+
+/// Makes or loads a scene, if it is there.
+type Source = fn() -> Option<Scene>;
+
+/// Scenes by name. Those of others are absent where their files are.
+pub(crate) const ALL: [(&str, Source); 4] = [
+    ("reading-room", reading_room),
+    ("soda", || third_party("mgf-soda/soda.obj")),
+    ("staircase", || third_party("staircase/staircase.obj")),
+    ("living-room-2", || third_party("living-room-2/living-room-2.obj")),
+];
+
+fn reading_room() -> Option<Scene> {
+    Some(sir::scenes::reading_room().unwrap().scene)
+}
+
+/// A scene from where `SIR_TEST_DATA` says, or from a folder `shared` beside the repository.
+fn third_party(path: &str) -> Option<Scene> {
+    let data = std::env::var_os("SIR_TEST_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
+    let path = data.join("scenes").join(path);
+    if !path.is_file() {
+        println!("{} is not there: skipped", path.display());
+        return None;
+    }
+    Some(load(&path, &LoadOptions::default()).unwrap().scene)
+}
+
+/// Sixty-four balls in a room, of `20 · 4^level` triangles each.
+pub(crate) fn balls(level: u32) -> Scene {
+    let mut builder = SceneBuilder::new();
+    let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
+    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::splat(4.0), [grey; 6], shapes::Facing::Inward);
+    for i in 0..64 {
+        let place = DVec3::new(f64::from(i % 4), f64::from(i / 4 % 4), f64::from(i / 16));
+        let jitter = DVec3::new(0.05 * f64::from(i % 3), 0.04 * f64::from(i % 5), 0.03 * f64::from(i % 7));
+        let radius = 0.2 + 0.02 * f64::from(i % 6);
+        shapes::sphere(&mut builder, place + 0.4 + jitter, radius, level, shapes::Facing::Outward, |_| grey);
+    }
+    builder.build().unwrap().scene
+}
