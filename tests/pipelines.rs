@@ -283,9 +283,11 @@ fn stages(report: &Report) -> String {
     );
     for (name, l) in lines_stages(report) {
         let b = &l.balance;
+        let through =
+            l.domain.as_ref().map_or(String::new(), |d| format!(" ({}, {:.6} m²)", d.body, d.surface));
         writeln!(
             text,
-            "{name}: {} lines, {} crossings, {} odd, empty {:.6}",
+            "{name}: {} lines{through}, {} crossings, {} odd, empty {:.6}",
             l.lines, l.crossings, l.odd_lines, l.empty_share
         )
         .unwrap();

@@ -79,11 +79,12 @@ struct Effort {
 /// Mean radiosity of the fronts of every triangle, one list per run.
 fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
     let (local, global) = effort.lines;
-    let domain = Domain::Sphere(model.scene.bounding_sphere());
+    let domain = Domain::hull(&model.scene);
     let one = |seed| {
         let crew = &mut Crew::default();
         let shot = first_shot(model, local, seed, crew, None).unwrap().outcome;
-        let solution = batches(model, shot, global, domain, seed, crew, None).unwrap().outcome.solution;
+        let solution =
+            batches(model, shot, global, domain.clone(), seed, crew, None).unwrap().outcome.solution;
         let mut radiosity = vec![Rgb::ZERO; model.scene.triangles().len()];
         model.mesh.for_each_side(|t, _, side, id| {
             if side == Side::Front {

@@ -12,7 +12,6 @@ use crate::fields::grouped;
 use crate::pipeline::{Action, Content, Pipeline};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
-use crate::run::domain;
 
 /// How long the lines of a stage are tried to learn their rate.
 const PROBE: Duration = Duration::from_millis(300);
@@ -94,10 +93,11 @@ fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, Solve
                 shot = Some(first_shot.finish(tally, books)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
-            Action::Multipath { lines, .. } => {
+            Action::Multipath { lines, body, .. } => {
                 let Some(shot) = shot.take() else { continue };
                 // Both transports trace the same lines at about the same rate.
-                let transport = Batches::new(model, shot, lines, domain(model), pipeline.seed, 1);
+                let domain = body.around(&model.scene);
+                let transport = Batches::new(model, shot, lines, domain, pipeline.seed, 1);
                 let mut books = Books::default();
                 let rate = rate(lines, |block| transport.trace(0, block, &mut books));
                 estimates.push(StageEstimate { name, lines, rate });

@@ -8,7 +8,7 @@ use sir_mesh::Subdivision;
 use crate::diagnostic::Diagnostics;
 use crate::fields::{ABSURD, Reader, did_you_mean, list, resembling};
 use crate::order::check_order;
-use crate::pipeline::{Action, Pipeline, Stage, Transport};
+use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
 
 const STAGES: [&str; 5] = ["Load", "Subdivide", "FirstShot", "Multipath", "Save"];
@@ -217,14 +217,14 @@ impl<'a> Decoder<'a> {
         const FIELDS: [&str; 5] = ["lines", "transport", "replicas", "tail", "domain"];
         let mut fields = self.reader.fields(node, "Multipath", &FIELDS);
         let lines = self.reader.required(&mut fields, "lines", "1_000_000");
-        if let Some(domain) = fields.take("domain") {
-            if matches!(domain.name(), "Box" | "Hull") {
-                let message = format!("the domain `{}` is not available yet", domain.name());
-                self.reader.problem(domain.text, message, "write `domain: Sphere`");
-            } else {
-                self.reader.choice(&domain, "domain", &["Sphere"]);
-            }
-        }
+        let body = match fields.take("domain") {
+            Some(node) => match self.reader.choice(&node, "domain", &["Hull", "Box", "Sphere"]) {
+                Some("Box") => Body::Box,
+                Some("Sphere") => Body::Sphere,
+                _ => Body::Hull,
+            },
+            None => Body::default(),
+        };
         let (replicas, tail) = (fields.take("replicas"), fields.take("tail"));
         let in_replicas = match fields.take("transport") {
             Some(node) => self.reader.choice(&node, "transport", &["Batches", "Replicas"])? == "Replicas",
@@ -249,7 +249,7 @@ impl<'a> Decoder<'a> {
         };
         let (lines, replicas, tail) = (lines?, replicas?, tail?);
         let transport = if in_replicas { Transport::Replicas { replicas, tail } } else { Transport::Batches };
-        Some(Action::Multipath { lines, transport })
+        Some(Action::Multipath { lines, transport, body })
     }
 }
 

@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use sir_geom::{Camera, SidesPolicy};
+use sir_geom::{Camera, Scene, SidesPolicy};
+use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_view::Exposure;
 
@@ -55,6 +56,8 @@ pub enum Action {
         lines: u64,
         /// How they pass on the light.
         transport: Transport,
+        /// What they are drawn through.
+        body: Body,
     },
     /// Writes files.
     Save(Vec<Output>),
@@ -74,6 +77,30 @@ pub enum Transport {
         /// Default a tenth.
         tail: u64,
     },
+}
+
+/// The convex body around the scene from whose surface global lines are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Body {
+    /// The bounding sphere.
+    Sphere,
+    /// The axis-aligned bounding box.
+    Box,
+    /// The convex hull, which wastes the fewest lines. Default.
+    #[default]
+    Hull,
+}
+
+impl Body {
+    /// The body around a scene.
+    #[must_use]
+    pub fn around(self, scene: &Scene) -> Domain {
+        match self {
+            Self::Sphere => Domain::Sphere(scene.bounding_sphere()),
+            Self::Box => Domain::Box(scene.bounding_box()),
+            Self::Hull => Domain::hull(scene),
+        }
+    }
 }
 
 impl Action {

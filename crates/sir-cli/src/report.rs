@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 use sir_geom::Rgb;
+use sir_lines::Domain;
 use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Received, Solution};
 
 /// Version of the layout of `result.json`.
@@ -81,6 +82,9 @@ pub struct StageReport {
 pub struct LinesReport {
     /// Lines traced.
     pub lines: u64,
+    /// The convex body that they were drawn through, if they are global lines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub domain: Option<DomainReport>,
     /// Share of the lines that met nothing.
     pub empty_share: f64,
     /// Global lines that met an odd number of triangles: none in scenes of closed surfaces.
@@ -98,6 +102,15 @@ pub struct LinesReport {
     pub relative_error: [f64; 3],
     /// SHA-256 of the tallies of received power: the same for the same result.
     pub tally_hash: String,
+}
+
+/// The domain of global lines.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DomainReport {
+    /// `Sphere`, `Box` or `Hull`.
+    pub body: String,
+    /// Its surface \[m²\]; of a flat body, both sides.
+    pub surface: f64,
 }
 
 /// Energy balance of a stage per band \[W\]: `emitted = absorbed + blocked + escaped + unshot`.
@@ -170,14 +183,22 @@ pub(crate) struct Facts<'a> {
     pub(crate) received: &'a Received,
     /// The result so far.
     pub(crate) solution: &'a Solution,
+    pub(crate) domain: Option<DomainReport>,
+}
+
+impl DomainReport {
+    pub(crate) fn of(domain: &Domain) -> Self {
+        Self { body: domain.name().into(), surface: domain.surface() }
+    }
 }
 
 impl LinesReport {
-    pub(crate) fn new(model: &Model, facts: &Facts<'_>) -> Self {
-        let Facts { unit, balance, counts, batches, made_up, received, solution } = *facts;
+    pub(crate) fn new(model: &Model, facts: Facts<'_>) -> Self {
+        let Facts { unit, balance, counts, batches, made_up, received, solution, domain } = facts;
         let watts = |quanta: Quanta| unit.watts(quanta).to_array();
         Self {
             lines: counts.lines,
+            domain,
             empty_share: counts.empty as f64 / counts.lines.max(1) as f64,
             odd_lines: counts.odd,
             crossings: counts.crossings,

@@ -9,7 +9,6 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use sir_geom::Rgb;
-use sir_lines::Domain;
 use sir_parallel::{Alone, Checkpoints, Communicator, Crew, RunError, Saved, StageTime, cores};
 use sir_radiosity::{Model, MultipathSettings, Quanta, Shot, Solution};
 
@@ -21,7 +20,8 @@ use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
 use crate::ranks::{agree, same_everywhere};
 use crate::report::{
-    FILE_NAME, Facts, LinesReport, PipelineReport, Report, SceneReport, StageReport, Stopwatch, Time, VERSION,
+    DomainReport, FILE_NAME, Facts, LinesReport, PipelineReport, Report, SceneReport, StageReport, Stopwatch,
+    Time, VERSION,
 };
 use crate::resume::{self, CHECKPOINT, Head};
 use crate::save::save;
@@ -243,20 +243,30 @@ impl Run<'_> {
                     let Shot { unit, balance, counts, ref received, .. } = done.outcome;
                     let direct = done.outcome.solution(model);
                     let (batches, made_up) = (done.batches, Quanta::ZERO);
-                    let facts =
-                        Facts { unit, balance, counts, batches, made_up, received, solution: &direct };
-                    lines_report = Some(LinesReport::new(model, &facts));
+                    let facts = Facts {
+                        unit,
+                        balance,
+                        counts,
+                        batches,
+                        made_up,
+                        received,
+                        solution: &direct,
+                        domain: None,
+                    };
+                    lines_report = Some(LinesReport::new(model, facts));
                     time = Some(stage_time(done.time, *lines));
                     shot = Some(done.outcome);
                     solution = Some(direct);
                 }
-                Action::Multipath { lines, transport } => {
+                Action::Multipath { lines, transport, body } => {
                     // The decoder lets multipath follow nothing but a first shot; if that is not in memory, the state
                     // of this stage was saved.
                     let shot = shot.take().unwrap_or_else(|| Shot::nothing(model));
                     // The direct light has been saved if it was wanted, and takes much memory.
                     drop(solution.take());
-                    let (lines, saved, domain) = (*lines, saved.take(), domain(model));
+                    let (lines, saved) = (*lines, saved.take());
+                    let domain = body.around(&model.scene);
+                    let report = DomainReport::of(&domain);
                     let done = match *transport {
                         Transport::Batches => {
                             sir_parallel::batches(model, shot, lines, domain, seed, &mut crew, saved)
@@ -277,8 +287,9 @@ impl Run<'_> {
                         made_up: done.made_up,
                         received: &done.received,
                         solution: &done.solution,
+                        domain: Some(report),
                     };
-                    let report = LinesReport::new(model, &facts);
+                    let report = LinesReport::new(model, facts);
                     self.progress.warn(&unshot_warning(&report, *transport));
                     lines_report = Some(report);
                     time = Some(stage_time(stage_times, lines));
@@ -316,11 +327,6 @@ impl Run<'_> {
         }
         Ok(reports)
     }
-}
-
-/// The lines of multipath are drawn through the sphere around the scene.
-pub(crate) fn domain(model: &Model) -> Domain {
-    Domain::Sphere(model.scene.bounding_sphere())
 }
 
 fn stage_time(time: StageTime, lines: u64) -> Time {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use sir_cli::diagnostic::Diagnostics;
-use sir_cli::pipeline::{Action, Pipeline, Transport};
+use sir_cli::pipeline::{Action, Body, Pipeline, Transport};
 
 const VALID: &str = r#"// A comment with ( and "
 Pipeline(
@@ -55,21 +55,30 @@ fn a_valid_pipeline_is_understood() {
     for stage in &pipeline.stages {
         assert_eq!(&VALID[stage.span.clone()], stage.action.name());
     }
-    let transport = |stages: &str| {
+    let multipath = |fields: &str| {
         let text = format!(
-            r#"(stages: [Load(path: "room.obj"), FirstShot(lines: 9), Multipath(lines: 100{stages})])"#
+            r#"(stages: [Load(path: "room.obj"), FirstShot(lines: 9), Multipath(lines: 100{fields})])"#
         );
         match parse(&text).unwrap().stages[2].action {
-            Action::Multipath { transport, .. } => transport,
+            Action::Multipath { transport, body, .. } => (transport, body),
             _ => unreachable!("the third stage is Multipath"),
         }
     };
+    let transport = |fields: &str| multipath(fields).0;
     let replicas = |replicas, tail| Transport::Replicas { replicas, tail };
     assert_eq!(transport(""), Transport::Batches);
     assert_eq!(transport(", transport: Batches"), Transport::Batches);
     assert_eq!(transport(", transport: Replicas"), replicas(1, 10));
     assert_eq!(transport(", replicas: 8"), replicas(8, 10));
     assert_eq!(transport(", tail: 0"), replicas(1, 0));
+    for (fields, body) in [
+        ("", Body::Hull),
+        (", domain: Hull", Body::Hull),
+        (", domain: Box", Body::Box),
+        (", domain: Sphere", Body::Sphere),
+    ] {
+        assert_eq!(multipath(fields).1, body);
+    }
     let outputs: Vec<_> = pipeline.outputs().map(|o| o.path.to_str().unwrap()).collect();
     assert_eq!(outputs, ["view.png", "own.exr", "result.glb", "tables/patches.csv"]);
     assert!(pipeline.scene_path().is_file() || pipeline.scene_path().ends_with("room.obj"));
@@ -255,7 +264,7 @@ fn wrong_types() {
       |                  ^^^^^^
       = help: write for instance `lines: 1_000_000`
 
-    x.ron:5:34: error: `domain` must be `Sphere`, but it is `Spher`
+    x.ron:5:34: error: `domain` must be `Hull`, `Box` or `Sphere`, but it is `Spher`
     5 | Multipath(lines: "many", domain: Spher, replicas: 1.5),
       |                                  ^^^^^
       = help: did you mean `Sphere`?
@@ -400,19 +409,6 @@ fn numbers_out_of_range() {
       |                         ^^^^^^^^^
       = help: keep one of them
     "#);
-}
-
-#[test]
-fn what_is_not_there_yet() {
-    insta::assert_snapshot!(stages(&[
-        r#"Load(path: "room.obj"), FirstShot(lines: 10),"#,
-        r#"Multipath(lines: 10, domain: Hull)"#,
-    ]), @r"
-    x.ron:3:30: error: the domain `Hull` is not available yet
-    3 | Multipath(lines: 10, domain: Hull)
-      |                              ^^^^
-      = help: write `domain: Sphere`
-    ");
 }
 
 #[test]

@@ -13,6 +13,7 @@ use sir_cli::pipeline::Pipeline;
 use sir_cli::progress::Progress;
 use sir_cli::report::{Report, Time};
 use sir_cli::run::{RunOptions, read_report, run};
+use sir_cli::summary::summary;
 
 /// A closed room of 2 × 2 × 2 m whose ceiling emits 1 W/m² in red and less in the other bands; a wall is too white.
 const ROOM: &str = "mtllib room.mtl
@@ -142,6 +143,47 @@ fn the_report_tells_what_happened() {
             assert!(lines.relative_error[k] > 0.01 && lines.relative_error[k] < 0.5);
         }
         assert_eq!(lines.tally_hash.len(), 64);
+    }
+}
+
+/// The cube has the surface 24 m², its sphere `4π · 3 m²`.
+#[test]
+fn the_report_names_the_domain() {
+    let folder = folder();
+    let mut irradiances = Vec::new();
+    for (fields, body, surface) in [
+        ("", "Hull", 24.0),
+        (", replicas: 2", "Hull", 24.0),
+        (", domain: Box", "Box", 24.0),
+        (", domain: Box, replicas: 2", "Box", 24.0),
+        (", domain: Sphere", "Sphere", 12.0 * std::f64::consts::PI),
+        (", domain: Sphere, replicas: 2", "Sphere", 12.0 * std::f64::consts::PI),
+    ] {
+        let text = PIPELINE.replace("Multipath(lines: 20_000)", &format!("Multipath(lines: 20_000{fields})"));
+        let result = run(&pipeline(folder.path(), &text), &options(folder.path())).unwrap();
+        let lines = |name: &str| {
+            let stage = result.report.stages.iter().find(|s| s.name == name).unwrap();
+            stage.lines.clone().unwrap()
+        };
+        assert_eq!(lines("FirstShot").domain, None);
+        let multipath = lines("Multipath");
+        let domain = multipath.domain.unwrap();
+        assert_eq!(domain.body, body);
+        assert!((domain.surface / surface - 1.0).abs() < 1e-8, "{domain:?}");
+        // Every line that enters the cube meets its walls.
+        let empty = 1.0 - 24.0 / surface;
+        let sigma = (empty * (1.0 - empty) / 20_000.0).sqrt();
+        assert!((multipath.empty_share - empty).abs() <= 4.0 * sigma, "{}", multipath.empty_share);
+        let shown = summary(&result);
+        let expected = format!("20_000 lines through the {} ({surface:.6} m²) in ", body.to_lowercase());
+        assert!(shown.contains(&expected), "{shown}");
+        irradiances.push(multipath.balance.absorbed);
+    }
+    for absorbed in &irradiances {
+        for band in 0..3 {
+            let off = absorbed[band] / irradiances[0][band] - 1.0;
+            assert!(off.abs() < 0.05, "{irradiances:?}");
+        }
     }
 }
 

@@ -23,6 +23,7 @@ fn stage(name: &str, tracing: f64, sequential: f64, communication: f64) -> Stage
     };
     let lines = LinesReport {
         lines: 1000,
+        domain: None,
         empty_share: 0.5,
         odd_lines: 0,
         crossings: 4000,

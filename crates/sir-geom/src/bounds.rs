@@ -35,7 +35,7 @@ impl BoundingBox {
     }
 }
 
-/// A sphere, used as the convex domain from which global lines are drawn.
+/// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundingSphere {
     /// Centre.

@@ -11,6 +11,8 @@
 //! What a reader had to leave out or change is never silent: it comes back beside the scene as a list of
 //! [`Warning`]s.
 //!
+//! [`BoundingBox`], [`BoundingSphere`] and [`ConvexHull`] enclose what there is; the hull is exact for any points.
+//!
 //! Indices are typed ([`TriangleId`], [`MaterialId`], …): a triangle number cannot be used where a material
 //! number is meant.
 //!
@@ -39,6 +41,7 @@
 mod bounds;
 mod builder;
 mod camera;
+mod hull;
 mod index;
 mod line;
 mod load;
@@ -49,6 +52,7 @@ pub mod shapes;
 pub use bounds::{BoundingBox, BoundingSphere};
 pub use builder::{Built, SceneBuilder, SceneError, Warning};
 pub use camera::{Camera, Projection};
+pub use hull::ConvexHull;
 pub use index::{FaceId, MaterialId, TriangleId, VertexId};
 pub use line::{Barycentric, Line};
 pub use load::{LoadError, LoadOptions, SidesPolicy, load};

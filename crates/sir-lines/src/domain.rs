@@ -1,18 +1,42 @@
 //! Convex bodies from which global lines are drawn.
 
-use sir_geom::{BoundingSphere, Line};
+use std::sync::Arc;
 
-use crate::{Forecast, Stream, unit_vector};
+use glam::DVec3;
+use sir_geom::{BoundingBox, BoundingSphere, ConvexHull, Line, Scene};
+
+use crate::{Facets, Forecast, Stream, cosine_direction, unit_vector};
 
 /// A convex body around the scene, and the uniform (isotropic) lines through it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// A uniform line enters at a point that is uniform by area on the surface, in a direction with the density `cos θ/π` about
+/// the normal that points inside (Santaló 1976, *Integral Geometry and Geometric Probability*, ch. 12). In whatever body the
+/// lines are drawn, those that meet the scene are distributed alike; but in a body of surface `S` only the share
+/// `S_hull/S` of the lines passes through the convex hull of the scene, and the others are wasted.
+///
+/// Cloning is cheap.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Domain {
     /// A sphere. A line through two independent uniform points of a sphere is a uniform line
     /// (Santaló 1976; used for radiosity by Sbert 1993).
     Sphere(BoundingSphere),
+    /// An axis-aligned box. It may be flat, but not along two axes.
+    Box(BoundingBox),
+    /// A body of flat facets: the convex hull, the smallest body there is.
+    Hull(Arc<Facets>),
 }
 
 impl Domain {
+    /// The convex hull of the triangles of a scene.
+    ///
+    /// Corners of the hull are vertices, and all triangles are in it, but for 10⁻¹² of its extent: the bias of the forecast
+    /// is not larger than that. Where all vertices lie on a line to that precision, it is their box.
+    #[must_use]
+    pub fn hull(scene: &Scene) -> Self {
+        let facets = ConvexHull::of(scene.vertices()).and_then(|hull| Facets::new(&hull));
+        facets.map_or(Self::Box(scene.bounding_box()), |facets| Self::Hull(facets.into()))
+    }
+
     /// A random line; its origin is on the surface of the body and its direction points inside.
     #[inline]
     pub fn sample(&self, stream: &mut Stream) -> Line {
@@ -23,14 +47,28 @@ impl Domain {
                     break Line { origin: sphere.centre + sphere.radius * a, direction };
                 }
             },
+            Self::Box(bounds) => sample_box(bounds, stream),
+            Self::Hull(facets) => facets.sample(stream),
         }
     }
 
-    /// Surface of the body.
+    /// What the body is called.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Sphere(_) => "Sphere",
+            Self::Box(_) => "Box",
+            Self::Hull(_) => "Hull",
+        }
+    }
+
+    /// Surface of the body, in the square of the scene's unit of length. Of a flat body, both sides.
     #[must_use]
     pub fn surface(&self) -> f64 {
         match self {
             Self::Sphere(sphere) => sphere.surface_area(),
+            Self::Box(bounds) => 2.0 * face_areas(bounds).element_sum(),
+            Self::Hull(facets) => facets.surface(),
         }
     }
 
@@ -41,38 +79,31 @@ impl Domain {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Stage, Streams};
-    use glam::DVec3;
+/// Areas of the faces of a box across each axis.
+fn face_areas(bounds: &BoundingBox) -> DVec3 {
+    let size = bounds.size();
+    DVec3::new(size.y * size.z, size.z * size.x, size.x * size.y)
+}
 
-    /// The mean chord of uniform lines is 4V/S = 4R/3 (Cauchy), and their direction is uniform.
-    #[test]
-    fn chords_and_directions_are_those_of_uniform_lines() {
-        let sphere = BoundingSphere { centre: DVec3::new(1.0, -2.0, 3.0), radius: 2.0 };
-        let streams = Streams::new(3, Stage::GLOBAL);
-        let n = 200_000;
-        let (mut chord, mut chord2) = (0.0, 0.0);
-        let mut direction = DVec3::ZERO;
-        let mut squares = DVec3::ZERO;
-        for i in 0..n {
-            let line = Domain::Sphere(sphere).sample(&mut streams.line(i));
-            assert!((line.direction.length() - 1.0).abs() < 1e-14);
-            let length = 2.0 * (sphere.centre - line.origin).dot(line.direction);
-            chord += length;
-            chord2 += length * length;
-            direction += line.direction;
-            squares += line.direction * line.direction;
-        }
-        let n = n as f64;
-        let mean = chord / n;
-        let sigma = ((chord2 / n - mean * mean) / n).sqrt();
-        assert!((mean - 8.0 / 3.0).abs() < 4.0 * sigma, "mean chord {mean} ± {sigma}");
-        for axis in 0..3 {
-            assert!((direction[axis] / n).abs() < 4.0 * (1.0 / (3.0 * n)).sqrt());
-            // Var(cos²) = 1/5 − 1/9.
-            assert!((squares[axis] / n - 1.0 / 3.0).abs() < 4.0 * (4.0 / 45.0 / n).sqrt());
-        }
+fn sample_box(bounds: &BoundingBox, stream: &mut Stream) -> Line {
+    let areas = face_areas(bounds);
+    let half = areas.element_sum();
+    // The first half of the surface are the faces at the smallest coordinates.
+    let mut place = 2.0 * half * stream.unit();
+    let at_max = place >= half;
+    if at_max {
+        place -= half;
     }
+    let axis = if place < areas.x {
+        0
+    } else if place < areas.x + areas.y {
+        1
+    } else {
+        2
+    };
+    let mut share = DVec3::new(stream.unit(), stream.unit(), stream.unit());
+    share[axis] = if at_max { 1.0 } else { 0.0 };
+    let mut inward = DVec3::ZERO;
+    inward[axis] = if at_max { -1.0 } else { 1.0 };
+    Line { origin: bounds.min + share * bounds.size(), direction: cosine_direction(inward, stream) }
 }

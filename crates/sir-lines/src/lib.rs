@@ -6,8 +6,9 @@
 //! does not matter which thread, rank or restart traces it. Floats are made from raw bits here, and directions and
 //! points use only `+ − × ÷ √`, because those give the same bits on every machine.
 //!
-//! * Global lines: a [`Domain`] is a convex body around the scene. Its uniform (isotropic) lines meet a surface of
-//!   area `A` in proportion to `A`, which integral geometry turns into a [`Forecast`] of the number of crossings.
+//! * Global lines: a [`Domain`] is a convex body around the scene: its convex hull, its box, or a sphere. The uniform
+//!   (isotropic) lines of the body meet a surface of area `A` in proportion to `A`, which integral geometry turns into a
+//!   [`Forecast`] of the number of crossings.
 //! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does.
 //! * [`Allocation`] shares a number of lines among sources in proportion to their power.
 //!
@@ -34,14 +35,17 @@
 //! assert!((counted - expected).abs() < 4.0 * expected.sqrt());
 //! ```
 
+mod alias;
 mod allocation;
 mod domain;
+mod facets;
 mod forecast;
 mod local;
 mod stream;
 
 pub use allocation::Allocation;
 pub use domain::Domain;
+pub use facets::Facets;
 pub use forecast::Forecast;
 pub use local::{cosine_direction, point_on_triangle, unit_vector};
 pub use stream::{Stage, Stream, Streams};

@@ -72,11 +72,11 @@ fn measure(model: &Model, reflectance: f64, workers: usize) -> Result<Row, Box<d
     let crew = &mut Crew::of(NonZeroUsize::new(workers).unwrap_or(NonZeroUsize::MIN));
     let shot = first_shot(model, 4_000_000, 1, crew, None)?.outcome;
     let mut replicas = |tail| {
-        let settings = MultipathSettings { lines, tail, replicas: workers as u64, domain };
+        let settings = MultipathSettings { lines, tail, replicas: workers as u64, domain: domain.clone() };
         multipath(model, shot.clone(), settings, 1, crew, None)
     };
     let (published, tail) = (replicas(0)?.outcome, replicas(lines / 10)?.outcome);
-    let frozen = batches(model, shot.clone(), lines, domain, 1, crew, None)?.outcome;
+    let frozen = batches(model, shot.clone(), lines, domain.clone(), 1, crew, None)?.outcome;
     let runs = [&published, &tail, &frozen];
     let bias = runs.map(|run| bias(&shot, run, reflectance));
     let noise = runs.map(|run| noise(model, &shot, run));

@@ -37,13 +37,13 @@
 //! let grey = builder.add_material(grey);
 //! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
 //! let model = Model::new(builder.build()?.scene, Subdivision::PerTriangle)?;
-//! let domain = Domain::Sphere(model.scene.bounding_sphere());
+//! let domain = Domain::hull(&model.scene);
 //!
 //! let solve = |threads: usize| {
 //!     let crew = &mut Crew::of(NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN));
 //!     let (lines, seed) = (20_000, 1);
 //!     let shot = first_shot(&model, lines, seed, crew, None)?.outcome;
-//!     batches(&model, shot, lines, domain, seed, crew, None)
+//!     batches(&model, shot, lines, domain.clone(), seed, crew, None)
 //! };
 //! assert_eq!(solve(1)?.outcome.received, solve(3)?.outcome.received);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

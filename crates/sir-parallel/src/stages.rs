@@ -68,6 +68,11 @@ pub fn first_shot(
     Ok(StageRun { outcome, time: shift.time(), batches: 1 })
 }
 
+/// A number that tells the domains of one scene apart: their surface, to the last bit.
+fn identity_of(domain: &Domain) -> u64 {
+    domain.surface().to_bits()
+}
+
 impl Work for Batches<'_> {
     fn trace(&self, thread: usize, lines: Range<u64>, books: &mut Books) {
         self.trace(thread, lines, books);
@@ -93,7 +98,8 @@ pub fn batches(
     crew: &mut Crew<'_>,
     saved: Option<Saved>,
 ) -> Result<StageRun<Transported>, RunError> {
-    let mut shift = Shift::begin(crew, lines, &[2, model.mesh.side_count() as u64, lines, seed]);
+    let mut shift =
+        Shift::begin(crew, lines, &[2, model.mesh.side_count() as u64, lines, seed, identity_of(&domain)]);
     let mut stage = Batches::new(model, shot, lines, domain, seed, shift.threads());
     let mut position = Position::default();
     let open = |stage: &mut Batches<'_>, shift: &mut Shift<'_, '_>| {
@@ -138,15 +144,16 @@ pub fn multipath(
     crew: &mut Crew<'_>,
     saved: Option<Saved>,
 ) -> Result<StageRun<Transported>, RunError> {
-    let MultipathSettings { lines, tail, replicas, .. } = settings;
-    let identity = [3, model.mesh.side_count() as u64, lines, seed, tail, replicas];
+    let MultipathSettings { lines, tail, replicas: batches, .. } = settings;
+    let domain = identity_of(&settings.domain);
+    let identity = [3, model.mesh.side_count() as u64, lines, seed, tail, batches, domain];
     let mut shift = Shift::begin(crew, lines, &identity);
-    let stage = Multipath::new(model, shot, settings, seed, shift.threads());
+    let stage = Multipath::new(model, shot, settings.clone(), seed, shift.threads());
     let mut replicas = Replicas::new(stage, settings, shift.comm());
     if let Some(saved) = saved {
         replicas.restore(saved, &mut shift)?;
     }
     replicas.run(&mut shift)?;
     let outcome = replicas.finish(&mut shift)?;
-    Ok(StageRun { outcome, time: shift.time(), batches: settings.replicas })
+    Ok(StageRun { outcome, time: shift.time(), batches })
 }

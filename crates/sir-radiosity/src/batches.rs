@@ -122,7 +122,7 @@ impl AddAssign for Totals {
 #[derive(Debug)]
 pub struct Part<'a> {
     model: &'a Model,
-    domain: Domain,
+    domain: &'a Domain,
     ledger: &'a Ledger,
     plan: Plan,
     first: u32,
@@ -216,8 +216,9 @@ impl<'m> Batches<'m> {
 
     /// Cuts the sides into at most `count` parts.
     pub fn parts(&mut self, count: usize) -> impl Iterator<Item = Part<'_>> {
-        let Self { model, domain, ref ledger, ref mut received, ref mut unshot, ref mut noted, plan, .. } =
-            *self;
+        let Self {
+            model, ref domain, ref ledger, ref mut received, ref mut unshot, ref mut noted, plan, ..
+        } = *self;
         let size = unshot.len().div_ceil(count.max(1)).max(1);
         let slices = received.power.chunks_mut(size).zip(unshot.chunks_mut(size)).zip(noted.chunks_mut(size));
         slices.enumerate().map(move |(i, ((power, unshot), noted))| {

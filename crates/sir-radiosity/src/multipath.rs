@@ -40,7 +40,7 @@ pub struct Multipath<'m> {
 }
 
 /// The lines of a transport.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MultipathSettings {
     /// Number of lines, of all replicas together.
     pub lines: u64,

@@ -1,4 +1,4 @@
-//! Radiosity against exact solutions, within four standard errors of at most 0.3 % each.
+//! Radiosity against exact solutions, with a confidence of four standard errors of at most 0.3 % each.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
 
 mod common;
@@ -11,7 +11,7 @@ use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_mesh::Subdivision;
 use sir_radiosity::Model;
 
-const RUNS: u64 = 10;
+const RUNS: u64 = 16;
 
 fn number(v: &Value) -> f64 {
     v.as_f64().unwrap()
@@ -37,7 +37,7 @@ fn enclosure(name: &str) {
         }
         let model = Model::new(b.build().unwrap().scene, Subdivision::PerTriangle).unwrap();
         for (way, transport) in TRANSPORTS {
-            let runs = runs(&model, transport, 1_000_000, RUNS);
+            let runs = runs(&model, transport, 400_000, RUNS);
             for band in 0..3 {
                 for face in 0..runs[0].len() {
                     Estimate::of(runs.iter().map(|r| r[face][band])).assert_is(
@@ -80,7 +80,7 @@ fn concentric_spheres() {
         }
         let model = per_face(b);
         for (way, transport) in TRANSPORTS {
-            let runs = runs(&model, transport, 500_000, RUNS);
+            let runs = runs(&model, transport, 300_000, RUNS);
             for (face, name) in ["B1", "B2"].iter().enumerate() {
                 Estimate::of(runs.iter().map(|r| r[face].x))
                     .assert_is(number(&c["values"][name]), &format!("{way}, {id} {name}"));
@@ -110,7 +110,7 @@ fn sphere_interior_with_uneven_emission() {
         add_sphere(&mut b, number(&c["geometry"]["parameters"]["R"]), 2, Facing::Inward, &zones);
         let model = per_face(b);
         for (way, transport) in TRANSPORTS {
-            let runs = runs(&model, transport, 500_000, RUNS);
+            let runs = runs(&model, transport, 300_000, RUNS);
             for zone in 0..3 {
                 let name = format!("B zone {}", zone + 1);
                 Estimate::of(runs.iter().map(|r| r[zone].x))
@@ -135,7 +135,7 @@ fn boxes_with_one_patch_per_face() {
         }
         let model = per_face(b);
         for (way, transport) in TRANSPORTS {
-            let runs = runs(&model, transport, 500_000, RUNS);
+            let runs = runs(&model, transport, 200_000, RUNS);
             for (face, s) in surfaces.iter().enumerate() {
                 let name = s["name"].as_str().unwrap();
                 Estimate::of(runs.iter().map(|r| r[face].x))

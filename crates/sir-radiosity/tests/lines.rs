@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{add_polygon, case, grey, per_face, reference};
+use common::{add_polygon, case, domains, grey, per_face, reference};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{SceneBuilder, Sides};
@@ -13,10 +13,9 @@ use sir_radiosity::{End, Model, Segment, Segments};
 
 /// Counts, over uniform lines, how often each pair of sides faces each other: `count[i][j]` for light from `i` to
 /// `j`, with one more column for what is not a side.
-fn facing_counts(model: &Model, lines: u64) -> Vec<Vec<u64>> {
+fn facing_counts(model: &Model, domain: &Domain, lines: u64) -> Vec<Vec<u64>> {
     let n = model.mesh.side_count();
     let mut count = vec![vec![0u64; n + 1]; n];
-    let domain = Domain::Sphere(model.scene.bounding_sphere());
     let streams = Streams::new(11, Stage::GLOBAL);
     let mut tracer = model.accel.tracer();
     let index = |end: End| match end {
@@ -49,20 +48,22 @@ fn counted_crossings_agree_with_the_forecast() {
     shapes::cuboid(&mut b, DVec3::new(1.0, 0.5, 1.0), DVec3::new(1.5, 2.0, 3.0), [two; 6], Facing::Outward);
     shapes::sphere(&mut b, DVec3::new(3.0, 1.0, 2.0), 0.7, 2, Facing::Outward, |_| one);
     let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(2_000)).unwrap();
-    let lines = 1_000_000;
-    let count = facing_counts(&model, lines);
-    let forecast = Domain::Sphere(model.scene.bounding_sphere()).forecast(lines);
-    let (mut chi2, mut sides) = (0.0, 0.0);
-    model.mesh.for_each_side(|triangle, _, _, side| {
-        let expected = forecast.crossings(model.mesh.patch_area(triangle));
-        let counted: u64 = count[side.index()].iter().sum();
-        chi2 += (counted as f64 - expected).powi(2) / expected;
-        sides += 1.0;
-    });
-    // Crossings of one patch are binomial with a small probability: nearly Poisson, variance = mean.
-    let z = (chi2 - sides) / f64::sqrt(2.0 * sides);
-    println!("χ² = {chi2:.0} over {sides} sides, z = {z:+.2}");
-    assert!(z.abs() < 4.0);
+    let lines = 500_000;
+    for domain in domains(&model) {
+        let count = facing_counts(&model, &domain, lines);
+        let forecast = domain.forecast(lines);
+        let (mut chi2, mut sides) = (0.0, 0.0);
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let expected = forecast.crossings(model.mesh.patch_area(triangle));
+            let counted: u64 = count[side.index()].iter().sum();
+            chi2 += (counted as f64 - expected).powi(2) / expected;
+            sides += 1.0;
+        });
+        // Crossings of one patch are binomial with a small probability: nearly Poisson, variance = mean.
+        let z = (chi2 - sides) / f64::sqrt(2.0 * sides);
+        println!("{}: χ² = {chi2:.0} over {sides} sides, z = {z:+.2}", domain.name());
+        assert!(z.abs() < 4.0);
+    }
 }
 
 /// The share of the lines leaving `i` that arrive at `j` is the view factor `F_ij`.
@@ -76,7 +77,7 @@ fn view_factors_of_a_cube() {
         add_polygon(&mut b, surface, m);
     }
     let model = per_face(b);
-    let count = facing_counts(&model, 1_000_000);
+    let count = facing_counts(&model, &Domain::hull(&model.scene), 500_000);
     let factors = reference("view-factors.json");
     let value = |id: &str| case(&factors, id)["values"]["F12"].as_f64().unwrap();
     let (opposite, adjacent) = (value("VF-01"), value("VF-03"));
@@ -122,7 +123,7 @@ fn view_factors_of_concentric_spheres() {
             spheres
         };
         let mut count = [[0; 2]; 2];
-        for (i, row) in facing_counts(&model, 1_000_000).iter().enumerate() {
+        for (i, row) in facing_counts(&model, &Domain::hull(&model.scene), 500_000).iter().enumerate() {
             for (j, &n) in row.iter().enumerate().take(sphere_of_side.len()) {
                 count[sphere_of_side[i]][sphere_of_side[j]] += n;
             }

@@ -44,7 +44,9 @@ fn all_lines_are_traced_once() {
     for job in JOBS {
         let Outcome { counts, .. } = outcome(job);
         assert_eq!(counts.lines, LINES, "{job:?}");
-        assert!(0 < counts.empty && counts.empty < LINES && counts.crossings > 0, "{job:?}: {counts:?}");
+        // Of the lines through the hull of the room, none misses it; some local lines leave it.
+        let some = if matches!(job, Job::FirstShot) { 1..LINES } else { 0..1 };
+        assert!(some.contains(&counts.empty) && counts.crossings > 0, "{job:?}: {counts:?}");
     }
 }
 

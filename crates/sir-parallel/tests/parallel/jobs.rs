@@ -25,6 +25,7 @@ const SEED: u64 = 3;
 pub(crate) struct Room {
     pub(crate) model: Model,
     pub(crate) shot: Shot,
+    pub(crate) domain: Domain,
 }
 
 /// The room of most tests.
@@ -101,11 +102,8 @@ impl Room {
 
         let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(patches)).unwrap();
         let shot = first_shot(&model, LINES, SEED, &mut Crew::of(NonZeroUsize::MIN), None).unwrap().outcome;
-        Self { model, shot }
-    }
-
-    fn domain(&self) -> Domain {
-        Domain::Sphere(self.model.scene.bounding_sphere())
+        let domain = Domain::hull(&model.scene);
+        Self { model, shot, domain }
     }
 }
 
@@ -121,7 +119,7 @@ impl Job {
         crew: &mut Crew<'_>,
         saved: Option<Saved>,
     ) -> Result<Outcome, RunError> {
-        let (model, domain) = (&room.model, room.domain());
+        let (model, domain) = (&room.model, room.domain.clone());
         // Who goes on has not made the first shot.
         let shot = || if saved.is_some() { Shot::nothing(model) } else { room.shot.clone() };
         match self {
@@ -148,7 +146,7 @@ impl Job {
                 return Outcome::of_shot(StageRun { outcome, time: Default::default(), batches: 1 });
             }
             Self::Batches => {
-                let mut stage = Batches::new(model, shot, LINES, room.domain(), SEED, 1);
+                let mut stage = Batches::new(model, shot, LINES, room.domain.clone(), SEED, 1);
                 loop {
                     stage.parts(1).for_each(|mut part| part.open());
                     stage.trace(0, stage.lines(), &mut books);
@@ -162,7 +160,7 @@ impl Job {
                 StageRun { outcome: stage.finish(books).unwrap(), time: Default::default(), batches }
             }
             Self::Multipath { replicas, tail } => {
-                let settings = Self::settings(replicas, tail, room.domain());
+                let settings = Self::settings(replicas, tail, room.domain.clone());
                 let stage = Multipath::new(model, shot, settings, SEED, 1);
                 for number in 0..replicas {
                     stage.trace(0, &mut stage.replica(number), u64::MAX, &mut books);

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use sha2::{Digest, Sha256};
+use sir_lines::Domain;
 use sir_parallel::{Alone, CheckpointError, Checkpoints, Communicator, Crew, RunError, Saved};
 use tempfile::{TempDir, tempdir};
 
@@ -155,6 +156,16 @@ fn a_checkpoint_of_another_scene_is_refused() {
         let (_folder, path) = stopped(&ROOM, job);
         assert_not_taken(&finer, job, &path);
         assert_not_taken(&coarser, job, &path);
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_domain_is_refused() {
+    let mut room = Room::new(400);
+    room.domain = Domain::Sphere(room.model.scene.bounding_sphere());
+    for job in [Job::Batches, MULTIPATH] {
+        let (_folder, path) = stopped(&room, job);
+        assert_not_taken(&ROOM, job, &path);
     }
 }
 

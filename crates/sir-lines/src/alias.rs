@@ -1,0 +1,95 @@
+//! Choosing at random in proportion to weights.
+
+use crate::Stream;
+
+/// A choice among things in proportion to their weights, in the same time for any number of them (Walker 1977; Vose
+/// 1991).
+///
+/// One of `n` columns is chosen; each has the weight `1/n` and is shared by two things at most.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct AliasTable {
+    columns: Vec<Column>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Column {
+    /// Share of the thing with the number of the column.
+    own: f64,
+    /// The thing that has the rest.
+    other: u32,
+}
+
+impl AliasTable {
+    /// For weights that are finite and above zero, of which there is at least one and fewer than 2³².
+    pub(crate) fn new(weights: &[f64]) -> Self {
+        let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+        let columns = weights.iter().zip(0..).map(|(w, other)| Column { own: w / mean, other });
+        let mut columns: Vec<Column> = columns.collect();
+        let (mut small, mut large): (Vec<u32>, Vec<u32>) =
+            (0..columns.len() as u32).partition(|&i| columns[i as usize].own < 1.0);
+        // What fills up a column is left with less. When there is nothing left to fill up with, or to be filled up, all
+        // that remain are full, but for rounding.
+        while let (Some(&poor), Some(&rich)) = (small.last(), large.last()) {
+            small.pop();
+            columns[poor as usize].other = rich;
+            let left = columns[rich as usize].own - (1.0 - columns[poor as usize].own);
+            columns[rich as usize].own = left;
+            if left < 1.0 {
+                large.pop();
+                small.push(rich);
+            }
+        }
+        Self { columns }
+    }
+
+    /// The number of a thing.
+    #[inline]
+    pub(crate) fn choose(&self, stream: &mut Stream) -> usize {
+        let column = (stream.unit() * self.columns.len() as f64) as usize;
+        let Column { own, other } = self.columns[column];
+        if stream.unit() < own { column } else { other as usize }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Stage, Streams};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn shares_are_the_weights(
+            weights in prop::collection::vec(prop_oneof![1e-9..1e-6f64, 0.1..10.0f64, Just(1.0)], 1..100),
+        ) {
+            let table = AliasTable::new(&weights);
+            let mut shares = vec![0.0; weights.len()];
+            for (i, column) in table.columns.iter().enumerate() {
+                let own = column.own.min(1.0);
+                shares[i] += own;
+                shares[column.other as usize] += 1.0 - own;
+            }
+            let sum: f64 = weights.iter().sum();
+            for (share, w) in shares.iter().zip(&weights) {
+                prop_assert!((share / weights.len() as f64 - w / sum).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn choices_are_in_proportion_to_weights() {
+        let weights = [3.0, 0.5, 1.0, 1e-12, 5.5];
+        let table = AliasTable::new(&weights);
+        let streams = Streams::new(2, Stage::GLOBAL);
+        let n = 100_000;
+        let mut counted = [0.0; 5];
+        for i in 0..n {
+            counted[table.choose(&mut streams.line(i))] += 1.0;
+        }
+        for (count, w) in counted.iter().zip(weights) {
+            let share = w / 10.0;
+            let sigma = (n as f64 * share * (1.0 - share)).sqrt();
+            assert!((count - n as f64 * share).abs() <= 4.0 * sigma, "{count} of {w}");
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! The lines that enter a convex body through flat facets.
+
+use glam::DVec3;
+use sir_geom::{ConvexHull, Line};
+
+use crate::alias::AliasTable;
+use crate::{Stream, cosine_direction, point_on_triangle};
+
+/// The surface of a convex body of flat facets, ready to draw lines from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Facets {
+    facets: Vec<Facet>,
+    by_area: AliasTable,
+    surface: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Facet {
+    corners: [DVec3; 3],
+    inward: DVec3,
+}
+
+impl Facets {
+    /// The facets of a hull; `None` if it has no area.
+    #[must_use]
+    pub fn new(hull: &ConvexHull) -> Option<Self> {
+        let (mut facets, mut areas) = (Vec::new(), Vec::new());
+        for &[a, b, c] in hull.facets() {
+            let inward = (c - a).cross(b - a);
+            // Some facets are too narrow to have a normal; no line enters through them.
+            if let Some(normal) = inward.try_normalize() {
+                facets.push(Facet { corners: [a, b, c], inward: normal });
+                areas.push(0.5 * inward.length());
+            }
+        }
+        if facets.is_empty() {
+            return None;
+        }
+        Some(Self { facets, by_area: AliasTable::new(&areas), surface: areas.iter().sum() })
+    }
+
+    /// Area of all facets.
+    #[must_use]
+    pub fn surface(&self) -> f64 {
+        self.surface
+    }
+
+    /// A random line: uniform on the surface, and cosine-distributed about the normal that points inside.
+    #[inline]
+    pub(crate) fn sample(&self, stream: &mut Stream) -> Line {
+        let facet = &self.facets[self.by_area.choose(stream)];
+        let origin = point_on_triangle(stream).point(facet.corners);
+        Line { origin, direction: cosine_direction(facet.inward, stream) }
+    }
+}

@@ -1,0 +1,72 @@
+//! How many lines the domains waste on scenes, and what lines and crossings cost:
+//! `cargo run --release -p sir-radiosity --example domains scenes/*/*.gl*`.
+//!
+//! Each domain traces as many lines as should give the same number of crossings, by one thread, in 100,000 patches, in
+//! turn with the others. The fastest of seven tries counts: the least disturbed by whatever else the machine does.
+#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+
+use std::path::Path;
+use std::time::Instant;
+
+use sir_geom::{ConvexHull, LoadOptions, load};
+use sir_lines::Domain;
+use sir_mesh::Subdivision;
+use sir_radiosity::{Batches, Books, Counts, FirstShot, Model};
+
+const CROSSINGS: f64 = 2e6;
+const TRIES: usize = 7;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    println!("For the sphere, the box and the hull:\n");
+    println!(
+        "| scene | triangles | facets, time of the hull | empty lines | ns per line | ns per crossing |"
+    );
+    println!("|---|--:|--:|--:|--:|--:|");
+    for path in std::env::args().skip(1) {
+        measure(Path::new(&path))?;
+    }
+    Ok(())
+}
+
+fn measure(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    let scene = load(path, &LoadOptions::default())?.scene;
+    let start = Instant::now();
+    let facets = ConvexHull::of(scene.vertices()).map_or(0, |hull| hull.facets().len());
+    let hull_time = start.elapsed().as_secs_f64();
+    let model = Model::new(scene, Subdivision::Patches(100_000))?;
+    let scene = &model.scene;
+    let shot = FirstShot::new(&model, 100_000, 1)?;
+    let (tally, mut books) = (shot.tally(1), Books::default());
+    shot.trace(0, 0..100_000, &tally, &mut books);
+    let shot = shot.finish(tally, books)?;
+
+    let domains =
+        [Domain::Sphere(scene.bounding_sphere()), Domain::Box(scene.bounding_box()), Domain::hull(scene)];
+    let mut times = [f64::INFINITY; 3];
+    let mut counts = [Counts::default(); 3];
+    for _ in 0..TRIES {
+        for (k, domain) in domains.iter().enumerate() {
+            let lines = (CROSSINGS / domain.forecast(1).crossings(scene.total_area())) as u64;
+            let mut transport = Batches::new(&model, shot.clone(), lines, domain.clone(), 1, 1);
+            transport.parts(1).for_each(|mut part| part.open());
+            let (start, mut books) = (Instant::now(), Books::default());
+            transport.trace(0, 0..lines, &mut books);
+            times[k] = f64::min(times[k], start.elapsed().as_secs_f64());
+            counts[k] = books.counts;
+        }
+    }
+    let each = |value: &dyn Fn(f64, &Counts) -> f64, digits: usize| {
+        let values = times.iter().zip(&counts).map(|(&time, counts)| value(time, counts));
+        values.map(|value| format!("{value:.digits$}")).collect::<Vec<_>>().join(", ")
+    };
+    println!(
+        "| {} | {} | {facets}, {:.1} ms | {} % | {} | {} |",
+        path.file_stem().unwrap_or_default().to_string_lossy(),
+        scene.triangles().len(),
+        1e3 * hull_time,
+        each(&|_, counts| 100.0 * counts.empty as f64 / counts.lines as f64, 1),
+        each(&|time, counts| 1e9 * time / counts.lines as f64, 0),
+        each(&|time, counts| 1e9 * time / counts.crossings as f64, 0),
+    );
+    Ok(())
+}
