@@ -23,7 +23,7 @@ use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global;
-use crate::ledger::{Counters, Ledger, SquareUnit, copies, visit_floats, visit_quanta};
+use crate::ledger::{Counters, Ledger, SquareUnit, visit_floats, visit_quanta};
 use crate::segments::End;
 use crate::state::{visit_counts, visit_float};
 use crate::{
@@ -158,7 +158,7 @@ impl<'m> Batches<'m> {
                 brightest[band] = f64::max(brightest[band], share);
             }
         });
-        let ledger = Ledger::new(sides, copies(sides, workers, 1), SquareUnit::new(brightest, most));
+        let ledger = Ledger::new(sides, workers, 1, SquareUnit::new(brightest, most));
         // Lines that cross a typical patch once: typical of where the area is.
         let once = domain.surface() * area / (2.0 * square);
         let parts = (lines as f64 / once / CROSSINGS_PER_PART) as u64;
@@ -198,11 +198,7 @@ impl<'m> Batches<'m> {
         let soon = |side| page.prefetch(side);
         global::trace(self.model, &self.domain, &self.streams, lines, counts, soon, |_, segment| {
             match (segment.from, segment.to) {
-                (End::Side(i, _), End::Side(j, _)) => {
-                    let (from_i, from_j) = (page.leave(i), page.leave(j));
-                    page.give(j, from_i);
-                    page.give(i, from_j);
-                }
+                (End::Side(i, _), End::Side(j, _)) => page.exchange(i, j),
                 (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
                     balance.escaped += page.leave(i);
                 }

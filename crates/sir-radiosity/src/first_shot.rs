@@ -8,7 +8,8 @@ use sir_accel::Ray;
 use sir_geom::{Line, Rgb, Side};
 use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
 
-use crate::ledger::{Counters, Ledger, SquareUnit, copies};
+use crate::global::AHEAD;
+use crate::ledger::{Counters, Ledger, SquareUnit};
 use crate::sources::{Source, sources};
 use crate::{Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Solution, SolveError, Visitor};
 
@@ -97,7 +98,7 @@ impl<'m> FirstShot<'m> {
         let squares = SquareUnit::new([0, 1, 2].map(largest), self.lines as f64);
         // There is room for two copies: later stages need more per side than this one.
         let sides = self.model.mesh.side_count();
-        FirstShotTally { ledger: Ledger::new(sides, copies(sides, workers, 2), squares) }
+        FirstShotTally { ledger: Ledger::new(sides, workers, 2, squares) }
     }
 
     /// The ray of a line.
@@ -126,6 +127,7 @@ impl<'m> FirstShot<'m> {
         let page = tally.ledger.page(worker);
         let mut tracer = accel.tracer();
         let (mut rays, mut powers) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
+        let mut gifts = Vec::with_capacity(RAYS);
         let mut first = lines.start;
         while first < lines.end {
             let end = lines.end.min(first + RAYS as u64);
@@ -137,6 +139,7 @@ impl<'m> FirstShot<'m> {
                 powers.push(self.per_line[source]);
             }
             first = end;
+            gifts.clear();
             tracer.closest_each(&rays, |i, hit| {
                 let power = powers[i];
                 books.balance.emitted += power;
@@ -149,12 +152,19 @@ impl<'m> FirstShot<'m> {
                     Some(hit) => {
                         books.counts.crossings += 1;
                         match mesh.side_at(hit.triangle, hit.point, hit.side) {
-                            Some(side) => page.give(side, power),
+                            Some(side) => gifts.push((side, power)),
                             None => books.balance.blocked += power,
                         }
                     }
                 }
             });
+            // Records are far apart in memory, which is asked for some time before.
+            for (i, &(side, power)) in gifts.iter().enumerate() {
+                if let Some(&(ahead, _)) = gifts.get(i + AHEAD) {
+                    page.prefetch(ahead);
+                }
+                page.give(side, power);
+            }
         }
     }
 

@@ -8,8 +8,8 @@ use sir_mesh::SideId;
 use crate::segments::{End, Segment, Segments};
 use crate::{Counts, Model};
 
-/// How many segments ahead memory is asked for.
-const AHEAD: usize = 8;
+/// How many records ahead memory is asked for.
+pub(crate) const AHEAD: usize = 8;
 
 /// Lines that are made at a time.
 const LINES: usize = 1024;

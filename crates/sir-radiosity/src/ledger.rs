@@ -1,6 +1,7 @@
 //! The ledger of a stage: what every side receives and gives, written by all workers at once.
 
-use std::sync::atomic::{AtomicI64, AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::Ordering::{Acquire, Relaxed, Release};
+use std::sync::atomic::{AtomicI64, AtomicU32};
 
 use sir_mesh::SideId;
 
@@ -10,18 +11,25 @@ use crate::{Quanta, Received, Visitor};
 ///
 /// Everything that lines change is an integer, to which they only add. The sums are therefore the same in whatever order
 /// and by however many workers.
+///
+/// A worker that changes a record locks it: one atomic operation instead of seven, each of which would take as long as all
+/// else that is done to a record. Nothing is locked where only one worker writes.
 #[derive(Debug, Default)]
 #[repr(align(64))]
 struct Record {
     power: [AtomicI64; 3],
     squares: [AtomicI64; 3],
     share: [AtomicU32; 3],
+    /// Lines that left the side, and [`LOCKED`] while a worker writes.
     crossings: AtomicU32,
 }
 
+/// The highest bit of the number of crossings.
+const LOCKED: u32 = 1 << 31;
+
 /// Power that sides receive in a stage, and the share that each of them sends with a line.
 ///
-/// Writing needs no more than `&self`: all counters are atomic. Where that is affordable there are several copies of all
+/// Writing needs no more than `&self`. Where that is affordable there are several copies of all
 /// records, because two cores that write to the same cache line wait for each other; only sums over the copies count.
 #[derive(Debug)]
 pub(crate) struct Ledger {
@@ -29,16 +37,12 @@ pub(crate) struct Ledger {
     records: Vec<Record>,
     sides: usize,
     unit: SquareUnit,
+    /// Whether several workers write to the same copy.
+    shared: bool,
 }
 
 /// Size of all copies together up to which every worker gets one of its own \[bytes\]: about what caches hold.
 const AFFORDABLE: usize = 16 << 20;
-
-/// How many copies a ledger should have for some workers, `least` of them however large it is.
-pub(crate) fn copies(sides: usize, workers: usize, least: usize) -> usize {
-    let affordable = workers * sides * size_of::<Record>() <= AFFORDABLE;
-    if affordable { workers.max(1) } else { workers.clamp(1, least) }
-}
 
 /// Which counters of a [`Ledger`] a visitor goes through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,11 +59,13 @@ pub(crate) enum Counters {
 const CHUNK: usize = 1 << 14;
 
 impl Ledger {
-    /// An empty ledger.
-    pub(crate) fn new(sides: usize, copies: usize, unit: SquareUnit) -> Self {
+    /// An empty ledger for some workers, of at least `least` copies however large it is, if there are as many workers.
+    pub(crate) fn new(sides: usize, workers: usize, least: usize, unit: SquareUnit) -> Self {
+        let affordable = workers * sides * size_of::<Record>() <= AFFORDABLE;
+        let copies = if affordable { workers.max(1) } else { workers.clamp(1, least) };
         let mut records = Vec::with_capacity(sides * copies);
         records.resize_with(sides * copies, Record::default);
-        Self { records, sides, unit }
+        Self { records, sides, unit, shared: copies < workers }
     }
 
     /// The records of a side, one in each copy.
@@ -70,7 +76,11 @@ impl Ledger {
     /// The copy that a worker writes to.
     pub(crate) fn page(&self, worker: usize) -> Page<'_> {
         let copy = worker % (self.records.len() / self.sides);
-        Page { records: &self.records[copy * self.sides..][..self.sides], unit: self.unit }
+        Page {
+            records: &self.records[copy * self.sides..][..self.sides],
+            unit: self.unit,
+            shared: self.shared,
+        }
     }
 
     /// What a side sends with a line.
@@ -192,6 +202,7 @@ impl Ledger {
 pub(crate) struct Page<'a> {
     records: &'a [Record],
     unit: SquareUnit,
+    shared: bool,
 }
 
 impl Page<'_> {
@@ -201,30 +212,64 @@ impl Page<'_> {
         sir_accel::prefetch(&self.records[side.index()]);
     }
 
-    /// A line brings power to a side.
-    #[inline]
-    pub(crate) fn give(self, side: SideId, power: Quanta) {
-        let record = &self.records[side.index()];
-        let squares = self.unit.counts(power);
-        record.power.iter().zip(power.0).for_each(|(sum, power)| _ = sum.fetch_add(power, Relaxed));
-        record.squares.iter().zip(squares).for_each(|(sum, square)| _ = sum.fetch_add(square, Relaxed));
-    }
-
     /// What a side sends with a line.
     #[inline]
     pub(crate) fn share(self, side: SideId) -> Quanta {
         self.records[side.index()].share()
     }
 
-    /// A line leaves a side and takes its share.
+    /// A line brings power to a side.
+    #[inline]
+    pub(crate) fn give(self, side: SideId, power: Quanta) {
+        self.change(side, 0, power);
+    }
+
+    /// A line leaves a side, which sends its share with it.
     #[inline]
     pub(crate) fn leave(self, side: SideId) -> Quanta {
-        self.records[side.index()].crossings.fetch_add(1, Relaxed);
+        self.change(side, 1, Quanta::ZERO);
         self.share(side)
+    }
+
+    /// A line leaves two sides, each towards the other one.
+    #[inline]
+    pub(crate) fn exchange(self, i: SideId, j: SideId) {
+        let (from_i, from_j) = (self.share(i), self.share(j));
+        self.change(i, 1, from_j);
+        self.change(j, 1, from_i);
+    }
+
+    /// Some lines leave a side, or power comes to it.
+    #[inline]
+    fn change(self, side: SideId, lines: u32, power: Quanta) {
+        let record = &self.records[side.index()];
+        let squares = self.unit.counts(power);
+        let crossings = if self.shared { record.lock() } else { record.crossings.load(Relaxed) };
+        let add = |sum: &AtomicI64, more: i64| sum.store(sum.load(Relaxed).wrapping_add(more), Relaxed);
+        record.power.iter().zip(power.0).for_each(|(sum, power)| add(sum, power));
+        record.squares.iter().zip(squares).for_each(|(sum, square)| add(sum, square));
+        record.crossings.store(crossings + lines, Release);
     }
 }
 
 impl Record {
+    /// Waits until no other worker writes, which takes nanoseconds, and gives the number of crossings. To store that number,
+    /// or a larger one, unlocks the record.
+    #[inline]
+    fn lock(&self) -> u32 {
+        let mut tries = 0u32;
+        loop {
+            let crossings = self.crossings.load(Relaxed) & !LOCKED;
+            let locked = crossings | LOCKED;
+            if self.crossings.compare_exchange_weak(crossings, locked, Acquire, Relaxed).is_ok() {
+                return crossings;
+            }
+            tries += 1;
+            // The other worker may have been suspended.
+            if tries % 64 == 0 { std::thread::yield_now() } else { std::hint::spin_loop() }
+        }
+    }
+
     #[inline]
     fn share(&self) -> Quanta {
         Quanta(std::array::from_fn(|band| f32::from_bits(self.share[band].load(Relaxed)) as i64))

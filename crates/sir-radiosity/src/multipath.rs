@@ -20,7 +20,7 @@ use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global;
-use crate::ledger::{Counters, Ledger, Page, SquareUnit, copies, visit_quanta};
+use crate::ledger::{Counters, Ledger, Page, SquareUnit, visit_quanta};
 use crate::segments::{End, Segment};
 use crate::{
     Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Visitor,
@@ -128,8 +128,7 @@ impl<'m> Multipath<'m> {
             most = f64::max(most, crossings);
             shares.push(share);
         });
-        let copies = copies(shares.len(), workers, 1);
-        let ledger = Ledger::new(shares.len(), copies, SquareUnit::new(largest, most));
+        let ledger = Ledger::new(shares.len(), workers, 1, SquareUnit::new(largest, most));
         for (i, share) in shares.into_iter().enumerate() {
             ledger.set_share(SideId::new(i), share);
         }
