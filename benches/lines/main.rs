@@ -18,7 +18,7 @@ use sir::accel::{Accel, Ray};
 use sir::geom::Scene;
 use sir::lines::{Domain, Stage, Streams, cosine_direction, point_on_triangle};
 use sir::mesh::Subdivision;
-use sir::radiosity::{FirstShot, Model, Segments};
+use sir::radiosity::{Batches, Books, FirstShot, Model, Segments};
 
 use embree::{Embree, Peer, Quality, RayHit};
 
@@ -74,9 +74,6 @@ fn main() {
             rates(name, scene, embree.as_ref(), &options);
         }
     }
-    if options.names.iter().any(|n| n == "prof") {
-        return;
-    }
     if options.wants("patches") {
         patches(&options);
     }
@@ -128,17 +125,11 @@ fn rates(name: &str, scene: Scene, embree: Option<&Embree>, options: &Options) {
     println!("{name:<16} {} triangles, {} patches", scene.triangles().len(), model.mesh.patch_count());
     let closest = embree.map(|e| e.scene(scene, Quality::High, false));
     let all = embree.map(|e| e.scene(scene, Quality::Medium, true));
-    if std::env::var("ONLY").ok().as_deref() == Some("c") {
-        return compare_all(name, &model, options.lines, None, options.rounds);
-    }
     let cosine = cosine_rays(scene, options.lines);
     compare_closest(name, "(a) cosine rays", &model.accel, &cosine, closest.as_ref(), options.rounds);
     let shot = FirstShot::new(&model, options.lines, 1).unwrap();
     let rays: Vec<Ray> = (0..options.lines).map(|i| shot.ray(i)).collect();
     compare_closest(name, "(b) first-shot rays", &model.accel, &rays, closest.as_ref(), options.rounds);
-    if std::env::var_os("ONLY").is_some() {
-        return;
-    }
     compare_all(name, &model, options.lines, all.as_ref(), options.rounds);
 }
 
@@ -179,12 +170,6 @@ fn compare_closest(
     let mut sum = 0u64;
     let mut we =
         || accel.tracer().closest_each(rays, |_, hit| sum += hit.map_or(0, |h| u64::from(h.triangle.0)));
-    if std::env::var_os("ONLY").is_some() {
-        let mut t: Vec<f64> = (0..40).map(|_| seconds(&mut we)).collect();
-        t.sort_by(f64::total_cmp);
-        println!("{name} {what} {:.2} ns per line", t[10] / rays.len() as f64 * 1e9);
-        return;
-    }
     let Some(peer) = peer else {
         let times = by_turns(rounds, &mut [&mut we]);
         return row(name, what, (rays.len() as f64, 0.0), &times, "");
@@ -204,7 +189,8 @@ fn compare_closest(
     let n = rays.len() as f64;
     let agreement = format!("{:.3} % of the triangles", 100.0 * same as f64 / n);
     row(name, what, (n, n), &times[..2], &agreement);
-    row(name, &format!("{what}, Embree's streams"), (n, n), &[times[0], times[2]], "");
+    // Embree traces coherent rays faster as streams; ours are in the order in which a pipeline makes them.
+    row(name, &format!("{what}, its streams"), (n, n), &[times[0], times[2]], "");
 }
 
 fn compare_all(name: &str, model: &Model, lines: u64, peer: Option<&Peer<'_>>, rounds: usize) {
@@ -225,12 +211,6 @@ fn compare_all(name: &str, model: &Model, lines: u64, peer: Option<&Peer<'_>>, r
             sides += segments.count();
         });
     };
-    if std::env::var_os("ONLY").is_some() {
-        let mut t: Vec<f64> = (0..60).map(|_| seconds(&mut we)).collect();
-        t.sort_by(f64::total_cmp);
-        println!("{name} {:.2} ns per line", t[15] / lines.len() as f64 * 1e9);
-        return;
-    }
     let what = "(c) hits of global lines, in order";
     let Some(peer) = peer else {
         let times = by_turns(rounds, &mut [&mut we]);
@@ -260,37 +240,53 @@ fn compare_all(name: &str, model: &Model, lines: u64, peer: Option<&Peer<'_>>, r
     row(name, what, (hits as f64, f64::from(they_hit as u32)), &times, &agreement);
 }
 
-/// What a line costs if the same triangles are cut into ten times as many patches.
+/// What a line costs if the same triangles are cut into ten times as many patches: hits and patches alone, and with the
+/// exchange of power.
 fn patches(options: &Options) {
-    println!("\nTen times the patches, M lines per second with patch look-up:");
+    println!("\nTen times the patches, M lines per second, and by how much a line takes longer");
+    println!(
+        "{:<16} {:>10} {:>9} {:>9} {:>6} {:>9} {:>9} {:>6}",
+        "scene", "patches", "find", "find 10×", "", "exchange", "exch. 10×", ""
+    );
     for (name, load) in scenes::ALL {
         let Some(scene) = load() else { continue };
-        let models = [60_000, 600_000].map(|n| Model::new(scene.clone(), Subdivision::Patches(n)).unwrap());
+        let few = scene.triangles().len() as u64;
+        let models = [few, 10 * few].map(|n| Model::new(scene.clone(), Subdivision::Patches(n)).unwrap());
         let domain = Domain::Sphere(scene.bounding_sphere());
         let streams = Streams::new(1, Stage::GLOBAL);
         let lines: Vec<_> = (0..options.lines).map(|i| domain.sample(&mut streams.line(i))).collect();
         let mut sides = 0;
-        let mut run = |model: &Model| {
+        let mut find = |model: &Model| {
             let mut segments = Segments::default();
             model.accel.tracer().all_hits_each(&lines, |found| {
                 segments.find(&model.mesh, found);
                 sides += segments.count();
             });
         };
-        let mut times = [Vec::new(), Vec::new()];
-        for _ in 0..options.rounds {
-            for (model, times) in models.iter().zip(&mut times) {
-                times.push(seconds(|| run(model)));
-            }
-        }
-        let [few, many] = times.map(median);
+        let mut stages = models.each_ref().map(|model| {
+            let shot = FirstShot::new(model, 100_000, 1).unwrap();
+            let (tally, mut books) = (shot.tally(1), Books::default());
+            shot.trace(0, 0..100_000, &tally, &mut books);
+            let shot = shot.finish(tally, books).unwrap();
+            let mut batches = Batches::new(model, shot, options.lines, domain.clone(), 1, 1);
+            batches.parts(1).for_each(|mut part| part.open());
+            batches
+        });
+        let [one, ten] = &mut stages;
+        let exchange = |stage: &Batches<'_>| stage.trace(0, 0..options.lines, &mut Books::default());
+        let mut find_few = || find(&models[0]);
+        let few_times = by_turns(options.rounds, &mut [&mut find_few, &mut || exchange(one)]);
+        let mut find_many = || find(&models[1]);
+        let many_times = by_turns(options.rounds, &mut [&mut find_many, &mut || exchange(ten)]);
+        let rate = |time: f64| options.lines as f64 / time / 1e6;
         println!(
-            "{name:<16} {} patches: {:.2}, {} patches: {:.2}; time per line × {:.3}",
-            models[0].mesh.patch_count(),
-            options.lines as f64 / few / 1e6,
-            models[1].mesh.patch_count(),
-            options.lines as f64 / many / 1e6,
-            many / few
+            "{name:<16} {few:>10} {:>9.2} {:>9.2} × {:.2} {:>9.2} {:>9.2} × {:.2}",
+            rate(few_times[0]),
+            rate(many_times[0]),
+            many_times[0] / few_times[0],
+            rate(few_times[1]),
+            rate(many_times[1]),
+            many_times[1] / few_times[1]
         );
     }
 }

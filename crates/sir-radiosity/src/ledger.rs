@@ -266,7 +266,7 @@ impl Record {
             }
             tries += 1;
             // The other worker may have been suspended.
-            if tries % 64 == 0 { std::thread::yield_now() } else { std::hint::spin_loop() }
+            if tries.is_multiple_of(64) { std::thread::yield_now() } else { std::hint::spin_loop() }
         }
     }
 
