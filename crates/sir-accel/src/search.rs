@@ -479,15 +479,10 @@ pub(crate) fn closest<K: Kit, R: Rays>(tree: &Tree, scratch: &mut ClosestScratch
     lines.clear();
     let mut flights: Vec<Flight<R::Ray>> = Vec::with_capacity(RAYS);
     let mut agenda = Agenda::EMPTY;
-    let begin = |rays: &mut R| {
-        rays.next().map(|(ray, line, span, leaving)| {
-            ((line, ShortLine::new(&line)), Flight { span, leaving, waiting: 1, ray })
-        })
-    };
     for number in 0..RAYS as u8 {
-        let Some((line, flight)) = begin(rays) else { break };
-        lines.push(line);
-        flights.push(flight);
+        let Some((ray, line, span, leaving)) = rays.next() else { break };
+        lines.push((line, ShortLine::new(&line)));
+        flights.push(Flight { span, leaving, waiting: 1, ray });
         children[usize::from(number) * stride] = 0;
         agenda.nodes.add(number, true);
     }
@@ -536,10 +531,11 @@ pub(crate) fn closest<K: Kit, R: Rays>(tree: &Tree, scratch: &mut ClosestScratch
         });
         for number in ended.iter() {
             let i = usize::from(number);
-            if let Some((line, next)) = begin(rays) {
-                let ended = std::mem::replace(&mut flights[i], next);
-                rays.done(ended.ray, &lines[i].0);
-                lines[i] = line;
+            if let Some((ray, line, span, leaving)) = rays.next() {
+                let flight = &mut flights[i];
+                rays.done(std::mem::replace(&mut flight.ray, ray), &lines[i].0);
+                (flight.span, flight.leaving, flight.waiting) = (span, leaving, 1);
+                lines[i] = (line, ShortLine::new(&line));
                 children[i * stride] = 0;
                 agenda.nodes.add(number, true);
             }

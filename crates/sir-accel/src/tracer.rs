@@ -142,6 +142,7 @@ const SLACK: f64 = 2.0 * hit::CONTACT * RADIUS;
 impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
     type Ray = Traced;
 
+    #[inline(always)]
     fn next(&mut self) -> Option<(Traced, GridLine, Span, u32)> {
         loop {
             let index = self.next;
@@ -177,23 +178,19 @@ impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
             None => crossing.t + line.start >= 0.0,
         };
         if begins {
-            match &mut ray.best {
-                None => ray.best = Some(crossing),
-                Some(best) => {
-                    // What is within the slack of the first one, in whatever order it is found, is put in order at the end.
-                    if (crossing.t - best.t).abs() <= SLACK {
-                        ray.close = true;
-                        self.close.extend([(ray.index, crossing), (ray.index, *best)]);
-                    }
-                    if (crossing.t, crossing.id) < (best.t, best.id) {
-                        *best = crossing;
-                    }
-                }
+            if let Some(best) = ray.best
+                && (crossing.t - best.t).abs() <= SLACK
+            {
+                self.note_close(ray, crossing, best);
+            }
+            if ray.best.is_none_or(|best| (crossing.t, crossing.id) < (best.t, best.id)) {
+                ray.best = Some(crossing);
             }
         }
         ray.best.map_or(f32::INFINITY, |best| ((best.t + SLACK) / RADIUS) as f32)
     }
 
+    #[inline(always)]
     fn done(&mut self, ray: Traced, line: &GridLine) {
         let hit = match ray.best {
             Some(best) if ray.close => Some(self.first_of_close(ray.index, best, line)),
@@ -204,6 +201,14 @@ impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
 }
 
 impl<F> ClosestHits<'_, F> {
+    /// Notes that two crossings are so close that a rule may put them in order: what is within the slack of the first one, in
+    /// whatever order it is found.
+    #[cold]
+    fn note_close(&mut self, ray: &mut Traced, one: Crossing, other: Crossing) {
+        ray.close = true;
+        self.close.extend([(ray.index, one), (ray.index, other)]);
+    }
+
     /// The first, by their rule, of hits that are close together.
     #[cold]
     fn first_of_close(&mut self, index: usize, best: Crossing, line: &GridLine) -> Hit {
