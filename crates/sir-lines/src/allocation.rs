@@ -43,6 +43,15 @@ impl Allocation {
         self.ends.partition_point(|&end| end <= index)
     }
 
+    /// The sources of line `first` and of all lines after it.
+    pub fn owners(&self, first: u64) -> impl Iterator<Item = usize> {
+        let start = self.owner(first);
+        (start..self.ends.len()).flat_map(move |k| {
+            let before = if k == start { first } else { self.ends[k - 1] };
+            std::iter::repeat_n(k, (self.ends[k] - before) as usize)
+        })
+    }
+
     /// How many lines source `k` has.
     #[must_use]
     pub fn count(&self, k: usize) -> u64 {
@@ -65,6 +74,9 @@ mod tests {
             let mut counted = vec![0; weights.len()];
             for i in 0..lines {
                 counted[a.owner(i)] += 1;
+            }
+            for first in [0, lines / 3, lines] {
+                prop_assert!(a.owners(first).eq((first..lines).map(|i| a.owner(i))));
             }
             let total: f64 = weights.iter().sum();
             for (k, w) in weights.iter().enumerate() {

@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use sir_accel::Ray;
-use sir_geom::{Line, Rgb, Side};
+use sir_geom::{Line, Rgb};
 use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
 
 use crate::global::AHEAD;
@@ -109,14 +109,9 @@ impl<'m> FirstShot<'m> {
 
     /// The ray of a line of a source.
     fn ray_of(&self, source: usize, index: u64) -> Ray {
-        let Source { triangle, side, .. } = self.sources[source];
-        let scene = &self.model.scene;
+        let Source { triangle, corners, normal, .. } = self.sources[source];
         let mut stream = self.streams.line(index);
-        let origin = point_on_triangle(&mut stream).point(scene.corners(triangle));
-        let normal = match side {
-            Side::Front => scene.normal(triangle),
-            Side::Back => -scene.normal(triangle),
-        };
+        let origin = point_on_triangle(&mut stream).point(corners);
         let line = Line { origin, direction: cosine_direction(normal, &mut stream) };
         Ray { line, leaving: Some(triangle) }
     }
@@ -133,8 +128,7 @@ impl<'m> FirstShot<'m> {
             let end = lines.end.min(first + RAYS as u64);
             rays.clear();
             powers.clear();
-            for index in first..end {
-                let source = self.allocation.owner(index);
+            for (index, source) in (first..end).zip(self.allocation.owners(first)) {
                 rays.push(self.ray_of(source, index));
                 powers.push(self.per_line[source]);
             }

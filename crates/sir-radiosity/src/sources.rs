@@ -1,5 +1,6 @@
 //! Light sources.
 
+use glam::DVec3;
 use sir_geom::{Rgb, Scene, Side, TriangleId};
 
 /// A side of a triangle that emits.
@@ -9,6 +10,10 @@ pub struct Source {
     pub triangle: TriangleId,
     /// Which side of it.
     pub side: Side,
+    /// Its corners.
+    pub corners: [DVec3; 3],
+    /// Unit normal on that side.
+    pub normal: DVec3,
     /// Emitted power `Φ = M A` per band \[W\].
     pub power: Rgb,
 }
@@ -21,7 +26,12 @@ pub fn sources(scene: &Scene) -> Vec<Source> {
         for side in [Side::Front, Side::Back] {
             let exitance = scene.exitance(triangle, side);
             if exitance != Rgb::ZERO {
-                sources.push(Source { triangle, side, power: exitance * scene.area(triangle) });
+                let normal = match side {
+                    Side::Front => scene.normal(triangle),
+                    Side::Back => -scene.normal(triangle),
+                };
+                let (corners, power) = (scene.corners(triangle), exitance * scene.area(triangle));
+                sources.push(Source { triangle, side, corners, normal, power });
             }
         }
     }
