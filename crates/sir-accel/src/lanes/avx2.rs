@@ -25,12 +25,21 @@ impl Kit for Avx2 {
 
     #[inline(always)]
     fn compress(numbers: &[u32; BOXES], mask: u32, to: &mut [u32; BOXES]) {
-        super::Portable::compress(numbers, mask, to);
+        // SAFETY: the processor has AVX2; the array has twice 8 numbers.
+        unsafe {
+            let low = _mm256_loadu_si256(numbers.as_ptr().cast());
+            let high = _mm256_loadu_si256(numbers.as_ptr().add(8).cast());
+            compress16([low, high], mask, to);
+        }
     }
 
     #[inline(always)]
     fn numbers(first: u32, mask: u32, to: &mut [u32; TRIANGLES]) {
-        super::Portable::numbers(first, mask, to);
+        // SAFETY: the processor has AVX2; the array has 8 places.
+        unsafe {
+            let numbers = _mm256_add_epi32(lanes(), _mm256_set1_epi32(first as i32));
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), compress8(numbers, mask & 0xFF));
+        }
     }
 
     #[inline(always)]
@@ -41,13 +50,39 @@ impl Kit for Avx2 {
         keys_to: &mut [f32; BOXES],
         to: &mut [u32; BOXES],
     ) {
-        let mut all = [0.0; BOXES];
-        // SAFETY: the processor has AVX2; the array has twice 8 places.
-        unsafe {
-            _mm256_storeu_ps(all.as_mut_ptr(), keys.0);
-            _mm256_storeu_ps(all.as_mut_ptr().add(8), keys.1);
+        let count = mask.count_ones();
+        if count > 8 {
+            let mut all = [0.0; BOXES];
+            // SAFETY: the processor has AVX2; the array has twice 8 places.
+            unsafe {
+                _mm256_storeu_ps(all.as_mut_ptr(), keys.0);
+                _mm256_storeu_ps(all.as_mut_ptr().add(8), keys.1);
+            }
+            return sort_by_insertion(&all, numbers, mask, keys_to, to);
         }
-        sort_by_insertion(&all, numbers, mask, keys_to, to);
+        // SAFETY: the processor has AVX2; the arrays have twice 8 numbers.
+        unsafe {
+            // As in the kit for AVX-512: the lane replaces the last bits of its key.
+            let exact = _mm256_set1_epi32(!(BOXES as i32 - 1));
+            let with_lane = |keys: __m256, first: i32| {
+                let lanes = _mm256_add_epi32(lanes(), _mm256_set1_epi32(first));
+                _mm256_or_si256(_mm256_and_si256(_mm256_castps_si256(keys), exact), lanes)
+            };
+            let mut front = [0; BOXES];
+            compress16([with_lane(keys.0, 0), with_lane(keys.1, 8)], mask, &mut front);
+            // Unused places become zero and end up last.
+            let used = _mm256_cmpgt_epi32(_mm256_set1_epi32(count as i32), lanes());
+            let keys = _mm256_and_si256(_mm256_loadu_si256(front.as_ptr().cast()), used);
+            let keys = if count > 4 { sort8(keys) } else { sort4(keys) };
+            let half = |start: usize| {
+                let half = _mm256_loadu_si256(numbers.as_ptr().add(start).cast());
+                _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(half, keys))
+            };
+            // The fourth bit of the lane tells the half.
+            let second = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(keys));
+            _mm256_storeu_ps(to.as_mut_ptr().cast(), _mm256_blendv_ps(half(0), half(8), second));
+            _mm256_storeu_si256(keys_to.as_mut_ptr().cast(), _mm256_and_si256(keys, exact));
+        }
     }
 
     #[inline(always)]
@@ -71,6 +106,91 @@ impl Kit for Avx2 {
     }
 }
 
+/// A step of a sorting network: lanes exchange their numbers with the lanes of the order, and those in the mask keep the
+/// smaller one, the others the larger one.
+#[inline(always)]
+unsafe fn exchange<const SMALLER: i32>(numbers: __m256i, order: [i32; 8]) -> __m256i {
+    let [a, b, c, d, e, f, g, h] = order;
+    // SAFETY: the caller sees to it that the processor has AVX2.
+    unsafe {
+        let other = _mm256_permutevar8x32_epi32(numbers, _mm256_setr_epi32(a, b, c, d, e, f, g, h));
+        _mm256_blend_epi32::<SMALLER>(_mm256_max_epu32(numbers, other), _mm256_min_epu32(numbers, other))
+    }
+}
+
+/// Sorts the first four numbers, largest first.
+#[inline(always)]
+pub(crate) unsafe fn sort4(numbers: __m256i) -> __m256i {
+    // SAFETY: the caller sees to it that the processor has AVX2.
+    unsafe {
+        let numbers = exchange::<0b1100>(numbers, [2, 3, 0, 1, 4, 5, 6, 7]);
+        let numbers = exchange::<0b1010>(numbers, [1, 0, 3, 2, 4, 5, 6, 7]);
+        exchange::<0b0100>(numbers, [0, 2, 1, 3, 4, 5, 6, 7])
+    }
+}
+
+/// Sorts eight numbers, largest first (Batcher's odd-even merge sort).
+#[inline(always)]
+pub(crate) unsafe fn sort8(numbers: __m256i) -> __m256i {
+    // SAFETY: the caller sees to it that the processor has AVX2.
+    unsafe {
+        let numbers = exchange::<0b1010_1010>(numbers, [1, 0, 3, 2, 5, 4, 7, 6]);
+        let numbers = exchange::<0b1100_1100>(numbers, [2, 3, 0, 1, 6, 7, 4, 5]);
+        let numbers = exchange::<0b0100_0100>(numbers, [0, 2, 1, 3, 4, 6, 5, 7]);
+        let numbers = exchange::<0b1111_0000>(numbers, [4, 5, 6, 7, 0, 1, 2, 3]);
+        let numbers = exchange::<0b0011_0000>(numbers, [0, 1, 4, 5, 2, 3, 6, 7]);
+        exchange::<0b0101_0100>(numbers, [0, 2, 1, 4, 3, 6, 5, 7])
+    }
+}
+
+/// Numbers of the lanes.
+#[inline(always)]
+unsafe fn lanes() -> __m256i {
+    // SAFETY: the caller sees to it that the processor has AVX2.
+    unsafe { _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7) }
+}
+
+/// Brings the numbers whose bits are set in the mask, below 256, to the front.
+#[inline(always)]
+unsafe fn compress8(numbers: __m256i, mask: u32) -> __m256i {
+    let order = &FRONTS[mask as usize & 0xFF];
+    // SAFETY: the caller sees to it that the processor has AVX2; the array has 8 numbers.
+    unsafe {
+        let order = _mm256_cvtepu8_epi32(_mm_loadl_epi64(order.as_ptr().cast()));
+        _mm256_permutevar8x32_epi32(numbers, order)
+    }
+}
+
+/// Writes the numbers of two halves whose bits are set in the mask to the front.
+#[inline(always)]
+unsafe fn compress16(halves: [__m256i; 2], mask: u32, to: &mut [u32; BOXES]) {
+    let (low, high) = (mask & 0xFF, mask >> 8 & 0xFF);
+    // SAFETY: the caller sees to it that the processor has AVX2; the second half begins after 8 places at most.
+    unsafe {
+        let second = to.as_mut_ptr().add(low.count_ones() as usize);
+        _mm256_storeu_si256(to.as_mut_ptr().cast(), compress8(halves[0], low));
+        _mm256_storeu_si256(second.cast(), compress8(halves[1], high));
+    }
+}
+
+/// For each mask of eight lanes: those whose bits are set.
+static FRONTS: [[u8; 8]; 256] = {
+    let mut fronts = [[0; 8]; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 8 {
+            if mask >> lane & 1 == 1 {
+                fronts[mask][count] = lane as u8;
+                count += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    fronts
+};
+
 /// Eight numbers in single precision.
 #[derive(Clone, Copy)]
 pub(crate) struct Float8(__m256);
@@ -91,9 +211,10 @@ impl Singles<TRIANGLES> for Float8 {
     #[inline(always)]
     fn compress(self, mask: u32, to: &mut [f32; TRIANGLES]) {
         // SAFETY: as above; the array has 8 places.
-        let mut all = [0.0; TRIANGLES];
-        unsafe { _mm256_storeu_ps(all.as_mut_ptr(), self.0) }
-        all.compress(mask, to);
+        unsafe {
+            let front = compress8(_mm256_castps_si256(self.0), mask & 0xFF);
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), front);
+        }
     }
 
     #[inline(always)]
@@ -158,13 +279,10 @@ impl Singles<BOXES> for Float8x2 {
 
     #[inline(always)]
     fn compress(self, mask: u32, to: &mut [f32; BOXES]) {
-        // SAFETY: as above; the array has twice 8 places.
-        let mut all = [0.0; BOXES];
-        unsafe {
-            _mm256_storeu_ps(all.as_mut_ptr(), self.0);
-            _mm256_storeu_ps(all.as_mut_ptr().add(8), self.1);
-        }
-        all.compress(mask, to);
+        let mut bits = [0; BOXES];
+        // SAFETY: as above.
+        unsafe { compress16([_mm256_castps_si256(self.0), _mm256_castps_si256(self.1)], mask, &mut bits) }
+        *to = bits.map(f32::from_bits);
     }
 
     #[inline(always)]

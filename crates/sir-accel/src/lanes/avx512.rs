@@ -3,7 +3,7 @@
 
 use std::arch::x86_64::*;
 
-use super::avx2::Float8;
+use super::avx2::{Float8, sort4, sort8};
 use super::{BOXES, Doubles, Kit, Packed, Singles, TRIANGLES, sort_by_insertion};
 
 #[derive(Clone, Copy, Debug)]
@@ -87,43 +87,6 @@ impl Kit for Avx512 {
     #[inline(always)]
     fn prefetch(start: *const u8, bytes: usize) {
         super::Avx2::prefetch(start, bytes);
-    }
-}
-
-/// A step of a sorting network: lanes exchange their numbers with the lanes of the order, and those in the mask keep the
-/// smaller one, the others the larger one.
-#[inline(always)]
-unsafe fn exchange<const SMALLER: i32>(numbers: __m256i, order: [i32; 8]) -> __m256i {
-    let [a, b, c, d, e, f, g, h] = order;
-    // SAFETY: the caller sees to it that the processor has AVX-512.
-    unsafe {
-        let other = _mm256_permutevar8x32_epi32(numbers, _mm256_setr_epi32(a, b, c, d, e, f, g, h));
-        _mm256_blend_epi32::<SMALLER>(_mm256_max_epu32(numbers, other), _mm256_min_epu32(numbers, other))
-    }
-}
-
-/// Sorts the first four numbers, largest first.
-#[inline(always)]
-unsafe fn sort4(numbers: __m256i) -> __m256i {
-    // SAFETY: the caller sees to it that the processor has AVX-512.
-    unsafe {
-        let numbers = exchange::<0b1100>(numbers, [2, 3, 0, 1, 4, 5, 6, 7]);
-        let numbers = exchange::<0b1010>(numbers, [1, 0, 3, 2, 4, 5, 6, 7]);
-        exchange::<0b0100>(numbers, [0, 2, 1, 3, 4, 5, 6, 7])
-    }
-}
-
-/// Sorts eight numbers, largest first (Batcher's odd-even merge sort).
-#[inline(always)]
-unsafe fn sort8(numbers: __m256i) -> __m256i {
-    // SAFETY: the caller sees to it that the processor has AVX-512.
-    unsafe {
-        let numbers = exchange::<0b1010_1010>(numbers, [1, 0, 3, 2, 5, 4, 7, 6]);
-        let numbers = exchange::<0b1100_1100>(numbers, [2, 3, 0, 1, 6, 7, 4, 5]);
-        let numbers = exchange::<0b0100_0100>(numbers, [0, 2, 1, 3, 4, 6, 5, 7]);
-        let numbers = exchange::<0b1111_0000>(numbers, [4, 5, 6, 7, 0, 1, 2, 3]);
-        let numbers = exchange::<0b0011_0000>(numbers, [0, 1, 4, 5, 2, 3, 6, 7]);
-        exchange::<0b0101_0100>(numbers, [0, 2, 1, 4, 3, 6, 5, 7])
     }
 }
 
