@@ -57,7 +57,7 @@ pub(crate) const LINES: usize = 128;
 /// How many steps ahead memory is asked for.
 const AHEAD: usize = 12;
 
-/// Nodes or leaves, each with the number of the line that reaches it.
+/// Nodes, leaves or triangles, each with the number of the line that reaches it.
 #[derive(Clone, Debug, Default)]
 struct Queue {
     items: Vec<u32>,
@@ -68,15 +68,29 @@ impl Queue {
     /// Adds the items whose bits are set in the mask, to a queue with `len` of them; gives how many it has then.
     #[inline(always)]
     fn add<K: Kit>(&mut self, len: usize, items: &[u32; BOXES], mask: u32, line: u8) -> usize {
-        if self.items.len() < len + BOXES || self.lines.len() < len + BOXES {
-            self.grow();
-        }
-        let place = len..len + BOXES;
-        if let Ok(to) = (&mut self.items[place.clone()]).try_into() {
+        if let Some(to) = self.room(len, line) {
             K::compress(items, mask, to);
         }
-        self.lines[place].fill(line);
         len + mask.count_ones() as usize
+    }
+
+    /// Adds numbers from `first` on whose bits are set in the mask, to a queue with `len` items; gives how many it has then.
+    #[inline(always)]
+    fn add_numbers<K: Kit>(&mut self, len: usize, first: u32, mask: u32, line: u8) -> usize {
+        if let Some(to) = self.room(len, line) {
+            K::numbers(first, mask, to);
+        }
+        len + mask.count_ones() as usize
+    }
+
+    /// Room for `N` more items of a line.
+    #[inline(always)]
+    fn room<const N: usize>(&mut self, len: usize, line: u8) -> Option<&mut [u32; N]> {
+        if self.items.len() < len + N || self.lines.len() < len + N {
+            self.grow();
+        }
+        self.lines[len..len + N].fill(line);
+        self.items[len..].first_chunk_mut()
     }
 
     #[cold]
@@ -97,10 +111,8 @@ impl Queue {
 /// Triangles that lines may cross, and how they lie to them.
 #[derive(Clone, Debug, Default)]
 struct Candidates {
-    /// Places of the triangles in the tree.
-    triangles: Vec<u32>,
-    /// Numbers of the lines, or `NONE` if the triangle is not crossed.
-    lines: Vec<u8>,
+    /// Places of the triangles in the tree; the line is `NONE` if it turns out that it does not cross the triangle.
+    found: Queue,
     fronts: Vec<bool>,
     factors: Factors<Vec<f64>>,
     pairs: Vec<Pairs>,
@@ -110,30 +122,6 @@ struct Candidates {
 const NONE: u8 = LINES as u8;
 
 impl Candidates {
-    /// Adds the triangles of a leaf whose bits are set in the mask, to a list with `len` of them; gives how many it has then.
-    #[inline(always)]
-    fn add<K: Kit>(&mut self, len: usize, first: u32, mask: u32, line: u8) -> usize {
-        if self.triangles.len() < len + TRIANGLES || self.lines.len() < len + TRIANGLES {
-            self.grow();
-        }
-        let place = len..len + TRIANGLES;
-        if let Ok(to) = (&mut self.triangles[place.clone()]).try_into() {
-            K::numbers(first, mask, to);
-        }
-        self.lines[place].fill(line);
-        len + mask.count_ones() as usize
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn grow(&mut self) {
-        let len = (2 * self.triangles.len()).max(16 * LINES);
-        self.triangles.resize(len, 0);
-        self.lines.resize(len, 0);
-        self.fronts.resize(len, false);
-        self.factors.iter_mut().for_each(|list| list.resize(len, 0.0));
-    }
-
     /// Replaces the last three factors by the distance and the place of each crossing.
     #[inline(always)]
     fn locate(&mut self, len: usize) {
@@ -144,10 +132,22 @@ impl Candidates {
         }
     }
 
-    /// Makes room for looking ahead, and for a last vector.
+    /// Begins to bring the triangles to the caches.
     #[inline(always)]
-    fn close<K: Kit>(&mut self, len: usize) {
-        self.add::<K>(len + AHEAD + TRIANGLES, 0, 0, NONE);
+    fn prefetch<K: Kit>(&self, len: usize, tree: &Tree) {
+        self.found.items[..len].iter().for_each(|&place| tree.prefetch_triangle::<K>(place));
+    }
+
+    /// A crossing that was located.
+    #[inline(always)]
+    fn crossing(&self, i: usize, tree: &Tree) -> Crossing {
+        let [.., t, v, w] = &self.factors;
+        Crossing {
+            t: t[i],
+            point: Barycentric { v: v[i], w: w[i] },
+            side: if self.fronts[i] { Side::Front } else { Side::Back },
+            id: tree.triangles[self.found.items[i] as usize].id,
+        }
     }
 
     /// Crosses lines and triangles, eight pairs at a time.
@@ -157,15 +157,15 @@ impl Candidates {
         let blocks = len.div_ceil(TRIANGLES);
         if self.pairs.len() < blocks {
             self.pairs.resize(blocks, Pairs::NONE);
+            self.fronts.resize(blocks * TRIANGLES, false);
+            self.factors.iter_mut().for_each(|list| list.resize(blocks * TRIANGLES, 0.0));
         }
+        let Queue { items, lines: of_lines } = &mut self.found;
         for (block, pairs) in self.pairs[..blocks].iter_mut().enumerate() {
             for lane in 0..TRIANGLES.min(len - block * TRIANGLES) {
                 let i = block * TRIANGLES + lane;
-                if let Some(&ahead) = self.triangles.get(i + AHEAD) {
-                    tree.prefetch_triangle::<K>(ahead);
-                }
-                let line = &lines[usize::from(self.lines[i])].0;
-                pairs.set(lane, &tree.triangles[self.triangles[i] as usize], line);
+                let line = &lines[usize::from(of_lines[i])].0;
+                pairs.set(lane, &tree.triangles[items[i] as usize], line);
             }
         }
         for block in 0..blocks {
@@ -185,12 +185,12 @@ impl Candidates {
                 for i in start..end {
                     let lane = i - start;
                     if crossed.doubt >> lane & 1 == 1 {
-                        let triangle = &tree.triangles[self.triangles[i] as usize];
-                        let side = triangle.exact_crossing(&lines[usize::from(self.lines[i])].0);
+                        let triangle = &tree.triangles[items[i] as usize];
+                        let side = triangle.exact_crossing(&lines[usize::from(of_lines[i])].0);
                         self.fronts[i] = side == Some(Side::Front);
-                        self.lines[i] = if side.is_none() { NONE } else { self.lines[i] };
+                        of_lines[i] = if side.is_none() { NONE } else { of_lines[i] };
                     } else if met >> lane & 1 == 0 {
-                        self.lines[i] = NONE;
+                        of_lines[i] = NONE;
                     }
                 }
             }
@@ -260,7 +260,7 @@ pub(crate) struct AllScratch {
     /// Line by line, in order of distance; longer than needed.
     pub(crate) hits: Vec<Hit>,
     /// Whether hits of a line are close together, so that it is not for their distance to order them.
-    pub(crate) close: [bool; LINES + 1],
+    pub(crate) close: [bool; LINES],
 }
 
 impl Default for AllScratch {
@@ -274,7 +274,7 @@ impl Default for AllScratch {
             places: Vec::new(),
             starts: [0; LINES + 3],
             hits: Vec::new(),
-            close: [false; LINES + 1],
+            close: [false; LINES],
         }
     }
 }
@@ -320,9 +320,9 @@ pub(crate) fn all<K: Kit>(grid: &Grid, tree: &Tree, lines: &[Line], scratch: &mu
         tree.prefetch::<K>(leaves.ahead(i));
         let (number, line) = ((leaves.items[i] & !LEAF) as usize, leaves.lines[i]);
         let mask = tree.leaves[number].candidates::<K>(&traced[usize::from(line)].1, None);
-        count = candidates.add::<K>(count, tree.firsts[number], mask, line);
+        count = candidates.found.add_numbers::<K>(count, tree.firsts[number], mask, line);
     }
-    candidates.close::<K>(count);
+    candidates.prefetch::<K>(count, tree);
     candidates.cross::<K>(count, tree, traced);
     arrange::<K>(grid, tree, count, scratch);
 }
@@ -334,7 +334,7 @@ fn arrange<K: Kit>(grid: &Grid, tree: &Tree, count: usize, scratch: &mut AllScra
     // By line, by counting: while hits are added, each start moves to where the next line starts. What is not crossed is put
     // behind all lines.
     starts.fill(0);
-    candidates.lines[..count].iter().for_each(|&line| starts[usize::from(line) + 2] += 1);
+    candidates.found.lines[..count].iter().for_each(|&line| starts[usize::from(line) + 2] += 1);
     for line in 2..starts.len() {
         starts[line] += starts[line - 1];
     }
@@ -347,9 +347,9 @@ fn arrange<K: Kit>(grid: &Grid, tree: &Tree, count: usize, scratch: &mut AllScra
         distances.resize(count + TRIANGLES, 0.0);
     }
     candidates.locate(count);
-    let Candidates { triangles, lines: of_lines, fronts, factors: [.., t, v, w], .. } = candidates;
-    let (triangles, of_lines, fronts) = (&triangles[..count], &of_lines[..count], &fronts[..count]);
-    let (t, v, w) = (&t[..count], &v[..count], &w[..count]);
+    let candidates = &*candidates;
+    let of_lines = &candidates.found.lines[..count];
+    let t = &candidates.factors[3][..count];
     let places = &mut places[..count];
     for i in 0..count {
         let next = &mut starts[usize::from(of_lines[i]) + 1];
@@ -359,6 +359,7 @@ fn arrange<K: Kit>(grid: &Grid, tree: &Tree, count: usize, scratch: &mut AllScra
     }
     for i in 0..count {
         let line = usize::from(of_lines[i]);
+        let Some((grid_line, _)) = lines.get(line) else { continue };
         let (start, end, place) = (starts[line] as usize, starts[line + 1] as usize, places[i] as usize);
         let mine = K::Crossings::splat(t[i]);
         let (mut rank, mut first, mut near) = (0, start, 0);
@@ -375,12 +376,7 @@ fn arrange<K: Kit>(grid: &Grid, tree: &Tree, count: usize, scratch: &mut AllScra
             first += TRIANGLES;
         }
         close[line] |= near != 0;
-        hits[start + rank] = Hit {
-            t: grid.length(t[i] + lines.get(line).map_or(0.0, |line| line.0.start)),
-            triangle: tree.triangles[triangles[i] as usize].id,
-            point: Barycentric { v: v[i], w: w[i] },
-            side: if fronts[i] { Side::Front } else { Side::Back },
-        };
+        hits[start + rank] = candidates.crossing(i, tree).hit(grid, grid_line);
     }
 }
 
@@ -521,12 +517,9 @@ pub(crate) fn closest<K: Kit, R: Rays>(tree: &Tree, scratch: &mut ClosestScratch
                 let first = tree.firsts[leaf];
                 let left = (1u64 << leaving.wrapping_sub(first).min(63)) as u32;
                 let mask = tree.leaves[leaf].candidates::<K>(&lines[i].1, Some(*span)) & !left;
-                count = candidates.add::<K>(count, first, mask, number);
+                count = candidates.found.add_numbers::<K>(count, first, mask, number);
             }
-            candidates.close::<K>(count);
-            for &place in &candidates.triangles[..count] {
-                tree.prefetch_triangle::<K>(place);
-            }
+            candidates.prefetch::<K>(count, tree);
             count
         });
         for number in ended.iter() {
@@ -543,17 +536,11 @@ pub(crate) fn closest<K: Kit, R: Rays>(tree: &Tree, scratch: &mut ClosestScratch
         K::apart(|| candidates.cross::<K>(count, tree, lines));
         candidates.locate(count);
         for k in 0..count {
-            let number = candidates.lines[k];
+            let number = candidates.found.lines[k];
             if number != NONE {
                 let i = usize::from(number);
                 let Flight { span, ray, waiting, .. } = &mut flights[i];
-                let [.., t, v, w] = &candidates.factors;
-                let crossing = Crossing {
-                    t: t[k],
-                    point: Barycentric { v: v[k], w: w[k] },
-                    side: if candidates.fronts[k] { Side::Front } else { Side::Back },
-                    id: tree.triangles[candidates.triangles[k] as usize].id,
-                };
+                let crossing = candidates.crossing(k, tree);
                 let to = rays.cross(ray, &lines[i].0, crossing);
                 if to < span.to {
                     span.to = to;

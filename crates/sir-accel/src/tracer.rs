@@ -5,7 +5,7 @@ use std::ops::Range;
 use sir_geom::{Line, Side, TriangleId};
 
 use crate::Accel;
-use crate::grid::{Grid, GridLine, RADIUS};
+use crate::grid::{GridLine, RADIUS};
 use crate::hit::{self, Hit};
 use crate::kits::Kits;
 use crate::leaf::Span;
@@ -78,7 +78,7 @@ impl<'a> Tracer<'a> {
     fn all_hits_together(&mut self, lines: &[Line]) {
         let Self { accel: Accel { grid, tree }, kits, all, .. } = self;
         kits.all(grid, tree, lines, all);
-        for (line, _) in all.close.iter().take(lines.len()).enumerate().filter(|(_, close)| **close) {
+        for (line, _) in all.close.iter().enumerate().filter(|(_, close)| **close) {
             let hits = &mut all.hits[all.starts[line] as usize..all.starts[line + 1] as usize];
             sort_contacts(hits, grid.length(hit::CONTACT * RADIUS), tree);
         }
@@ -103,11 +103,6 @@ impl<'a> LineHits<'a> {
     pub fn lines(&self) -> impl ExactSizeIterator<Item = Range<usize>> + use<'a> {
         self.starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
     }
-}
-
-fn hit_of(crossing: &Crossing, grid: &Grid, line: &GridLine) -> Hit {
-    let Crossing { t, point, side, id } = *crossing;
-    Hit { t: grid.length(t + line.start), triangle: id, point, side }
 }
 
 /// A search for closest hits.
@@ -194,7 +189,7 @@ impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
     fn done(&mut self, ray: Traced, line: &GridLine) {
         let hit = match ray.best {
             Some(best) if ray.close => Some(self.first_of_close(ray.index, best, line)),
-            best => best.map(|crossing| hit_of(&crossing, &self.accel.grid, line)),
+            best => best.map(|crossing| crossing.hit(&self.accel.grid, line)),
         };
         (self.visit)(ray.index, hit);
     }
@@ -213,13 +208,13 @@ impl<F> ClosestHits<'_, F> {
     #[cold]
     fn first_of_close(&mut self, index: usize, best: Crossing, line: &GridLine) -> Hit {
         let Accel { grid, tree } = self.accel;
-        let mut hits = vec![hit_of(&best, grid, line)];
+        let mut hits = vec![best.hit(grid, line)];
         self.close.retain(|(of_ray, crossing)| {
             if *of_ray == index
                 && crossing.t <= best.t + SLACK
                 && hits.iter().all(|hit| hit.triangle != crossing.id)
             {
-                hits.push(hit_of(crossing, grid, line));
+                hits.push(crossing.hit(grid, line));
             }
             *of_ray != index
         });

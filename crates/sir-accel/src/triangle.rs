@@ -3,7 +3,8 @@
 use glam::DVec3;
 use sir_geom::{Barycentric, Side, TriangleId};
 
-use crate::grid::{GridLine, RADIUS};
+use crate::grid::{Grid, GridLine, RADIUS};
+use crate::hit::Hit;
 use crate::lanes::Doubles;
 
 /// A triangle on the grid.
@@ -91,6 +92,13 @@ impl<D: Doubles> Crossed<D> {
 }
 
 impl Crossing {
+    /// The crossing as a hit in the scene.
+    #[inline(always)]
+    pub(crate) fn hit(&self, grid: &Grid, line: &GridLine) -> Hit {
+        let Self { t, point, side, id } = *self;
+        Hit { t: grid.length(t + line.start), triangle: id, point, side }
+    }
+
     /// Distance and place of a crossing.
     ///
     /// Weights are clamped so that a crossing is a point of the triangle whatever rounding does: this keeps the distance
