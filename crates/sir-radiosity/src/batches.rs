@@ -3,7 +3,7 @@
 //! While the lines of a batch are traced, what each side sends with a line is fixed, and what they bring is only added up;
 //! the next batch sends it on. So the lines of a batch may be traced in any order and by any number of workers, and the
 //! result does not depend on it. It is stochastic iteration (Szirmay-Kalos 1999, *Stochastic iteration for
-//! non-diffuse global illumination*) along global lines, with three refinements:
+//! non-diffuse global illumination*) along global lines, with four refinements:
 //!
 //! * *Nothing is lost.* A side that holds the power `U` and expects `n` lines of a batch sends `U/q` with each, and what
 //!   `c` lines did not take, `U − cU/q`, stays for the next batch. Among all `q`, `n + 1` leaves the smallest mean square:
@@ -12,6 +12,11 @@
 //!   sent too much.
 //! * *Lines go where the power is.* The sources are sent out in `K` equal parts with the first `K` batches, and the number
 //!   of lines of a batch is about in proportion to the power that it sends. The batches after those are the *tail*.
+//! * *Lines are counted.* A side is crossed more or less often than it should be. Of the `C` lines that crossed it, each is
+//!   as good as any other, so at the end the power that they brought is multiplied by the number of lines expected, `λ`, over `C`: a
+//!   ratio estimator. Given `C`, which is Poisson, it is exact on average if `λ` is divided by `1 − exp(−λ)`, for the sides
+//!   that no line crossed. What is left of the noise is that lines bring different amounts, and nothing where all bring the
+//!   same. A factor for all sides, almost one, lets them receive in all what was sent.
 //! * *The tail is stretched.* What is still unshot at the end would be received much as was the power sent after the sources
 //!   had ceased. Let there have been `L₀` unshot at that time and `L` at the end: then the power received since is
 //!   multiplied by `1 + L/(L₀ − L)`, so that all power is accounted for.
@@ -23,9 +28,9 @@ use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global;
-use crate::ledger::{Counters, Ledger, SquareUnit, visit_floats, visit_quanta};
+use crate::ledger::{Counters, Ledger, SquareUnit};
 use crate::segments::End;
-use crate::state::{visit_counts, visit_float};
+use crate::state::{from_word, to_word, visit_counts, visit_float, visit_slice};
 use crate::{
     Balance, Books, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Transported, Visitor,
 };
@@ -67,14 +72,24 @@ pub struct Batches<'m> {
     streams: Streams,
     /// What the lines of this batch bring, and the share of its power that each side sends with a line.
     ledger: Ledger,
-    /// Power received before this batch.
-    received: Received,
-    /// Power that sides hold.
-    unshot: Vec<Quanta>,
-    /// While the sources are sent out, the reflected direct power; afterwards, the power received before.
-    noted: Vec<[f32; 3]>,
+    /// The direct light.
+    direct: Received,
+    accounts: Vec<Account>,
     unit: PowerUnit,
     plan: Plan,
+}
+
+/// What is noted of a side.
+#[derive(Clone, Copy, Debug, Default)]
+struct Account {
+    /// Power that it holds.
+    unshot: Quanta,
+    /// Power that lines have brought.
+    brought: Quanta,
+    /// As `brought`, when the sources had ceased.
+    ceased: [f32; 3],
+    /// Lines that have crossed it.
+    crossings: u64,
 }
 
 /// What is known of all batches so far, and follows for the next one.
@@ -126,9 +141,8 @@ pub struct Part<'a> {
     ledger: &'a Ledger,
     plan: Plan,
     first: u32,
-    power: &'a mut [Quanta],
-    unshot: &'a mut [Quanta],
-    noted: &'a mut [[f32; 3]],
+    direct: &'a [Quanta],
+    accounts: &'a mut [Account],
 }
 
 impl<'m> Batches<'m> {
@@ -136,18 +150,17 @@ impl<'m> Batches<'m> {
     /// workers: how many there are has no effect on the result, but on the time.
     #[must_use]
     pub fn new(model: &'m Model, shot: Shot, lines: u64, domain: Domain, seed: u64, workers: usize) -> Self {
-        let Shot { received, unit, balance, .. } = shot;
+        let Shot { received: direct, unit, balance, .. } = shot;
         let sides = model.mesh.side_count();
-        let (mut unshot, mut noted) = (Vec::with_capacity(sides), Vec::with_capacity(sides));
+        let mut accounts = Vec::with_capacity(sides);
         let mut source = Quanta::ZERO;
         let forecast = domain.forecast(lines);
         let (mut area, mut square, mut most, mut brightest) = (0.0, 0.0, 0.0, [0.0; 3]);
         model.mesh.for_each_side(|triangle, _, _, side| {
             let reflectance = model.scene.material(triangle).reflectance;
-            let reflected = received.power[side.index()].scaled(reflectance);
+            let reflected = direct.power[side.index()].scaled(reflectance);
             source += reflected;
-            unshot.push(reflected);
-            noted.push(reflected.0.map(|q| q as f32));
+            accounts.push(Account { unshot: reflected, ..Account::default() });
             let a = model.mesh.patch_area(triangle);
             (area, square) = (area + a, square + a * a);
             let crossings = forecast.crossings(a);
@@ -175,7 +188,7 @@ impl<'m> Batches<'m> {
         };
         let plan = Plan { batch: [0, plan.next_lines()], ..plan };
         let streams = Streams::new(seed, Stage::GLOBAL);
-        Self { model, domain, streams, ledger, received, unshot, noted, unit, plan }
+        Self { model, domain, streams, ledger, direct, accounts, unit, plan }
     }
 
     /// The lines of the current batch. Each of them is traced once, by whomever, when all parts have been
@@ -212,14 +225,12 @@ impl<'m> Batches<'m> {
 
     /// Cuts the sides into at most `count` parts.
     pub fn parts(&mut self, count: usize) -> impl Iterator<Item = Part<'_>> {
-        let Self {
-            model, ref domain, ref ledger, ref mut received, ref mut unshot, ref mut noted, plan, ..
-        } = *self;
-        let size = unshot.len().div_ceil(count.max(1)).max(1);
-        let slices = received.power.chunks_mut(size).zip(unshot.chunks_mut(size)).zip(noted.chunks_mut(size));
-        slices.enumerate().map(move |(i, ((power, unshot), noted))| {
+        let Self { model, ref domain, ref ledger, ref direct, ref mut accounts, plan, .. } = *self;
+        let size = accounts.len().div_ceil(count.max(1)).max(1);
+        let slices = direct.power.chunks(size).zip(accounts.chunks_mut(size));
+        slices.enumerate().map(move |(i, (direct, accounts))| {
             let first = (i * size) as u32;
-            Part { model, domain, ledger, plan, first, power, unshot, noted }
+            Part { model, domain, ledger, plan, first, direct, accounts }
         })
     }
 
@@ -259,9 +270,8 @@ impl<'m> Batches<'m> {
         self.ledger.visit_unit(visitor);
         self.ledger.visit(Counters::All, visitor);
         self.ledger.visit_shares(visitor);
-        self.received.visit(visitor);
-        visit_quanta(&mut self.unshot, visitor);
-        visit_floats(&mut self.noted, visitor);
+        self.direct.visit(visitor);
+        Account::visit(&mut self.accounts, visitor);
     }
 
     /// Closes the books when there is no further batch; `books` are those of all workers.
@@ -270,35 +280,89 @@ impl<'m> Batches<'m> {
     ///
     /// If a tally overflowed.
     pub fn finish(self, books: Books) -> Result<Transported, SolveError> {
-        let Self { model, mut received, ledger, noted, unit, plan, .. } = self;
+        let Self { model, domain, direct: mut received, ledger, accounts, unit, plan, .. } = self;
         let Books { balance: Balance { blocked, escaped, .. }, counts } = books;
         let Totals { unshot, absorbed, .. } = plan.totals;
         let balance = Balance { emitted: plan.source, absorbed, blocked, escaped, unshot };
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "multipath" });
         }
-        ledger.add_variance_to(&mut received);
-        drop(ledger);
-        let stretch = plan.stretch();
+        let (forecast, stretch) = (domain.forecast(plan.lines), plan.stretch());
+        let factor =
+            |account: &Account, triangle| account.factor(forecast.crossings(model.mesh.patch_area(triangle)));
+        let (mut plain, mut corrected) = ([0.0; 3], [0.0; 3]);
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let account = &accounts[side.index()];
+            let factor = factor(account, triangle);
+            for band in 0..3 {
+                let [_, _, power] = account.stretched(band, stretch[band]);
+                plain[band] += power;
+                corrected[band] += factor * power;
+            }
+        });
+        let scale = |band| if corrected[band] > 0.0 { plain[band] / corrected[band] } else { 1.0 };
         let mut made_up = Quanta::ZERO;
         let Received { power, variance } = &mut received;
-        for ((power, variance), noted) in power.iter_mut().zip(variance).zip(&noted) {
-            let mut more = Quanta::ZERO;
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let (account, squares) = (&accounts[side.index()], ledger.squares(side));
+            let factor = factor(account, triangle);
+            let (power, variance) = (&mut power[side.index()], &mut variance[side.index()]);
+            let mut sum = Quanta::ZERO;
             for band in 0..3 {
-                let all = power.0[band] as f64;
-                let tail = all - f64::from(noted[band]);
-                more.0[band] = (tail * stretch[band]).round() as i64;
-                // Lines bring about the same at all times, so the variance of the tail is in proportion to its power.
-                let share = if all > 0.0 { (tail / all).clamp(0.0, 1.0) } else { 0.0 };
-                let stretched = (1.0 + stretch[band]) * (1.0 + stretch[band]);
-                variance[band] = (f64::from(variance[band]) * (1.0 - share + share * stretched)) as f32;
+                let [brought, tail, stretched] = account.stretched(band, stretch[band]);
+                let factor = factor * scale(band);
+                sum.0[band] = (factor * stretched).round() as i64;
+                // Lines bring about the same at all times, so the squares of the tail are in proportion to its power.
+                let share = if brought > 0.0 { (tail / brought).clamp(0.0, 1.0) } else { 0.0 };
+                let longer = 1.0 - share + share * (1.0 + stretch[band]) * (1.0 + stretch[band]);
+                let more = factor * factor * account.variance(stretched, longer * squares[band]);
+                variance[band] = (f64::from(variance[band]) + more) as f32;
             }
-            *power += more;
-            made_up += more;
-        }
-        drop(noted);
+            *power += sum;
+            made_up += sum - account.brought;
+        });
         let solution = Solution::new(model, &received, unit);
         Ok(Transported { solution, received, unit, balance, counts, made_up })
+    }
+}
+
+impl Account {
+    /// What is to be multiplied with the power that lines have brought, for the number of lines expected.
+    fn factor(&self, expected: f64) -> f64 {
+        if self.crossings == 0 { 1.0 } else { expected / -(-expected).exp_m1() / self.crossings as f64 }
+    }
+
+    /// The power that lines have brought, the part of it in the tail, and all with the tail stretched.
+    fn stretched(&self, band: usize, stretch: f64) -> [f64; 3] {
+        let brought = self.brought.0[band] as f64;
+        let tail = brought - f64::from(self.ceased[band]);
+        [brought, tail, brought + tail * stretch]
+    }
+
+    /// Variance of the power that lines have brought, given their number: in all `sum`, with the sum of `squares`.
+    fn variance(&self, sum: f64, squares: f64) -> f64 {
+        let lines = self.crossings as f64;
+        if lines < 2.0 { squares } else { (squares - sum * sum / lines).max(0.0) * lines / (lines - 1.0) }
+    }
+
+    /// Shows the accounts of all sides to a visitor.
+    fn visit(accounts: &mut [Self], visitor: &mut dyn Visitor) {
+        visit_slice(
+            accounts,
+            visitor,
+            |account| {
+                let Self { unshot: Quanta([a, b, c]), brought: Quanta([d, e, f]), ceased, crossings } =
+                    *account;
+                let [g, h, i] = ceased.map(to_word);
+                [a, b, c, d, e, f, g, h, i, crossings as i64]
+            },
+            |[a, b, c, d, e, f, g, h, i, crossings]| Self {
+                unshot: Quanta([a, b, c]),
+                brought: Quanta([d, e, f]),
+                ceased: [g, h, i].map(from_word),
+                crossings: crossings as u64,
+            },
+        );
     }
 }
 
@@ -364,15 +428,17 @@ impl<'a> Part<'a> {
         let withheld = self.plan.withheld();
         let ceased = self.plan.number == self.plan.parts;
         for (triangle, sides) in self.sides() {
+            let reflectance = self.model.scene.material(triangle).reflectance;
             let expected = forecast.crossings(self.model.mesh.patch_area(triangle));
             let lines = expected + 1.0 + expected.sqrt() * expected.min(1.0);
             for i in sides {
                 let k = (i - self.first) as usize;
+                let account = &mut self.accounts[k];
                 if ceased {
-                    self.noted[k] = self.power[k].0.map(|q| q as f32);
+                    account.ceased = account.brought.0.map(|q| q as f32);
                 }
-                let kept = |band: usize| withheld * f64::from(self.noted[k][band]);
-                let share = |band: usize| (self.unshot[k].0[band] as f64 - kept(band)) / lines;
+                let kept = |band: usize| withheld * reflectance[band] * self.direct[k].0[band] as f64;
+                let share = |band: usize| (account.unshot.0[band] as f64 - kept(band)) / lines;
                 self.ledger.set_share(SideId(i), [0, 1, 2].map(share));
             }
         }
@@ -384,13 +450,15 @@ impl<'a> Part<'a> {
         for (triangle, sides) in self.sides() {
             let reflectance = self.model.scene.material(triangle).reflectance;
             for i in sides {
-                let (side, k) = (SideId(i), (i - self.first) as usize);
+                let side = SideId(i);
                 let (power, crossings) = self.ledger.take(side);
                 let sent = self.ledger.share(side).times(i64::from(crossings));
                 let reflected = power.scaled(reflectance);
-                self.power[k] += power;
-                self.unshot[k] += reflected - sent;
-                totals.unshot += self.unshot[k];
+                let account = &mut self.accounts[(i - self.first) as usize];
+                account.brought += power;
+                account.unshot += reflected - sent;
+                account.crossings += u64::from(crossings);
+                totals.unshot += account.unshot;
                 totals.sent += sent;
                 totals.reflected += reflected;
                 totals.absorbed += power - reflected;
@@ -401,7 +469,7 @@ impl<'a> Part<'a> {
 
     /// The sides of this part: triangles, and consecutive sides of each.
     fn sides(&self) -> impl Iterator<Item = (TriangleId, Range<u32>)> + use<'a> {
-        self.model.mesh.sides_within(self.first..self.first + self.unshot.len() as u32)
+        self.model.mesh.sides_within(self.first..self.first + self.accounts.len() as u32)
     }
 }
 

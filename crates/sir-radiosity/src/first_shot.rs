@@ -178,7 +178,7 @@ impl<'m> FirstShot<'m> {
             balance.absorbed += power - reflected;
             received.power[side.index()] = power;
             // The number of lines is given, so the variance of a sum is binomial: Σw² − (Σw)²/N.
-            let squares = tally.ledger.variance(side);
+            let squares = tally.ledger.squares(side);
             received.variance[side.index()] = std::array::from_fn(|k| {
                 let power = power.0[k] as f64;
                 (squares[k] - power * power / lines).max(0.0) as f32

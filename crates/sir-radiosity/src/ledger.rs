@@ -115,28 +115,22 @@ impl Ledger {
         (power, crossings)
     }
 
-    /// Variance of the power received by a side \[quanta²\]: the sum of the squares of what each line brought (compound
-    /// Poisson).
-    pub(crate) fn variance(&self, side: SideId) -> [f64; 3] {
+    /// Sum of the squares of what each line brought to a side \[quanta²\]: the variance of the sum, if the number of lines
+    /// is that of a Poisson distribution.
+    pub(crate) fn squares(&self, side: SideId) -> [f64; 3] {
         std::array::from_fn(|band| {
             let squares: i64 = self.of(side.index()).map(|record| record.squares[band].load(Relaxed)).sum();
             squares as f64 * self.unit.size[band]
         })
     }
 
-    /// Adds the variances to those of what was received before.
-    pub(crate) fn add_variance_to(&self, received: &mut Received) {
-        for (i, sum) in received.variance.iter_mut().enumerate() {
-            let more = self.variance(SideId::new(i));
-            *sum = std::array::from_fn(|band| (f64::from(sum[band]) + more[band]) as f32);
-        }
-    }
-
-    /// Adds the power, and the variances, to what was received before.
+    /// Adds the power, and its variance, to what was received before.
     pub(crate) fn add_to(&self, received: &mut Received) {
-        self.add_variance_to(received);
-        for (i, sum) in received.power.iter_mut().enumerate() {
-            *sum += self.power(SideId::new(i));
+        for (i, (power, variance)) in received.power.iter_mut().zip(&mut received.variance).enumerate() {
+            let side = SideId::new(i);
+            let more = self.squares(side);
+            *power += self.power(side);
+            *variance = std::array::from_fn(|band| (f64::from(variance[band]) + more[band]) as f32);
         }
     }
 
@@ -326,27 +320,5 @@ impl SquareUnit {
         visitor.same(&mut words);
         let [r, g, b, most] = words.map(|w| f64::from_bits(w as u64));
         *self = Self::of([r, g, b], most);
-    }
-}
-
-/// Shows a slice of power to a visitor: numbers that all workers have alike.
-pub(crate) fn visit_quanta(quanta: &mut [Quanta], visitor: &mut dyn Visitor) {
-    let mut words = Vec::new();
-    for chunk in quanta.chunks_mut(CHUNK) {
-        words.clear();
-        words.extend(chunk.iter().flat_map(|q| q.0));
-        visitor.same(&mut words);
-        chunk.iter_mut().flat_map(|q| &mut q.0).zip(&words).for_each(|(q, w)| *q = *w);
-    }
-}
-
-/// As [`visit_quanta`], for numbers in single precision.
-pub(crate) fn visit_floats(floats: &mut [[f32; 3]], visitor: &mut dyn Visitor) {
-    let mut words = Vec::new();
-    for chunk in floats.chunks_mut(CHUNK) {
-        words.clear();
-        words.extend(chunk.iter().flatten().map(|f| i64::from(f.to_bits())));
-        visitor.same(&mut words);
-        chunk.iter_mut().flatten().zip(&words).for_each(|(f, w)| *f = f32::from_bits(*w as u32));
     }
 }

@@ -20,8 +20,9 @@ use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global;
-use crate::ledger::{Counters, Ledger, Page, SquareUnit, visit_quanta};
+use crate::ledger::{Counters, Ledger, Page, SquareUnit};
 use crate::segments::{End, Segment};
+use crate::state::visit_quanta;
 use crate::{
     Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Visitor,
 };

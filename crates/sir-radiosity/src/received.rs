@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::ledger::{visit_floats, visit_quanta};
+use crate::state::{visit_floats, visit_quanta};
 use crate::{Quanta, Visitor};
 
 /// Power received per side, with its variance.
@@ -12,8 +12,8 @@ pub struct Received {
     pub power: Vec<Quanta>,
     /// Estimated variance of `power` per band \[quanta²\], indexed by [`SideId`](sir_mesh::SideId).
     ///
-    /// If lines bring the amounts `w` independently, the variance of their sum is about `Σw²` (compound Poisson): that
-    /// is where the standard errors of a single run come from.
+    /// If lines bring the amounts `w` independently, the variance of their sum is about `Σw²` (compound Poisson), less where the
+    /// number of lines is corrected: that is where the standard errors of a single run come from.
     pub variance: Vec<[f32; 3]>,
 }
 

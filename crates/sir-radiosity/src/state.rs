@@ -1,5 +1,7 @@
 //! The state of a stage as a sequence of numbers.
 
+use crate::Quanta;
+
 /// Goes through the state of a stage.
 ///
 /// A stage shows all the numbers that it needs to go on, always in the same order and number. What the visitor makes of
@@ -27,4 +29,45 @@ pub(crate) fn visit_float(float: &mut f64, visitor: &mut dyn Visitor) {
     let mut word = [float.to_bits() as i64];
     visitor.same(&mut word);
     *float = f64::from_bits(word[0] as u64);
+}
+
+/// How many elements of a slice are shown at a time.
+const CHUNK: usize = 1 << 14;
+
+/// Shows a slice that all workers have alike to a visitor, each element as some numbers.
+pub(crate) fn visit_slice<T, const N: usize>(
+    slice: &mut [T],
+    visitor: &mut dyn Visitor,
+    to_words: impl Fn(&T) -> [i64; N],
+    from_words: impl Fn([i64; N]) -> T,
+) {
+    let mut words = Vec::new();
+    for chunk in slice.chunks_mut(CHUNK) {
+        words.clear();
+        words.extend(chunk.iter().flat_map(&to_words));
+        visitor.same(&mut words);
+        for (element, words) in chunk.iter_mut().zip(words.as_chunks().0) {
+            *element = from_words(*words);
+        }
+    }
+}
+
+/// Shows power that all workers have alike to a visitor.
+pub(crate) fn visit_quanta(quanta: &mut [Quanta], visitor: &mut dyn Visitor) {
+    visit_slice(quanta, visitor, |quanta| quanta.0, Quanta);
+}
+
+/// As [`visit_quanta`], for numbers in single precision.
+pub(crate) fn visit_floats(floats: &mut [[f32; 3]], visitor: &mut dyn Visitor) {
+    visit_slice(floats, visitor, |floats| floats.map(to_word), |words| words.map(from_word));
+}
+
+/// A number in single precision as a whole one.
+pub(crate) fn to_word(float: f32) -> i64 {
+    i64::from(float.to_bits())
+}
+
+/// The number that [`to_word`] has made whole.
+pub(crate) fn from_word(word: i64) -> f32 {
+    f32::from_bits(word as u32)
 }

@@ -50,7 +50,7 @@ fn all_lines_are_traced_once() {
     }
 }
 
-/// Of what a side receives it absorbs what it does not reflect, to within a rounding each time.
+/// Of what a side receives it absorbs what it does not reflect, to within a rounding each time, and what is done when books are closed.
 #[test]
 fn what_is_received_is_absorbed_or_reflected() {
     for job in JOBS {
@@ -68,11 +68,19 @@ fn what_is_received_is_absorbed_or_reflected() {
         });
         for (band, absorbed) in absorbed.into_iter().enumerate() {
             let difference = absorbed - balance.absorbed.0[band] as f64;
-            // The tail of batches is stretched when the books are closed.
+            // When the books of batches are closed, the tail is stretched, and numbers of lines are corrected: surfaces that
+            // absorb more may then have received a little more.
             let made_up = made_up.0[band] as f64;
-            let rounding = 4.0 * counts.crossings as f64;
-            assert!(difference >= made_up.min(0.0) - rounding, "{job:?}: {difference}, {made_up}");
-            assert!(difference <= made_up.max(0.0) + rounding, "{job:?}: {difference}, {made_up}");
+            let corrected = if matches!(job, Job::Batches) { 1e-2 * absorbed } else { 0.0 };
+            let rounding = 4.0 * counts.crossings as f64 + corrected;
+            assert!(
+                difference >= made_up.min(0.0) - rounding,
+                "{job:?}: {difference}, {made_up}, {absorbed}"
+            );
+            assert!(
+                difference <= made_up.max(0.0) + rounding,
+                "{job:?}: {difference}, {made_up}, {absorbed}"
+            );
         }
     }
 }
