@@ -4,7 +4,7 @@
 //! ```text
 //! cargo bench --bench lines                        # all scenes that are there
 //! cargo bench --bench lines -- soda --rounds 3     # one of them
-//! cargo bench --bench lines -- patches growth build
+//! cargo bench --bench lines -- patches growth experiment
 //! ```
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark that fails, fails like a test")]
@@ -79,6 +79,9 @@ fn main() {
     }
     if options.wants("growth") {
         growth(embree.as_ref(), &options);
+    }
+    if options.wants("experiment") {
+        experiment(embree.as_ref(), &options);
     }
 }
 
@@ -288,6 +291,74 @@ fn patches(options: &Options) {
             rate(many_times[1]),
             many_times[1] / few_times[1]
         );
+    }
+}
+
+/// The paper's experiment: all that a run does after loading, on one thread, beside what Embree takes to trace the same
+/// lines. There are 1.3 global lines for each of the first shot.
+fn experiment(embree: Option<&Embree>, options: &Options) {
+    println!("\nThe paper's experiment, seconds: all of a run, and the tracing alone by Embree");
+    println!(
+        "{:<16} {:>10} {:>10} {:>7} {:>10} {:>10} {:>7} {:>6}",
+        "scene", "first shot", "Embree", "ratio", "multipath", "Embree", "ratio", "all"
+    );
+    for (name, patches) in [("museum-stairs", 614_778), ("airplane-cabin", 438_518)] {
+        let Some(scene) = scenes::ALL.iter().find(|s| s.0 == name).and_then(|s| s.1()) else { continue };
+        let model = Model::new(scene, Subdivision::Patches(patches)).unwrap();
+        let (local, global) = (options.lines, options.lines * 13 / 10);
+        let domain = Domain::hull(&model.scene);
+        let shoot = || {
+            let stage = FirstShot::new(&model, local, 1).unwrap();
+            let (tally, mut books) = (stage.tally(1), Books::default());
+            stage.trace(0, 0..local, &tally, &mut books);
+            stage.finish(tally, books).unwrap()
+        };
+        let shot = shoot();
+        let transport = || {
+            let mut stage = Batches::new(&model, shot.clone(), global, domain.clone(), 1, 1);
+            let mut books = Books::default();
+            loop {
+                stage.parts(1).for_each(|mut part| part.open());
+                stage.trace(0, stage.lines(), &mut books);
+                let totals = stage.parts(1).map(|mut part| part.close()).next().unwrap();
+                if !stage.advance(totals) {
+                    break;
+                }
+            }
+            drop(stage.finish(books).unwrap());
+        };
+        let (mut sum, mut hits) = (0, 0);
+        let peers = embree.map(|e| {
+            let (stage, streams) =
+                (FirstShot::new(&model, local, 1).unwrap(), Streams::new(1, Stage::GLOBAL));
+            let rays: Vec<_> = (0..local).map(|i| RayHit::new(&stage.ray(i).line, 1e-5)).collect();
+            let lines = (0..global).map(|i| RayHit::new(&domain.sample(&mut streams.line(i)), 0.0));
+            let lines: Vec<_> = lines.collect();
+            let [closest, all] = [(Quality::High, false), (Quality::Medium, true)]
+                .map(|(quality, all)| e.scene(&model.scene, quality, all));
+            (rays, lines, closest, all)
+        });
+        let times = match &peers {
+            None => by_turns(options.rounds, &mut [&mut || drop(shoot()), &mut || transport()]),
+            Some((rays, lines, closest, all)) => by_turns(
+                options.rounds,
+                &mut [
+                    &mut || drop(shoot()),
+                    &mut || transport(),
+                    &mut || closest.closest(rays, |triangle| sum += triangle.unwrap_or(0)),
+                    &mut || all.all_hits(lines, |found| hits += found.len()),
+                ],
+            ),
+        };
+        print!("{name:<16}");
+        for i in 0..2 {
+            let peer = times.get(i + 2).copied().unwrap_or(f64::NAN);
+            print!(" {:>10.2} {peer:>10.2} {:>7.2}", times[i], peer / times[i]);
+        }
+        let all = |i: usize| {
+            times.get(i).copied().unwrap_or(f64::NAN) + times.get(i + 1).copied().unwrap_or(f64::NAN)
+        };
+        println!(" {:>6.2}", all(2) / all(0));
     }
 }
 

@@ -9,15 +9,19 @@ use sir::geom::{LoadOptions, Material, Rgb, Scene, SceneBuilder, load, shapes};
 type Source = fn() -> Option<Scene>;
 
 /// Scenes by name. Those of others are absent where their files are.
-pub(crate) const ALL: [(&str, Source); 4] = [
-    ("reading-room", reading_room),
+pub(crate) const ALL: [(&str, Source); 6] = [
+    ("reading-room", || own("reading-room")),
+    ("museum-stairs", || own("museum-stairs")),
+    ("airplane-cabin", || own("airplane-cabin")),
     ("soda", || third_party("mgf-soda/soda.obj")),
     ("staircase", || third_party("staircase/staircase.obj")),
     ("living-room-2", || third_party("living-room-2/living-room-2.obj")),
 ];
 
-fn reading_room() -> Option<Scene> {
-    Some(sir::scenes::reading_room().unwrap().scene)
+/// One of the project's scenes.
+fn own(name: &str) -> Option<Scene> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).join(format!("{name}.glb"));
+    Some(load(&path, &LoadOptions::default()).unwrap().scene)
 }
 
 /// A scene from where `SIR_TEST_DATA` says, or from a folder `shared` beside the repository.
