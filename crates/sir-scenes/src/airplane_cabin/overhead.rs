@@ -47,7 +47,7 @@ pub(super) fn overhead(palette: &Palette, random: &mut Random) -> Model {
 
 fn unit(palette: &Palette, random: &mut Random) -> Model {
     let mut m = Model::default();
-    m.pillow(&BIN, [0.006, UNIT - 0.006], Ends { radius: 0.012, pieces: 1, cell: 0.53 }, |k| {
+    m.pillow(&BIN, [0.006, UNIT - 0.006], Ends { radius: 0.012, pieces: 1, cell: 0.53, cut: 0.0 }, |k| {
         if k.is_some_and(|k| (10..13).contains(&k)) { palette.trim } else { palette.bin }
     });
     // The latch, on the steep part of the front.

@@ -109,11 +109,11 @@ impl Palette {
             builder.add_material(Material::diffuse(name, Rgb::splat(0.3)).emitting(exitance))
         };
         palette.sky = light("sky", 1.9, 0.54, 0.82, 1.18);
-        palette.cove_lamp = light("cove lamp", 8.0, 0.62, 0.50, 1.50);
-        palette.spine_lamp = light("spine lamp", 9.0, 1.45, 0.76, 0.26);
-        palette.wall_lamp = light("wall lamp", 7.0, 1.35, 0.78, 0.36);
+        palette.cove_lamp = light("cove lamp", 7.5, 0.56, 0.40, 1.60);
+        palette.spine_lamp = light("spine lamp", 11.0, 1.5, 0.70, 0.20);
+        palette.wall_lamp = light("wall lamp", 7.5, 1.4, 0.78, 0.32);
         palette.galley_lamp = light("galley lamp", 6.0, 1.25, 0.88, 0.55);
-        palette.reading_lamp = light("reading lamp", 80.0, 1.25, 0.95, 0.60);
+        palette.reading_lamp = light("reading lamp", 120.0, 1.25, 0.95, 0.60);
         palette.floor_lamp = light("floor lamp", 1.1, 1.3, 0.8, 0.25);
         palette.exit_sign = light("exit sign", 0.9, 0.15, 1.0, 0.45);
         palette.seat_sign = light("seat sign", 0.9, 1.3, 0.75, 0.2);

@@ -66,19 +66,21 @@ const ARM_REST: [[f64; 2]; 8] = [
 
 /// Three seats side by side, the middle of the group's front on the origin, looking along `−z`. The middle one has
 /// colours of its own.
-pub(super) fn group(palette: &Palette, random: &mut Random) -> Model {
+///
+/// Those `near` a camera are rounder.
+pub(super) fn group(palette: &Palette, random: &mut Random, near: bool) -> Model {
     let mut m = Model::default();
     for (i, colours) in
         [Colours::blue(palette), Colours::orange(palette), Colours::blue(palette)].iter().enumerate()
     {
         let z = (i as f64 - 1.0) * PLACE;
-        m.add_at(&cushion(colours), 0.0, 0.0, z);
+        m.add_at(&cushion(colours, near), 0.0, 0.0, z);
         // Most backs are upright, some are reclined a little.
         let lean = if random.unit() < 0.3 { random.between(0.02, 0.07) } else { 0.0 };
         let hinge = DAffine3::from_translation(PIVOT + DVec3::new(0.0, 0.0, z))
             * DAffine3::from_rotation_z(-lean)
             * DAffine3::from_translation(-PIVOT);
-        let mut upright = back(colours);
+        let mut upright = back(colours, near);
         upright.add_at(&back_things(palette, random), 0.0, 0.0, 0.0);
         m.add(&upright, hinge);
     }
@@ -87,7 +89,7 @@ pub(super) fn group(palette: &Palette, random: &mut Random) -> Model {
         let half = 0.5 * ARM;
         m.prism(&ARM_REST, [z - half, z + half], 1.0, palette.armrest);
     }
-    frame(&mut m, palette);
+    frame(&mut m, palette, near);
     let mut group = Model::default();
     group.add(&m, DAffine3::from_cols(DVec3::Z, DVec3::Y, -DVec3::X, DVec3::ZERO));
     group
@@ -111,29 +113,40 @@ impl Colours {
     }
 }
 
-fn cushion(colours: &Colours) -> Model {
+fn cushion(colours: &Colours, near: bool) -> Model {
     let mut m = Model::default();
-    let ends = Ends { radius: 0.028, pieces: 2, cell: 0.4 };
-    m.pillow(&CUSHION, [-HALF_BACK, HALF_BACK], ends, |_| colours.seat);
+    soft(&mut m, &CUSHION, HALF_BACK, 0.028, near, |_| colours.seat);
     m
 }
 
-fn back(colours: &Colours) -> Model {
+fn back(colours: &Colours, near: bool) -> Model {
     let mut m = Model::default();
-    let ends = Ends { radius: 0.02, pieces: 2, cell: 0.4 };
     let colour = |k: Option<usize>| if k.is_some_and(|k| k < 3) { colours.behind } else { colours.back };
-    m.pillow(&BACK, [-HALF_BACK, HALF_BACK], ends, colour);
-    let half = HALF_BACK - 0.03;
-    m.pillow(&HEAD, [-half, half], Ends { radius: 0.028, pieces: 2, cell: 0.4 }, |_| colours.head);
+    soft(&mut m, &BACK, HALF_BACK, 0.02, near, colour);
+    soft(&mut m, &HEAD, HALF_BACK - 0.022, 0.034, near, |_| colours.head);
     m
+}
+
+/// A pillow from `-half` to `half`.
+fn soft(
+    m: &mut Model,
+    section: &[[f64; 2]],
+    half: f64,
+    radius: f64,
+    near: bool,
+    material: impl Fn(Option<usize>) -> MaterialId,
+) {
+    let (pieces, cut) = if near { (2, 0.025) } else { (1, 0.0) };
+    m.pillow(section, [-half, half], Ends { radius, pieces, cell: 0.4, cut }, material);
 }
 
 /// The beam under a group, and its legs.
-fn frame(m: &mut Model, palette: &Palette) {
+fn frame(m: &mut Model, palette: &Palette, near: bool) {
     let half = HALF_GROUP - 0.06;
     m.block([0.12, 0.26, -half], [0.37, 0.30, half], 0.7, palette.metal);
     for z in [-0.42, 0.42] {
-        for [low, high] in [[0.12, 0.125], [0.46, 0.335]] {
+        // Front legs are seen from nearby only.
+        for [low, high] in [[0.46, 0.335], [0.12, 0.125]].into_iter().take(if near { 2 } else { 1 }) {
             let leg = [[low, GAP], [low + 0.04, GAP], [high + 0.04, 0.26 - GAP], [high, 0.26 - GAP]];
             m.prism(&leg, [z - 0.022, z + 0.022], 1.0, palette.metal);
         }

@@ -29,11 +29,14 @@ pub(super) const REAR: f64 = FRONT + UNIT * UNITS as f64;
 pub(super) const ROWS: usize = 29;
 /// Front edge of the first row's cushions.
 pub(super) const FIRST_ROW: f64 = FRONT + 0.56;
+/// Rows on the left and on the right that are seen from nearby.
+pub(super) const NEAR_ROWS: [&[usize]; 2] =
+    [&[0, 1, 11, 16, 17, 18, 19], &[0, 1, 10, 11, 12, 13, 16, 17, 18, 19]];
 /// Half the width of the aisle between arm rests.
 pub(super) const AISLE: f64 = 0.25;
 
 /// Heights of the lines of cells on the side walls, up to the edge of the ceiling.
-pub(super) const WALL_LINES: [f64; 11] = [0.0, 0.27, 0.53, 0.8, 1.12, 1.44, 1.64, 1.8, 1.96, 2.08, 2.19];
+pub(super) const WALL_LINES: [f64; 9] = [0.0, 0.27, 0.53, 0.8, 1.12, 1.44, 1.64, 1.92, 2.19];
 /// Lower edge, middle and upper edge of a window's cell among them.
 pub(super) const WINDOW_LINES: [usize; 3] = [3, 4, 5];
 /// The ceiling from its middle to its right edge: (x, y).

@@ -24,7 +24,7 @@ pub(super) fn spine(palette: &Palette) -> Model {
     let mut m = Model::default();
     for i in 0..UNITS {
         let z = FRONT + UNIT * i as f64;
-        let ends = Ends { radius: 0.006, pieces: 1, cell: 0.27 };
+        let ends = Ends { radius: 0.006, pieces: 1, cell: 0.27, cut: 0.0 };
         m.pillow(&SECTION, [z + 0.008, z + UNIT - 0.008], ends, |_| palette.panel);
         let z = lines(z + 0.05, z + UNIT - 0.05, 0.5);
         for side in [-1.0, 1.0] {

@@ -14,6 +14,8 @@ pub(crate) struct Ends {
     pub(crate) pieces: usize,
     /// Longest cell between the ends \[m\].
     pub(crate) cell: f64,
+    /// How far from them the corners of the section are cut off \[m\]; 0 leaves them.
+    pub(crate) cut: f64,
 }
 
 impl Model {
@@ -22,7 +24,7 @@ impl Model {
     ///
     /// The section has an even number of points. The ends are strips between the first and the last, the second and
     /// the last but one, and so on: it may be bent, but these pairs must face each other. `material` gets the number of
-    /// the point where an edge of the section begins, or nothing for the ends.
+    /// the point where an edge of the section begins (cut corners belong to the edge after them), or nothing for the ends.
     pub(crate) fn pillow(
         &mut self,
         section: &[[f64; 2]],
@@ -30,7 +32,7 @@ impl Model {
         ends: Ends,
         material: impl Fn(Option<usize>) -> MaterialId,
     ) {
-        let Ends { radius, pieces, cell } = ends;
+        let Ends { radius, pieces, cell, cut } = ends;
         let arc: Vec<[f64; 2]> = (0..pieces)
             .map(|i| {
                 let (sin, cos) = (0.5 * std::f64::consts::PI * i as f64 / pieces as f64).sin_cos();
@@ -43,12 +45,19 @@ impl Model {
         rings.extend(arc.iter().rev().map(|[along, inward]| [to - along, *inward]));
         let rings: Vec<Vec<DVec3>> = rings
             .iter()
-            .map(|&[z, inward]| shrunk(section, inward).iter().map(|p| p.extend(z)).collect())
+            .map(|&[z, inward]| {
+                // Shrinking comes first: it would turn the short edges of cut corners around.
+                let mut ring = shrunk(section, inward);
+                if cut > 0.0 {
+                    ring = cut_corners(&ring, cut);
+                }
+                ring.iter().map(|p| p.extend(z)).collect()
+            })
             .collect();
-        let n = section.len();
+        let (n, per_edge) = (rings[0].len(), rings[0].len() / section.len());
         for k in 0..n {
             let at = |i: usize, j: usize| rings[j][(k + i) % n];
-            self.sheet([1, rings.len() - 1], at, |_, _| material(Some(k)));
+            self.sheet([1, rings.len() - 1], at, |_, _| material(Some(k / per_edge)));
         }
         for k in 0..n / 2 - 1 {
             let strip = [k, k + 1, n - 2 - k, n - 1 - k];
@@ -72,6 +81,16 @@ fn shrunk(polygon: &[[f64; 2]], distance: f64) -> Vec<DVec2> {
         .collect()
 }
 
+/// A polygon with each corner cut off at a distance of at most `cut` from it, so that there are twice as many points.
+fn cut_corners(polygon: &[DVec2], cut: f64) -> Vec<DVec2> {
+    let n = polygon.len();
+    let from_corner = |i: usize, toward: usize| {
+        let way = polygon[toward % n] - polygon[i];
+        polygon[i] + (cut / way.length()).min(0.25) * way
+    };
+    (0..n).flat_map(|i| [from_corner(i, i + n - 1), from_corner(i, i + 1)]).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,9 +104,19 @@ mod tests {
     }
 
     #[test]
+    fn cut_corners_lie_on_both_sides_of_each_corner() {
+        let cut = cut_corners(&SQUARE.map(DVec2::from_array), 0.75);
+        let first = [[0.0, 0.5], [0.75, 0.0], [3.25, 0.0], [4.0, 0.5]];
+        assert_eq!(&cut[..4], first.map(DVec2::from_array));
+        assert_eq!(cut.len(), 8);
+    }
+
+    #[test]
     fn a_chamfered_block_has_the_volume_of_a_block_less_its_chamfers() {
         let mut m = Model::default();
-        m.pillow(&SQUARE, [0.0, 3.0], Ends { radius: 0.5, pieces: 1, cell: 9.0 }, |_| MaterialId(0));
+        m.pillow(&SQUARE, [0.0, 3.0], Ends { radius: 0.5, pieces: 1, cell: 9.0, cut: 0.0 }, |_| {
+            MaterialId(0)
+        });
         let mut volume = 0.0;
         for (corners, _) in &m.polygons {
             for i in 2..corners.len() {
