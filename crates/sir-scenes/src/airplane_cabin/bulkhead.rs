@@ -34,13 +34,10 @@ pub(super) fn bulkheads(palette: &Palette) -> Model {
 }
 
 fn bulkhead(m: &mut Model, palette: &Palette, z: [f64; 2]) {
-    let right = |inner: f64, y: f64| lines(inner, half_width(y) - CLEAR, 0.28).len();
-    let columns = right(DOORWAY, 1.0);
+    let columns = lines(DOORWAY, half_width(1.0), 0.28).len();
     let row = |from: f64, to: f64, y: &dyn Fn(f64) -> f64| -> Vec<[f64; 2]> {
-        (0..columns)
-            .map(|i| from + (to - from) * i as f64 / (columns - 1) as f64)
-            .map(|x| [x, y(x)])
-            .collect()
+        let x = (0..columns).map(|i| from + (to - from) * i as f64 / (columns - 1) as f64);
+        x.map(|x| [x, y(x)]).collect()
     };
     let mut rows: Vec<Vec<[f64; 2]>> = WALL_LINES[..WALL_LINES.len() - 1]
         .iter()

@@ -5,6 +5,7 @@
 use std::f64::consts::PI;
 
 use glam::{DAffine3, DVec3};
+use sir_geom::MaterialId;
 
 use super::palette::Palette;
 use super::size::{FRONT, PITCH, UNIT, UNITS};
@@ -48,7 +49,7 @@ pub(super) fn overhead(palette: &Palette, random: &mut Random) -> Model {
 fn unit(palette: &Palette, random: &mut Random) -> Model {
     let mut m = Model::default();
     m.pillow(&BIN, [0.006, UNIT - 0.006], Ends { radius: 0.012, pieces: 1, cell: 0.53, cut: 0.0 }, |k| {
-        if k.is_some_and(|k| (10..13).contains(&k)) { palette.trim } else { palette.bin }
+        if k.is_some_and(|k| (10..13).contains(&k)) { palette.bin_foot } else { palette.bin }
     });
     // The latch, on the steep part of the front.
     let middle = 0.5 * UNIT;
@@ -56,39 +57,24 @@ fn unit(palette: &Palette, random: &mut Random) -> Model {
     m.prism(&latch, [middle - 0.05, middle + 0.05], 1.0, palette.trim);
 
     let z = lines(GAP, UNIT - GAP, 0.5 * PITCH);
-    slanted_lamp(&mut m, &z, [[0.80, 2.035], [0.86, 2.035], [0.86, 2.075]], palette.cove_lamp, palette.trim);
-    slanted_lamp(
-        &mut m,
-        &z,
-        [[1.615, 1.672], [1.672, 1.700], [1.615, 1.700]],
-        palette.wall_lamp,
-        palette.trim,
-    );
+    let cove = [[0.86, 2.075], [0.80, 2.035], [0.86, 2.035]];
+    slanted_lamp(&mut m, &z, cove, [palette.cove_lamp, palette.trim]);
+    let wall = [[1.615, 1.672], [1.672, 1.700], [1.615, 1.700]];
+    slanted_lamp(&mut m, &z, wall, [palette.wall_lamp, palette.trim]);
     service_panels(&mut m, palette, random);
     m
 }
 
-/// A triangular rail along a unit that shines from one of its sides: the longest one.
-fn slanted_lamp(
-    m: &mut Model,
-    z: &[f64],
-    section: [[f64; 2]; 3],
-    lamp: sir_geom::MaterialId,
-    other: sir_geom::MaterialId,
-) {
-    let length = |i: usize| {
-        let ([ax, ay], [bx, by]) = (section[i], section[(i + 1) % 3]);
-        (bx - ax).hypot(by - ay)
-    };
-    let longest = (0..3).max_by(|&a, &b| length(a).total_cmp(&length(b)));
+/// A triangular rail along a unit. It shines from the side between the first two corners of its section.
+fn slanted_lamp(m: &mut Model, z: &[f64], section: [[f64; 2]; 3], [lamp, rail]: [MaterialId; 2]) {
     let point = |i: usize, z: f64| DVec3::new(section[i % 3][0], section[i % 3][1], z);
     for i in 0..3 {
-        let material = if Some(i) == longest { lamp } else { other };
+        let material = if i == 0 { lamp } else { rail };
         m.sheet([1, z.len() - 1], |a, j| point(i + a, z[j]), |_, _| material);
     }
     let last = z[z.len() - 1];
-    m.polygon(&[0, 1, 2].map(|i| point(i, last)), other);
-    m.polygon(&[2, 1, 0].map(|i| point(i, z[0])), other);
+    m.polygon(&[0, 1, 2].map(|i| point(i, last)), rail);
+    m.polygon(&[2, 1, 0].map(|i| point(i, z[0])), rail);
 }
 
 /// A panel along the unit with a lip beside the lamp, and on it lights, nozzles and signs for two rows.

@@ -13,6 +13,8 @@ pub(super) struct Palette {
     pub(super) reveal: MaterialId,
     pub(super) blind: MaterialId,
     pub(super) bin: MaterialId,
+    /// Lower front of the bins.
+    pub(super) bin_foot: MaterialId,
     pub(super) trim: MaterialId,
     pub(super) carpet: MaterialId,
     pub(super) runner: MaterialId,
@@ -74,6 +76,7 @@ impl Palette {
             reveal: paint("window reveal", 0.80, 0.80, 0.79),
             blind: paint("blind", 0.66, 0.64, 0.60),
             bin: paint("bin", 0.80, 0.795, 0.78),
+            bin_foot: paint("bin foot", 0.50, 0.51, 0.54),
             trim: paint("trim", 0.42, 0.43, 0.46),
             carpet: paint("carpet", 0.09, 0.12, 0.28),
             runner: paint("runner", 0.06, 0.10, 0.33),
@@ -109,7 +112,7 @@ impl Palette {
             builder.add_material(Material::diffuse(name, Rgb::splat(0.3)).emitting(exitance))
         };
         palette.sky = light("sky", 1.9, 0.54, 0.82, 1.18);
-        palette.cove_lamp = light("cove lamp", 7.5, 0.56, 0.40, 1.60);
+        palette.cove_lamp = light("cove lamp", 8.0, 0.47, 0.40, 1.55);
         palette.spine_lamp = light("spine lamp", 11.0, 1.5, 0.70, 0.20);
         palette.wall_lamp = light("wall lamp", 7.5, 1.4, 0.78, 0.32);
         palette.galley_lamp = light("galley lamp", 6.0, 1.25, 0.88, 0.55);

@@ -44,12 +44,12 @@ const BACK: [[f64; 2]; 10] = [
 ];
 const HEAD: [[f64; 2]; 8] = [
     [0.640, 1.0],
-    [0.656, 1.05],
-    [0.672, 1.155],
-    [0.645, 1.192],
-    [0.610, 1.185],
-    [0.576, 1.13],
-    [0.546, 1.04],
+    [0.660, 1.07],
+    [0.678, 1.15],
+    [0.655, 1.195],
+    [0.600, 1.190],
+    [0.570, 1.14],
+    [0.545, 1.05],
     [0.565, 1.0],
 ];
 /// With its post, down to beside the cushion.
@@ -123,7 +123,7 @@ fn back(colours: &Colours, near: bool) -> Model {
     let mut m = Model::default();
     let colour = |k: Option<usize>| if k.is_some_and(|k| k < 3) { colours.behind } else { colours.back };
     soft(&mut m, &BACK, HALF_BACK, 0.02, near, colour);
-    soft(&mut m, &HEAD, HALF_BACK - 0.022, 0.034, near, |_| colours.head);
+    soft(&mut m, &HEAD, HALF_BACK - 0.022, 0.028, near, |_| colours.head);
     m
 }
 
