@@ -23,7 +23,7 @@ pub(super) fn bulkheads(palette: &Palette) -> Model {
     let z = FRONT - 0.03;
     bulkhead(&mut m, palette, [z - THICK, z]);
     for side in [-1.0, 1.0] {
-        screen(&mut m, palette, [side * 0.94, 1.33, z + GAP]);
+        screen(&mut m, palette, [side * 0.94, 1.27, z + GAP]);
     }
     m.add_at(&curtain(palette, 0.20), -DOORWAY + 0.012, 0.012, z - THICK - 0.08);
     let z = REAR + 0.03;
@@ -76,24 +76,24 @@ fn plate(m: &mut Model, rows: &[Vec<[f64; 2]>], [near, far]: [f64; 2], material:
 fn screen(m: &mut Model, palette: &Palette, [x, y, z]: [f64; 3]) {
     let (half, frame) = (0.27, 0.025);
     let mut columns = vec![-half - frame];
-    columns.extend(lines(-half, half, 0.06));
+    columns.extend(lines(-half, half, 0.09));
     columns.push(half + frame);
     let mut rows = vec![-frame];
-    rows.extend(lines(0.0, 0.30, 0.06));
-    rows.push(0.30 + frame);
+    rows.extend(lines(0.0, 0.36, 0.09));
+    rows.push(0.36 + frame);
     let columns: Vec<f64> = columns.iter().map(|c| x + c).collect();
     let rows: Vec<f64> = rows.iter().map(|r| y + r).collect();
     let [sea, land, route] = palette.screens;
     m.grid_block([&columns, &rows, &[z, z + 0.03]], |d, p| {
-        let (u, v) = ((p.x - x + half) / 0.06, (p.y - y) / 0.06);
-        let inside = (0.0..9.0).contains(&u) && (0.0..5.0).contains(&v);
+        let (u, v) = ((p.x - x + half) / 0.09, (p.y - y) / 0.09);
+        let inside = (0.0..6.0).contains(&u) && (0.0..4.0).contains(&v);
         if d.z <= 0.0 || !inside {
             return palette.dark;
         }
         let (u, v) = (u as usize, v as usize);
         // One row of the map after another, from below: columns that are land.
-        let coast = [[0, 2], [0, 3], [1, 4], [5, 8], [6, 9]][v];
-        if u == [2, 3, 4, 6, 7][v] {
+        let coast = [[0, 2], [0, 1], [3, 5], [4, 6]][v];
+        if u == [1, 2, 3, 4][v] {
             route
         } else if (coast[0]..coast[1]).contains(&u) {
             land

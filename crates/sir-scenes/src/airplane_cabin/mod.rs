@@ -51,7 +51,7 @@ pub fn airplane_cabin() -> Result<Built, SceneError> {
     let row = FIRST_ROW + PITCH * 12.0;
     for (name, eye, target, degrees) in [
         ("aisle", [0.0, 1.6, REAR - 7.1], [0.0, 1.2, 2.0], 52.0),
-        ("row", [-0.55, 1.30, row + 0.62], [1.5, 0.90, row - 1.1], 51.0),
+        ("row", [-0.55, 1.30, row + 0.62], [1.5, 0.93, row - 1.0], 54.0),
         ("galley", [0.12, 1.72, FRONT + 0.15], [-0.1, 1.2, FRONT + 6.0], 62.0f64),
     ] {
         let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));

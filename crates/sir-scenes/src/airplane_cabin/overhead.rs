@@ -56,7 +56,7 @@ fn unit(palette: &Palette, random: &mut Random) -> Model {
     let latch = [[0.6736, 1.86], [0.6796, 1.86], [0.674, 1.885], [0.668, 1.885]];
     m.prism(&latch, [middle - 0.05, middle + 0.05], 1.0, palette.trim);
 
-    let z = lines(GAP, UNIT - GAP, 0.5 * PITCH);
+    let z = lines(GAP, UNIT - GAP, PITCH);
     let cove = [[0.86, 2.075], [0.80, 2.035], [0.86, 2.035]];
     slanted_lamp(&mut m, &z, cove, [palette.cove_lamp, palette.trim]);
     let wall = [[1.615, 1.672], [1.672, 1.700], [1.615, 1.700]];
@@ -86,13 +86,13 @@ fn service_panels(m: &mut Model, palette: &Palette, random: &mut Random) {
         m.block([1.02, 1.632, z - 0.16], [1.50, 1.65 - GAP, z + 0.2], 0.5, palette.tray);
         for place in 0..3 {
             let x = 1.14 + 0.13 * f64::from(place);
-            let on = random.unit() < 0.6;
+            let on = random.unit() < 0.5;
             let light = |d: DVec3, _| if on && d.y < 0.0 { palette.reading_lamp } else { palette.metal };
             m.grid_block([&[x - 0.02, x + 0.02], &[1.618, 1.632 - GAP], &[z + 0.10, z + 0.14]], light);
         }
         // Nozzles for air, in a row.
         m.block([1.14, 1.618, z - 0.12], [1.40, 1.632 - GAP, z - 0.08], 0.2, palette.trim);
-        let sign = |d: DVec3, _| if d.y < 0.0 { palette.seat_sign } else { palette.dark };
+        let sign = |d: DVec3, _| if row == 0 && d.y < 0.0 { palette.seat_sign } else { palette.dark };
         m.grid_block([&[1.19, 1.33], &[1.622, 1.632 - GAP], &[z - 0.01, z + 0.03]], sign);
     }
 }

@@ -23,6 +23,8 @@ pub(super) struct Palette {
     pub(super) runner_dot: MaterialId,
     pub(super) fabric: MaterialId,
     pub(super) accent: MaterialId,
+    pub(super) shoulder: MaterialId,
+    pub(super) accent_shoulder: MaterialId,
     pub(super) backrest: MaterialId,
     pub(super) tray: MaterialId,
     pub(super) pocket: MaterialId,
@@ -40,6 +42,8 @@ pub(super) struct Palette {
     pub(super) cove_lamp: MaterialId,
     /// Emits the amber light above the middle of the ceiling.
     pub(super) spine_lamp: MaterialId,
+    /// Emits the light of the strip under the middle of the ceiling.
+    pub(super) spine_strip: MaterialId,
     /// Emits the warm light along the side walls.
     pub(super) wall_lamp: MaterialId,
     /// Emits the light of the galleys.
@@ -85,6 +89,8 @@ impl Palette {
             runner_dot: paint("runner dot", 0.12, 0.34, 0.52),
             fabric: paint("seat fabric", 0.05, 0.14, 0.55),
             accent: paint("seat accent", 0.80, 0.27, 0.03),
+            shoulder: paint("shoulder", 0.05, 0.23, 0.52),
+            accent_shoulder: paint("accent shoulder", 0.84, 0.37, 0.05),
             backrest: paint("backrest", 0.08, 0.16, 0.46),
             tray: paint("tray", 0.62, 0.62, 0.63),
             pocket: paint("pocket", 0.05, 0.07, 0.20),
@@ -99,6 +105,7 @@ impl Palette {
             sky: panel,
             cove_lamp: panel,
             spine_lamp: panel,
+            spine_strip: panel,
             wall_lamp: panel,
             galley_lamp: panel,
             reading_lamp: panel,
@@ -114,6 +121,7 @@ impl Palette {
         palette.sky = light("sky", 1.9, 0.54, 0.82, 1.18);
         palette.cove_lamp = light("cove lamp", 8.0, 0.47, 0.40, 1.55);
         palette.spine_lamp = light("spine lamp", 11.0, 1.5, 0.70, 0.20);
+        palette.spine_strip = light("spine strip", 0.62, 1.25, 0.90, 0.58);
         palette.wall_lamp = light("wall lamp", 7.5, 1.4, 0.78, 0.32);
         palette.galley_lamp = light("galley lamp", 6.0, 1.25, 0.88, 0.55);
         palette.reading_lamp = light("reading lamp", 120.0, 1.25, 0.95, 0.60);

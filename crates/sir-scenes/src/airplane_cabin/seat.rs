@@ -99,17 +99,30 @@ pub(super) fn group(palette: &Palette, random: &mut Random, near: bool) -> Model
 struct Colours {
     seat: MaterialId,
     back: MaterialId,
+    shoulder: MaterialId,
     behind: MaterialId,
     head: MaterialId,
 }
 
 impl Colours {
     fn blue(palette: &Palette) -> Self {
-        Self { seat: palette.fabric, back: palette.fabric, behind: palette.backrest, head: palette.accent }
+        Self {
+            seat: palette.fabric,
+            back: palette.fabric,
+            shoulder: palette.shoulder,
+            behind: palette.backrest,
+            head: palette.accent,
+        }
     }
 
     fn orange(palette: &Palette) -> Self {
-        Self { seat: palette.accent, back: palette.accent, behind: palette.backrest, head: palette.fabric }
+        Self {
+            seat: palette.accent,
+            back: palette.accent,
+            shoulder: palette.accent_shoulder,
+            behind: palette.backrest,
+            head: palette.fabric,
+        }
     }
 }
 
@@ -121,7 +134,12 @@ fn cushion(colours: &Colours, near: bool) -> Model {
 
 fn back(colours: &Colours, near: bool) -> Model {
     let mut m = Model::default();
-    let colour = |k: Option<usize>| if k.is_some_and(|k| k < 3) { colours.behind } else { colours.back };
+    let colour = |k: Option<usize>| match k {
+        Some(0..3) => colours.behind,
+        // The shoulders, from the front of the upper end down.
+        Some(5 | 6) => colours.shoulder,
+        _ => colours.back,
+    };
     soft(&mut m, &BACK, HALF_BACK, 0.02, near, colour);
     soft(&mut m, &HEAD, HALF_BACK - 0.022, 0.028, near, |_| colours.head);
     m

@@ -33,7 +33,7 @@ fn table(m: &mut Model, palette: &Palette) {
 
 fn screen(m: &mut Model, palette: &Palette, random: &mut Random) {
     m.block([0.004, 0.382, -0.105], [0.014, 0.494, 0.105], 1.0, palette.dark);
-    let lit = random.unit() < 0.7;
+    let lit = random.unit() < 0.45;
     let [sea, land, route] = palette.screens;
     let split = random.between(-0.06, 0.06);
     let [left, right] = [[sea, land], [land, sea], [route, sea], [sea, sea]][random.below(4)];

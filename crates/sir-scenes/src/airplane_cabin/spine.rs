@@ -8,13 +8,20 @@ use crate::model::{Ends, Model, lines};
 const HALF: f64 = 0.20;
 /// Height of their underside \[m\].
 const LOW: f64 = 2.205;
-const SECTION: [[f64; 2]; 8] = [
+/// Half the width of the bright strip under them \[m\].
+const STRIP: f64 = 0.025;
+/// The third edge is the strip.
+const SECTION: [[f64; 2]; 12] = [
     [-HALF + 0.006, LOW + 0.008],
     [-HALF + 0.03, LOW],
+    [-STRIP, LOW],
+    [STRIP, LOW],
     [HALF - 0.03, LOW],
     [HALF - 0.006, LOW + 0.008],
     [HALF, LOW + 0.02],
     [HALF - 0.02, LOW + 0.03],
+    [STRIP, LOW + 0.03],
+    [-STRIP, LOW + 0.03],
     [-HALF + 0.02, LOW + 0.03],
     [-HALF, LOW + 0.02],
 ];
@@ -24,9 +31,11 @@ pub(super) fn spine(palette: &Palette) -> Model {
     let mut m = Model::default();
     for i in 0..UNITS {
         let z = FRONT + UNIT * i as f64;
-        let ends = Ends { radius: 0.006, pieces: 1, cell: 0.27, cut: 0.0 };
-        m.pillow(&SECTION, [z + 0.008, z + UNIT - 0.008], ends, |_| palette.panel);
-        let z = lines(z + 0.05, z + UNIT - 0.05, 0.5);
+        let ends = Ends { radius: 0.006, pieces: 1, cell: 0.8, cut: 0.0 };
+        m.pillow(&SECTION, [z + 0.008, z + UNIT - 0.008], ends, |k| {
+            if k == Some(2) { palette.spine_strip } else { palette.panel }
+        });
+        let z = lines(z + 0.05, z + UNIT - 0.05, 0.8);
         for side in [-1.0, 1.0] {
             let (a, b) = (side * 0.09, side * 0.13);
             let low = LOW + 0.031;

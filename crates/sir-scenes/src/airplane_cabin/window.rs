@@ -82,9 +82,9 @@ pub(super) fn window(m: &mut Model, palette: &Palette, random: &mut Random, wall
 /// How many of a pane's rows a blind covers.
 fn blind(random: &mut Random) -> usize {
     match random.unit() {
-        x if x < 0.52 => 0,
-        x if x < 0.66 => 3,
-        x if x < 0.76 => 4,
+        x if x < 0.48 => 0,
+        x if x < 0.60 => 3,
+        x if x < 0.70 => 4,
         _ => POINTS / 2 - 1,
     }
 }
