@@ -22,7 +22,7 @@ use crate::model::{GAP, Model};
 use crate::random::Random;
 use palette::Palette;
 use seat::HALF_GROUP;
-use size::{AISLE, FIRST_ROW, FRONT, NEAR_ROWS, PITCH, REAR, ROWS};
+use size::{AISLE, FIRST_ROW, FRONT, PITCH, REAR, ROWS, near};
 
 /// The cabin of an airliner with one aisle, 3.7 m wide and 27 m long, with 29 rows of six seats between two galleys. It is
 /// closed: no light leaves it.
@@ -51,7 +51,7 @@ pub fn airplane_cabin() -> Result<Built, SceneError> {
     let row = FIRST_ROW + PITCH * 12.0;
     for (name, eye, target, degrees) in [
         ("aisle", [0.0, 1.6, REAR - 7.1], [0.0, 1.2, 2.0], 52.0),
-        ("row", [-0.55, 1.30, row + 0.62], [1.5, 0.93, row - 1.0], 54.0),
+        ("row", [-0.55, 1.30, row + 0.62], [1.5, 0.96, row - 1.05], 52.0),
         ("galley", [0.12, 1.72, FRONT + 0.15], [-0.1, 1.2, FRONT + 6.0], 62.0f64),
     ] {
         let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
@@ -69,8 +69,8 @@ fn seats(palette: &Palette, random: &mut Random) -> Model {
     let mut m = Model::default();
     for row in 0..ROWS {
         let z = FIRST_ROW + PITCH * row as f64;
-        for (side, near) in [-1.0, 1.0].into_iter().zip(NEAR_ROWS) {
-            let group = seat::group(palette, random, near.contains(&row));
+        for side in [-1.0, 1.0] {
+            let group = seat::group(palette, random, near(side, z));
             m.add_at(&group, side * (AISLE + HALF_GROUP), 0.0, z);
             if row % 2 == 0 {
                 let x = side * (AISLE + 0.04);

@@ -19,6 +19,7 @@ pub(super) const HALF_BACK: f64 = 0.5 * (PLACE - ARM) - 0.006;
 /// Half the width of a group, with the arm rests at its ends \[m\].
 pub(super) const HALF_GROUP: f64 = 1.5 * PLACE + 0.5 * ARM;
 
+/// Sections seen from the side, counter-clockwise; the ends of each pair from outside in face each other \[m\].
 const CUSHION: [[f64; 2]; 8] = [
     [0.02, 0.335],
     [0.12, 0.315],
@@ -29,7 +30,7 @@ const CUSHION: [[f64; 2]; 8] = [
     [0.06, 0.460],
     [0.0, 0.42],
 ];
-/// The first three edges are the rear.
+/// The first three edges are the rear, the sixth and seventh the shoulders.
 const BACK: [[f64; 2]; 10] = [
     [0.520, 0.375],
     [0.5688, 0.62],
@@ -87,7 +88,12 @@ pub(super) fn group(palette: &Palette, random: &mut Random, near: bool) -> Model
     for i in 0..4 {
         let z = (f64::from(i) - 1.5) * PLACE;
         let half = 0.5 * ARM;
-        m.prism(&ARM_REST, [z - half, z + half], 1.0, palette.armrest);
+        if near {
+            let ends = Ends { radius: 0.008, pieces: 1, cell: 0.4, cut: 0.0 };
+            m.pillow(&ARM_REST, [z - half, z + half], ends, |_| palette.armrest);
+        } else {
+            m.prism(&ARM_REST, [z - half, z + half], 1.0, palette.armrest);
+        }
     }
     frame(&mut m, palette, near);
     let mut group = Model::default();
@@ -136,7 +142,6 @@ fn back(colours: &Colours, near: bool) -> Model {
     let mut m = Model::default();
     let colour = |k: Option<usize>| match k {
         Some(0..3) => colours.behind,
-        // The shoulders, from the front of the upper end down.
         Some(5 | 6) => colours.shoulder,
         _ => colours.back,
     };

@@ -33,11 +33,12 @@ fn table(m: &mut Model, palette: &Palette) {
 
 fn screen(m: &mut Model, palette: &Palette, random: &mut Random) {
     m.block([0.004, 0.382, -0.105], [0.014, 0.494, 0.105], 1.0, palette.dark);
-    let lit = random.unit() < 0.45;
+    let lit = random.unit() < 0.55;
     let [sea, land, route] = palette.screens;
     let split = random.between(-0.06, 0.06);
     let [left, right] = [[sea, land], [land, sea], [route, sea], [sea, sea]][random.below(4)];
-    m.grid_block([&[0.014 + GAP, 0.018], &[0.392, 0.484], &[-0.094, split, 0.094]], |d, p| match d.x > 0.0 {
+    let columns: &[f64] = if left == right { &[-0.094, 0.094] } else { &[-0.094, split, 0.094] };
+    m.grid_block([&[0.014 + GAP, 0.018], &[0.392, 0.484], columns], |d, p| match d.x > 0.0 {
         true if lit && p.z < split => left,
         true if lit => right,
         _ => palette.dark,

@@ -29,9 +29,6 @@ pub(super) const REAR: f64 = FRONT + UNIT * UNITS as f64;
 pub(super) const ROWS: usize = 29;
 /// Front edge of the first row's cushions.
 pub(super) const FIRST_ROW: f64 = FRONT + 0.56;
-/// Rows on the left and on the right that are seen from nearby.
-pub(super) const NEAR_ROWS: [&[usize]; 2] =
-    [&[0, 1, 11, 16, 17, 18, 19], &[0, 1, 10, 11, 12, 13, 16, 17, 18, 19]];
 /// Half the width of the aisle between arm rests.
 pub(super) const AISLE: f64 = 0.25;
 
@@ -63,4 +60,11 @@ pub(super) fn ceiling(x: f64) -> f64 {
         .windows(2)
         .find(|p| x.abs() <= p[1][0])
         .map_or(edge, |p| p[0][1] + (x.abs() - p[0][0]) / (p[1][0] - p[0][0]) * (p[1][1] - p[0][1]))
+}
+
+/// Whether a camera sees the part of the cabin around `z` on one side (−1 is left) from nearby: things are rounder there.
+pub(super) fn near(side: f64, z: f64) -> bool {
+    let both = [FRONT..FRONT + 2.1, 15.2..18.2];
+    let one = if side > 0.0 { 10.0..13.4 } else { 11.2..11.6 };
+    both.iter().chain([&one]).any(|stretch| stretch.contains(&z))
 }

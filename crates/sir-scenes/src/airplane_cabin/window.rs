@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::palette::Palette;
-use super::size::{WALL_LINES, WINDOW_LINES, half_width};
+use super::size::{FRONT, WALL_LINES, WINDOW_LINES, half_width, near};
 use crate::model::Model;
 use crate::random::Random;
 
@@ -26,8 +26,8 @@ impl Wall {
 /// Rings of a recess from the wall to the pane: half its width and height, and its depth \[m\].
 const RINGS: [[f64; 3]; 4] =
     [[0.205, 0.285, 0.0], [0.160, 0.232, 0.0], [0.126, 0.190, 0.075], [0.118, 0.180, 0.105]];
-/// Points of each ring. Row `k` of the pane lies between the points `k` and `POINTS / 2 − 1 − k`.
-const POINTS: usize = 16;
+/// Windows before this place are round, as are those near a camera: one looks along them \[m\].
+const ROUND_BEFORE: f64 = FRONT + 4.3;
 /// Exponent of the rings, which are superellipses: 2 is an ellipse, large ones are rectangles.
 const SQUARENESS: f64 = 3.0;
 
@@ -50,10 +50,13 @@ pub(super) fn window(m: &mut Model, palette: &Palette, random: &mut Random, wall
     // The wall is flat here.
     let up = (wall.at(centre, high) - wall.at(centre, low)).normalize();
     let outward = wall.side * up.cross(DVec3::Z);
+    // Row `k` of the pane lies between the points `k` and `points / 2 − 1 − k` of a ring.
+    let round = near(wall.side, centre) || centre < ROUND_BEFORE;
+    let points = if round { 20 } else { 12 };
     let rings = RINGS.map(|[a, b, depth]| {
-        (0..=POINTS)
+        (0..=points)
             .map(|i| {
-                let (sin, cos) = (((i % POINTS) as f64 + 0.5) * TAU / POINTS as f64).sin_cos();
+                let (sin, cos) = (((i % points) as f64 + 0.5) * TAU / points as f64).sin_cos();
                 let power = |x: f64| x.signum() * x.abs().powf(2.0 / SQUARENESS);
                 let on_wall = wall.at(centre + wall.side * a * power(cos), middle + b * power(sin));
                 on_wall + depth * outward
@@ -62,15 +65,15 @@ pub(super) fn window(m: &mut Model, palette: &Palette, random: &mut Random, wall
     });
     m.stitch(&around, &rings[0], palette.panel);
     for pair in rings.windows(2) {
-        m.sheet([POINTS, 1], |i, j| pair[j][i], |_, _| palette.reveal);
+        m.sheet([points, 1], |i, j| pair[j][i], |_, _| palette.reveal);
     }
     let pane = &rings[RINGS.len() - 1];
-    let shut = blind(random);
-    let half = POINTS / 2;
+    let half = points / 2;
+    let shut = blind(random, half);
     // Rows from the top to the bottom: right and left end of each line.
     let row = |r: usize| {
-        let k = (half / 2 + POINTS - 1 - r) % POINTS;
-        [pane[k], pane[(half + POINTS - 1 - k) % POINTS]]
+        let k = (half / 2 + points - 1 - r) % points;
+        [pane[k], pane[(half + points - 1 - k) % points]]
     };
     for r in 0..half - 1 {
         let ([top_right, top_left], [low_right, low_left]) = (row(r), row(r + 1));
@@ -79,12 +82,13 @@ pub(super) fn window(m: &mut Model, palette: &Palette, random: &mut Random, wall
     }
 }
 
-/// How many of a pane's rows a blind covers.
-fn blind(random: &mut Random) -> usize {
+/// How many of a pane's rows a blind covers; there is one fewer than half the points of a ring, and the middle one is the
+/// highest.
+fn blind(random: &mut Random, half: usize) -> usize {
     match random.unit() {
         x if x < 0.48 => 0,
-        x if x < 0.60 => 3,
-        x if x < 0.70 => 4,
-        _ => POINTS / 2 - 1,
+        x if x < 0.60 => half / 2 - 1,
+        x if x < 0.70 => half / 2,
+        _ => half - 1,
     }
 }
