@@ -7,7 +7,7 @@ use sir_geom::MaterialId;
 
 use super::palette::Palette;
 use super::size::{FRONT, REAR, WALL_LINES, ceiling, half_width};
-use crate::model::{GAP, Model, lines};
+use crate::model::{Ends, GAP, Model, lines};
 
 /// Half the width of a doorway \[m\].
 pub(super) const DOORWAY: f64 = 0.33;
@@ -118,7 +118,8 @@ fn curtain(palette: &Palette, width: f64) -> Model {
     let section: Vec<[f64; 2]> =
         wave(-0.005).chain(wave(0.005).collect::<Vec<_>>().into_iter().rev()).collect();
     let mut lying = Model::default();
-    lying.prism(&section, [0.0, HEIGHT - 0.05], 0.4, palette.curtain);
+    let ends = Ends { radius: 0.0, pieces: 0, cell: 0.4, cut: 0.0 };
+    lying.pillow(&section, [0.0, HEIGHT - 0.05], ends, |_| palette.curtain);
     m.add(&lying, DAffine3::from_rotation_x(-0.5 * PI));
     m
 }

@@ -35,8 +35,8 @@ const BACK: [[f64; 2]; 10] = [
     [0.520, 0.375],
     [0.5688, 0.62],
     [0.632, 0.935],
-    [0.634, 0.978],
-    [0.620, 0.99],
+    [0.636, 0.962],
+    [0.615, 0.99],
     [0.580, 0.99],
     [0.552, 0.968],
     [0.508, 0.78],
@@ -88,12 +88,9 @@ pub(super) fn group(palette: &Palette, random: &mut Random, near: bool) -> Model
     for i in 0..4 {
         let z = (f64::from(i) - 1.5) * PLACE;
         let half = 0.5 * ARM;
-        if near {
-            let ends = Ends { radius: 0.008, pieces: 1, cell: 0.4, cut: 0.0 };
-            m.pillow(&ARM_REST, [z - half, z + half], ends, |_| palette.armrest);
-        } else {
-            m.prism(&ARM_REST, [z - half, z + half], 1.0, palette.armrest);
-        }
+        let (radius, pieces) = if near { (0.008, 1) } else { (0.0, 0) };
+        let ends = Ends { radius, pieces, cell: 0.4, cut: 0.0 };
+        m.pillow(&ARM_REST, [z - half, z + half], ends, |_| palette.armrest);
     }
     frame(&mut m, palette, near);
     let mut group = Model::default();

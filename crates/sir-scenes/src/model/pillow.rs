@@ -10,7 +10,7 @@ use super::{Model, lines};
 pub(crate) struct Ends {
     /// Radius at the ends \[m\].
     pub(crate) radius: f64,
-    /// Straight pieces of each quarter circle: 1 is a chamfer.
+    /// Straight pieces of each quarter circle: 1 is a chamfer, and 0 (with no radius) leaves them flat.
     pub(crate) pieces: usize,
     /// Longest cell between the ends \[m\].
     pub(crate) cell: f64,
