@@ -7,19 +7,24 @@
 //! * [`cornell_box`] was measured in reality: it is the common yardstick of the field.
 //! * [`reading_room`] is a furnished interior lit mostly by light that has been reflected: it is there to be looked
 //!   at.
+//! * [`airplane_cabin`] has many small things, and light that is hidden almost everywhere: it is there to be looked at,
+//!   and to be computed by many processors.
 //!
 //! All lengths are metres, `y` is up, and no scene has light that can leave it, but for the Cornell box, which is open
 //! at the front.
 
+mod airplane_cabin;
 mod cornell_box;
 mod error;
 mod exact;
 mod gltf;
 mod model;
+mod random;
 mod reading_room;
 mod spectrum;
 mod stored;
 
+pub use airplane_cabin::airplane_cabin;
 pub use cornell_box::cornell_box;
 pub use error::Error;
 pub use exact::{SphereShell, concentric_spheres, concentric_spheres_answer, furnace, furnace_answer};

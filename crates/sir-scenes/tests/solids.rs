@@ -5,15 +5,16 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use sir_geom::{Scene, SceneError};
 use sir_scenes::{
-    FURNACE_EXITANCE, FURNACE_REFLECTANCE, INNER_SPHERE, OUTER_SPHERE, concentric_spheres, furnace,
-    reading_room,
+    FURNACE_EXITANCE, FURNACE_REFLECTANCE, INNER_SPHERE, OUTER_SPHERE, airplane_cabin, concentric_spheres,
+    furnace, reading_room,
 };
 
-fn closed_scenes() -> Result<[(&'static str, Scene); 3], SceneError> {
+fn closed_scenes() -> Result<[(&'static str, Scene); 4], SceneError> {
     Ok([
         ("furnace", furnace(1.0, FURNACE_REFLECTANCE, FURNACE_EXITANCE)?.scene),
         ("concentric spheres", concentric_spheres(INNER_SPHERE, OUTER_SPHERE, 2)?.scene),
         ("reading room", reading_room()?.scene),
+        ("airplane cabin", airplane_cabin()?.scene),
     ])
 }
 

@@ -8,12 +8,14 @@
 //! * Positions are multiples of 2⁻¹⁶ m (see [`Model::store`]).
 
 mod lathe;
+mod pillow;
 mod prism;
 mod sheet;
 
 use glam::{DAffine3, DVec3};
 use sir_geom::{MaterialId, SceneBuilder};
 
+pub(crate) use pillow::Ends;
 pub(crate) use sheet::lines;
 
 /// Distance between things that stand on or lean against each other \[m\].

@@ -4,8 +4,8 @@ use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
 use super::palette::Palette;
-use super::random::Random;
 use crate::model::{GAP, Model, lines};
+use crate::random::Random;
 
 /// Thickness of boards \[m\].
 const BOARD: f64 = 0.035;

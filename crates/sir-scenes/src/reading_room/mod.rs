@@ -9,7 +9,6 @@ mod columns;
 mod dais;
 mod openings;
 mod palette;
-mod random;
 mod shell;
 mod size;
 mod table;
@@ -20,9 +19,9 @@ use glam::{DAffine3, DVec3};
 use sir_geom::{Built, Camera, SceneBuilder, SceneError};
 
 use crate::model::{GAP, Model, lines};
+use crate::random::Random;
 use bookcase::{Bookcase, books_on_table, ladder};
 use palette::Palette;
-use random::Random;
 use size::{BAY, BAYS, DAIS, HALF_WIDTH, LENGTH};
 use table::TABLE_HEIGHT;
 

@@ -1,0 +1,174 @@
+//! Seats in groups of three.
+//!
+//! They are modelled from the side: `x` runs from the front edge of the cushion backward, `y` up, and `z` across.
+
+use glam::{DAffine3, DVec3};
+use sir_geom::MaterialId;
+
+use super::palette::Palette;
+use super::seat_back::{PIVOT, back_things};
+use crate::model::{Ends, GAP, Model};
+use crate::random::Random;
+
+/// Distance of seats side by side \[m\].
+const PLACE: f64 = 0.475;
+/// Width of an arm rest \[m\].
+const ARM: f64 = 0.042;
+/// Half the width of a backrest \[m\].
+pub(super) const HALF_BACK: f64 = 0.5 * (PLACE - ARM) - 0.006;
+/// Half the width of a group, with the arm rests at its ends \[m\].
+pub(super) const HALF_GROUP: f64 = 1.5 * PLACE + 0.5 * ARM;
+
+/// Sections seen from the side, counter-clockwise; the ends of each pair from outside in face each other \[m\].
+const CUSHION: [[f64; 2]; 8] = [
+    [0.02, 0.335],
+    [0.12, 0.315],
+    [0.41, 0.335],
+    [0.432, 0.365],
+    [0.425, 0.405],
+    [0.28, 0.432],
+    [0.06, 0.460],
+    [0.0, 0.42],
+];
+/// The first three edges are the rear, the sixth and seventh the shoulders.
+const BACK: [[f64; 2]; 10] = [
+    [0.520, 0.375],
+    [0.5688, 0.62],
+    [0.632, 0.935],
+    [0.636, 0.962],
+    [0.615, 0.99],
+    [0.580, 0.99],
+    [0.552, 0.968],
+    [0.508, 0.78],
+    [0.462, 0.62],
+    [0.458, 0.375],
+];
+const HEAD: [[f64; 2]; 8] = [
+    [0.640, 1.0],
+    [0.660, 1.07],
+    [0.678, 1.15],
+    [0.655, 1.195],
+    [0.600, 1.190],
+    [0.570, 1.14],
+    [0.545, 1.05],
+    [0.565, 1.0],
+];
+/// With its post, down to beside the cushion.
+const ARM_REST: [[f64; 2]; 8] = [
+    [0.13, 0.602],
+    [0.17, 0.595],
+    [0.40, 0.59],
+    [0.34, 0.35],
+    [0.44, 0.35],
+    [0.49, 0.60],
+    [0.48, 0.645],
+    [0.13, 0.64],
+];
+
+/// Three seats side by side, the middle of the group's front on the origin, looking along `−z`. The middle one has
+/// colours of its own.
+///
+/// Those `near` a camera are rounder.
+pub(super) fn group(palette: &Palette, random: &mut Random, near: bool) -> Model {
+    let mut m = Model::default();
+    for (i, colours) in
+        [Colours::blue(palette), Colours::orange(palette), Colours::blue(palette)].iter().enumerate()
+    {
+        let z = (i as f64 - 1.0) * PLACE;
+        m.add_at(&cushion(colours, near), 0.0, 0.0, z);
+        // Most backs are upright, some are reclined a little.
+        let lean = if random.unit() < 0.3 { random.between(0.02, 0.07) } else { 0.0 };
+        let hinge = DAffine3::from_translation(PIVOT + DVec3::new(0.0, 0.0, z))
+            * DAffine3::from_rotation_z(-lean)
+            * DAffine3::from_translation(-PIVOT);
+        let mut upright = back(colours, near);
+        upright.add_at(&back_things(palette, random), 0.0, 0.0, 0.0);
+        m.add(&upright, hinge);
+    }
+    for i in 0..4 {
+        let z = (f64::from(i) - 1.5) * PLACE;
+        let half = 0.5 * ARM;
+        let (radius, pieces) = if near { (0.008, 1) } else { (0.0, 0) };
+        let ends = Ends { radius, pieces, cell: 0.4, cut: 0.0 };
+        m.pillow(&ARM_REST, [z - half, z + half], ends, |_| palette.armrest);
+    }
+    frame(&mut m, palette, near);
+    let mut group = Model::default();
+    group.add(&m, DAffine3::from_cols(DVec3::Z, DVec3::Y, -DVec3::X, DVec3::ZERO));
+    group
+}
+
+/// What is soft on a seat.
+struct Colours {
+    seat: MaterialId,
+    back: MaterialId,
+    shoulder: MaterialId,
+    behind: MaterialId,
+    head: MaterialId,
+}
+
+impl Colours {
+    fn blue(palette: &Palette) -> Self {
+        Self {
+            seat: palette.fabric,
+            back: palette.fabric,
+            shoulder: palette.shoulder,
+            behind: palette.backrest,
+            head: palette.accent,
+        }
+    }
+
+    fn orange(palette: &Palette) -> Self {
+        Self {
+            seat: palette.accent,
+            back: palette.accent,
+            shoulder: palette.accent_shoulder,
+            behind: palette.backrest,
+            head: palette.fabric,
+        }
+    }
+}
+
+fn cushion(colours: &Colours, near: bool) -> Model {
+    let mut m = Model::default();
+    soft(&mut m, &CUSHION, HALF_BACK, 0.028, near, |_| colours.seat);
+    m
+}
+
+fn back(colours: &Colours, near: bool) -> Model {
+    let mut m = Model::default();
+    let colour = |k: Option<usize>| match k {
+        Some(0..3) => colours.behind,
+        Some(5 | 6) => colours.shoulder,
+        _ => colours.back,
+    };
+    soft(&mut m, &BACK, HALF_BACK, 0.02, near, colour);
+    soft(&mut m, &HEAD, HALF_BACK - 0.022, 0.028, near, |_| colours.head);
+    m
+}
+
+/// A pillow from `-half` to `half`.
+fn soft(
+    m: &mut Model,
+    section: &[[f64; 2]],
+    half: f64,
+    radius: f64,
+    near: bool,
+    material: impl Fn(Option<usize>) -> MaterialId,
+) {
+    let (pieces, cut) = if near { (2, 0.025) } else { (1, 0.0) };
+    m.pillow(section, [-half, half], Ends { radius, pieces, cell: 0.4, cut }, material);
+}
+
+/// The beam under a group, and its legs.
+fn frame(m: &mut Model, palette: &Palette, near: bool) {
+    let half = HALF_GROUP - 0.06;
+    m.block([0.12, 0.26, -half], [0.37, 0.30, half], 0.7, palette.metal);
+    for z in [-0.42, 0.42] {
+        // Front legs are seen from nearby only.
+        for [low, high] in [[0.46, 0.335], [0.12, 0.125]].into_iter().take(if near { 2 } else { 1 }) {
+            let leg = [[low, GAP], [low + 0.04, GAP], [high + 0.04, 0.26 - GAP], [high, 0.26 - GAP]];
+            m.prism(&leg, [z - 0.022, z + 0.022], 1.0, palette.metal);
+        }
+    }
+}
