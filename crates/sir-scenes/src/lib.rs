@@ -7,6 +7,7 @@
 //! * [`cornell_box`] was measured in reality: it is the common yardstick of the field.
 //! * [`reading_room`] is a furnished interior lit mostly by light that has been reflected: it is there to be looked
 //!   at.
+//! * [`museum_stairs`] is a large hall full of sculpture, likewise to be looked at.
 //!
 //! All lengths are metres, `y` is up, and no scene has light that can leave it, but for the Cornell box, which is open
 //! at the front.
@@ -16,6 +17,7 @@ mod error;
 mod exact;
 mod gltf;
 mod model;
+mod museum_stairs;
 mod reading_room;
 mod spectrum;
 mod stored;
@@ -24,5 +26,6 @@ pub use cornell_box::cornell_box;
 pub use error::Error;
 pub use exact::{SphereShell, concentric_spheres, concentric_spheres_answer, furnace, furnace_answer};
 pub use gltf::write_gltf;
+pub use museum_stairs::museum_stairs;
 pub use reading_room::reading_room;
 pub use stored::{FURNACE_EXITANCE, FURNACE_REFLECTANCE, INNER_SPHERE, OUTER_SPHERE, Stored, stored};

@@ -2,7 +2,7 @@
 
 use sir_geom::{Rgb, Scene, SceneError};
 
-use crate::{SphereShell, concentric_spheres, cornell_box, furnace, reading_room};
+use crate::{SphereShell, concentric_spheres, cornell_box, furnace, museum_stairs, reading_room};
 
 /// Reflectance of the stored furnace: the radiosity is 2, 5 and 10 W/m².
 pub const FURNACE_REFLECTANCE: Rgb = Rgb::new(0.5, 0.8, 0.9);
@@ -41,5 +41,6 @@ pub fn stored() -> Result<Vec<Stored>, SceneError> {
             scene: concentric_spheres(INNER_SPHERE, OUTER_SPHERE, 4)?.scene,
         },
         Stored { path: "reading-room/reading-room.glb", scene: reading_room()?.scene },
+        Stored { path: "museum-stairs/museum-stairs.glb", scene: museum_stairs()?.scene },
     ])
 }
