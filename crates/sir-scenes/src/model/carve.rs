@@ -13,7 +13,8 @@ impl Model {
     ///
     /// Every edge of a grid that the surface crosses gets one quadrilateral between the four cubes around it. Its
     /// corners are the means of the crossings of a cube's edges, one for each sheet of the surface in the cube (Nielson
-    /// 2004, "Dual marching cubes"), so that parts which are close to each other do not join at an edge.
+    /// 2004, "Dual marching cubes"). Where the body would touch itself in a face of a cube, a bit of it is taken away,
+    /// so that every edge of the surface joins two triangles.
     pub(crate) fn carve(
         &mut self,
         [min, max]: [DVec3; 2],
@@ -29,7 +30,11 @@ impl Model {
                 (0..=size.y).flat_map(move |y| (0..=size.x).map(move |x| IVec3::new(x, y, z)))
             })
         };
-        let field: Vec<f64> = all(size).map(|i| distance(at(i))).collect();
+        let mut field: Vec<f64> = all(size).map(|i| distance(at(i))).collect();
+        while let Some(corner) = all(size - 1).find_map(|i| touching_corner(i, |corner| field[index(corner)]))
+        {
+            field[index(corner)] = 0.01 * cell;
+        }
         let value = |i: IVec3| field[index(i)];
 
         let mut vertices = BTreeMap::new();
@@ -92,6 +97,22 @@ fn ends(edge: usize) -> [usize; 2] {
     [low, low | 1 << axis]
 }
 
+/// If opposite corners of a face at the cube `i` are inside, and the two others outside, that one of the former which
+/// is closer to the surface.
+fn touching_corner(i: IVec3, value: impl Fn(IVec3) -> f64) -> Option<IVec3> {
+    (0..3).find_map(|axis| {
+        let (u, v) = (AXES[(axis + 1) % 3], AXES[(axis + 2) % 3]);
+        let face = [i, i + u, i + u + v, i + v];
+        let [a, b, c, d] = face.map(|corner| value(corner) < 0.0);
+        let inside = match (a && c && !b && !d, b && d && !a && !c) {
+            (true, _) => [face[0], face[2]],
+            (_, true) => [face[1], face[3]],
+            _ => return None,
+        };
+        inside.into_iter().max_by(|p, q| value(*p).total_cmp(&value(*q)))
+    })
+}
+
 /// To which sheet of the surface the crossings of a cube's edges belong, `None` for edges that are not crossed.
 fn sheets(inside: impl Fn(usize) -> bool) -> [Option<usize>; 12] {
     let mut sheet: [Option<usize>; 12] = array::from_fn(|edge| {
@@ -113,15 +134,6 @@ fn sheets(inside: impl Fn(usize) -> bool) -> [Option<usize>; 12] {
                 .collect();
             if let [a, b] = crossed[..] {
                 join(a, b);
-            } else {
-                // Two opposite corners are inside: each is cut off alone.
-                for corner in (0..8).filter(|&corner| inside(corner)) {
-                    let at_corner: Vec<usize> =
-                        crossed.iter().copied().filter(|&edge| ends(edge).contains(&corner)).collect();
-                    if let [a, b] = at_corner[..] {
-                        join(a, b);
-                    }
-                }
             }
         }
     }
@@ -136,9 +148,31 @@ mod tests {
     fn a_carved_ball_encloses_the_volume_of_a_ball() {
         let mut m = Model::default();
         let bounds = [DVec3::splat(-1.13), DVec3::splat(1.13)];
-        m.carve(bounds, 0.1, |p| p.length() - 1.0, |_| MaterialId(0));
+        m.carve(bounds, 0.05, |p| p.length() - 1.0, |_| MaterialId(0));
         let six: f64 = m.polygons.iter().map(|(p, _)| p[0].dot(p[1].cross(p[2]))).sum();
+        // The mean of points on a ball lies within it: 1 % is lost with cells of a tenth of the radius, and a quarter
+        // of that with half the cells.
         let exact = 4.0 / 3.0 * std::f64::consts::PI;
-        assert!((six / 6.0 / exact - 1.0).abs() < 0.01, "{}", six / 6.0);
+        assert!((0.995..1.0).contains(&(six / 6.0 / exact)), "{}", six / 6.0);
+    }
+
+    #[test]
+    fn bodies_that_nearly_touch_still_have_two_triangles_at_every_edge() {
+        for step in 0..12 {
+            let apart = DVec3::new(0.5, 0.45, 0.4) * (1.0 + 0.02 * f64::from(step));
+            let balls = |p: DVec3| (p - apart).length().min((p + apart).length()) - 0.8;
+            let mut m = Model::default();
+            m.carve([DVec3::splat(-1.61), DVec3::splat(1.63)], 0.12, balls, |_| MaterialId(0));
+            let mut edges: BTreeMap<[[u64; 3]; 2], i32> = BTreeMap::new();
+            for (p, _) in &m.polygons {
+                let p: Vec<_> = p.iter().map(|p| p.to_array().map(f64::to_bits)).collect();
+                for i in 0..3 {
+                    *edges.entry([p[i], p[(i + 1) % 3]]).or_default() += 1;
+                }
+            }
+            for (&[a, b], &count) in &edges {
+                assert_eq!((count, edges.get(&[b, a])), (1, Some(&1)), "step {step}");
+            }
+        }
     }
 }

@@ -1,7 +1,5 @@
 //! Solids that are spanned over closed rings of points.
 
-use std::array;
-
 use glam::DVec3;
 use sir_geom::MaterialId;
 
@@ -18,7 +16,7 @@ impl Model {
         material: impl Fn(usize, usize) -> MaterialId,
     ) {
         for i in 0..rings - 1 {
-            self.band(array::from_fn(|k| (i + k, columns)), &point, |j| material(i, j));
+            self.band([i, i + 1], columns, &point, |j| material(i, j));
         }
         for (ring, flip) in [(0, true), (rings - 1, false)] {
             let middle = (0..columns).map(|j| point(ring, j)).sum::<DVec3>() / columns as f64;
@@ -41,14 +39,15 @@ impl Model {
         material: MaterialId,
     ) {
         for i in 0..rings {
-            self.band([(i, columns), ((i + 1) % rings, columns)], &point, |_| material);
+            self.band([i, (i + 1) % rings], columns, &point, |_| material);
         }
     }
 
     /// Adds the triangles between two rings.
     fn band(
         &mut self,
-        [(low, columns), (high, _)]: [(usize, usize); 2],
+        [low, high]: [usize; 2],
+        columns: usize,
         point: &impl Fn(usize, usize) -> DVec3,
         material: impl Fn(usize) -> MaterialId,
     ) {

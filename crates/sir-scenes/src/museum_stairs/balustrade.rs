@@ -8,6 +8,8 @@ use crate::model::{GAP, Model, lines};
 
 /// Distance of the balusters.
 const PITCH: f64 = 0.315;
+/// Length of the cells.
+const CELL: f64 = 0.7;
 /// Height of the plinth.
 const PLINTH: f64 = 0.10;
 /// Height of the handrail.
@@ -61,12 +63,8 @@ fn level(palette: &Palette, length: f64) -> Model {
     let mut baluster = Model::default();
     baluster.lathe(&profile, 7, palette.pale);
     let margin = 0.12;
-    let balusters = lines(margin, length - margin, PITCH);
-    for x in balusters {
+    for x in lines(margin, length - margin, PITCH) {
         m.add_at(&baluster, x, 0.0, 0.0);
     }
     m
 }
-
-/// Length of the cells.
-const CELL: f64 = 0.7;

@@ -69,7 +69,7 @@ fn coffer(m: &mut Model, palette: &Palette, corner: DVec3, lit: bool) {
 pub(super) fn fittings(palette: &Palette) -> Model {
     let mut m = Model::default();
     let mut rosette = Model::default();
-    let petals = 6;
+    let petals = 4;
     // (radius, distance below the bottom), from the lowest point up.
     let profile = [[0.05, 0.105], [0.20, 0.065], [0.22, 0.04], [0.16, 0.012]];
     rosette.loft(

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::palette::Palette;
 use super::size::{
-    COLUMN, DOOR_COLUMN, EDGE, GALLERY, HALF_WIDTH, LOWER_BEAM, RAIL, SOUTH_EDGE, UPPER_BEAM, column_places,
+    BAY, COLUMN, DOOR_COLUMN, EDGE, GALLERY, HALF_WIDTH, LOWER_BEAM, RAIL, SOUTH_EDGE, UPPER_BEAM,
+    bay_middles, column_places,
 };
 use crate::model::{GAP, Model};
 
@@ -42,7 +43,23 @@ pub(super) fn columns(palette: &Palette) -> Model {
             }
         }
     }
+    rails(&mut m, palette);
     m
+}
+
+/// Mouldings on the walls where their colours change.
+fn rails(m: &mut Model, palette: &Palette) {
+    for z in bay_middles() {
+        for side in [-1.0, 1.0] {
+            let (a, b) = (side * (HALF_WIDTH - GAP), side * (HALF_WIDTH - 0.05));
+            let half = 0.5 * BAY - 0.27;
+            for (y, material) in [(6.0, palette.pale), (9.5, palette.gold)] {
+                m.block([a.min(b), y - 0.05, z - half], [a.max(b), y + 0.04, z + half], 0.9, material);
+            }
+        }
+    }
+    let half = EDGE - 0.06;
+    m.block([-half, 9.45, GAP], [half, 9.54, 0.06], 0.8, palette.gold);
 }
 
 /// A fluted column on a square plinth, standing on the origin.
@@ -89,7 +106,7 @@ fn leafed_column(palette: &Palette, height: f64) -> Model {
     let shaft: Vec<[f64; 2]> = [[0.195, 0.0], [0.197, 0.35], [0.187, 0.7], [0.165, 1.0]]
         .map(|[r, t]| [r, low + t * (high - low)])
         .to_vec();
-    m.lathe(&shaft, 18, palette.rosso);
+    m.lathe(&shaft, 16, palette.rosso);
 
     // Radius of the leaves' ribs and of the bell between them, bottom to top.
     let rows = [
@@ -118,7 +135,7 @@ fn leafed_column(palette: &Palette, height: f64) -> Model {
 
 fn lathe_between(m: &mut Model, palette: &Palette, profile: &[[f64; 2]], foot: f64) {
     let profile: Vec<[f64; 2]> = profile.iter().map(|[r, y]| [*r, foot + y]).collect();
-    m.lathe(&profile, 16, palette.pale);
+    m.lathe(&profile, 14, palette.pale);
 }
 
 /// A pedestal between two stretches of balustrade.

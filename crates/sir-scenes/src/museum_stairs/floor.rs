@@ -56,7 +56,7 @@ enum Inlay {
 fn pattern(palette: &Palette, column: usize, z: f64, row: usize) -> Inlay {
     let edge = (EDGE / CELL) as usize;
     if column >= edge || z > SOUTH_EDGE {
-        let border = column == edge && z < SOUTH_EDGE + CELL || column <= edge && z < SOUTH_EDGE + CELL;
+        let border = column <= edge && z < SOUTH_EDGE + CELL;
         return Inlay::Plain(match (border, (column + row) % 2) {
             (true, _) => palette.verde,
             (_, 0) => palette.cream_tile,
@@ -69,7 +69,7 @@ fn pattern(palette: &Palette, column: usize, z: f64, row: usize) -> Inlay {
         (true, true) => Inlay::Plain(palette.dark_tile),
         (true, false) | (false, true) => Inlay::Plain(palette.ochre_tile),
         (false, false) => {
-            let inner = if (row / 3 + column / 3) % 2 == 0 { palette.verde } else { palette.rosso };
+            let inner = if (row / 3 + column / 3).is_multiple_of(2) { palette.verde } else { palette.rosso };
             let outer = palette.cream_tile;
             Inlay::Lozenge { inner, outer, quarter: [j == 1, i == 2] }
         }

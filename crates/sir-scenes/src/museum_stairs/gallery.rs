@@ -16,6 +16,9 @@ use crate::model::{GAP, Model, lines};
 /// Half the width of the beams \[m\].
 const BEAM: f64 = 0.24;
 
+/// How far the edge of the floor, with its mouldings, reaches under the balustrade, which hides the joint behind it \[m\].
+const LEDGE: f64 = 0.2;
+
 /// Floors, beams and balustrades.
 pub(super) fn gallery(palette: &Palette) -> Model {
     let mut m = Model::default();
@@ -50,29 +53,29 @@ pub(super) fn gallery(palette: &Palette) -> Model {
 /// The three parts of the gallery's floor.
 fn floors(m: &mut Model, palette: &Palette) {
     let y = [UNDER_GALLERY, GALLERY];
-    let (wall, edge) = (HALF_WIDTH - GAP, EDGE);
+    let (wall, edge) = (HALF_WIDTH - GAP, EDGE + LEDGE);
     let parts = [
         ([-wall, -edge - GAP], [GAP, LENGTH - GAP]),
         ([edge + GAP, wall], [GAP, LENGTH - GAP]),
-        ([GAP - edge, edge - GAP], [SOUTH_EDGE, LENGTH - GAP]),
+        ([-edge, edge], [SOUTH_EDGE + LEDGE + GAP, LENGTH - GAP]),
     ];
     for (x, z) in parts {
         let (x, z) = (lines(x[0], x[1], CELL), lines(z[0], z[1], CELL));
         let paint = |d: DVec3, p: DVec3| {
-            let odd = ((p.x / CELL).floor() + (p.z / CELL).floor()) as i64 % 2 != 0;
+            let number = |lines: &[f64], at: f64| lines.iter().filter(|line| **line < at).count();
             match (d.y > 0.0, d.y < 0.0) {
-                (true, _) => {
-                    if odd {
-                        palette.ochre_tile
-                    } else {
-                        palette.cream_tile
-                    }
-                }
+                (true, _) if (number(&x, p.x) + number(&z, p.z)) % 2 == 0 => palette.ochre_tile,
+                (true, _) => palette.cream_tile,
                 (_, true) => palette.plaster,
                 _ => palette.stone,
             }
         };
         m.grid_block([&x, &y, &z], paint);
+    }
+    // Where the stair arrives, there are no mouldings.
+    for side in [-1.0, 1.0] {
+        let (a, b) = (side * (EDGE + GAP), side * edge);
+        m.block([a.min(b), y[0], GAP], [a.max(b), y[1], SIDE], CELL, palette.pale);
     }
 }
 
@@ -120,19 +123,19 @@ fn edge_mouldings(m: &mut Model, palette: &Palette) {
     let out = 0.16;
     // (distance before the edge, height)
     let section = [
-        [-GAP, y + 0.02],
-        [-GAP, GALLERY - GAP],
-        [-out, GALLERY - GAP],
+        [LEDGE, y],
+        [LEDGE, GALLERY],
+        [-out, GALLERY],
         [-out, GALLERY - 0.10],
         [-out + 0.05, GALLERY - 0.15],
         [-out + 0.06, GALLERY - 0.22],
         [-0.04, GALLERY - 0.30],
-        [-0.03, y + 0.02],
+        [-0.03, y],
     ];
     let mut side = Model::default();
-    side.prism(&section, [SIDE + GAP, SOUTH_EDGE - GAP], 0.75, palette.pale);
+    side.prism(&section, [SIDE + GAP, SOUTH_EDGE + LEDGE], 0.75, palette.pale);
     m.add_at(&side, EDGE, 0.0, 0.0);
-    let turn = DAffine3::from_translation(DVec3::new(-EDGE, 0.0, SOUTH_EDGE + SIDE))
+    let turn = DAffine3::from_translation(DVec3::new(-EDGE, 0.0, SOUTH_EDGE + LEDGE + SIDE + GAP))
         * DAffine3::from_rotation_y(2.0 * FRAC_PI_2);
     m.add(&side, turn);
     let mut south = Model::default();

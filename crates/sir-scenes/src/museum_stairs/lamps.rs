@@ -73,24 +73,39 @@ fn standing_globe(palette: &Palette) -> Model {
             [if i % bands == 0 { 0.0 } else { radius * sin }, middle - radius * cos]
         })
         .collect();
-    m.lathe(&profile, 8, palette.globe);
+    m.lathe(&profile, 10, palette.globe);
     m
 }
 
 /// Pillars and an arch around the great niche, and the strips of light behind them.
 fn niche_frame(m: &mut Model, palette: &Palette) {
-    let (inner, outer) = (APSE.radius - 0.08, APSE.radius + 0.26);
-    let foot = APSE.sill - 0.25;
-    m.block([-outer - 0.1, foot, GAP], [outer + 0.1, APSE.sill - GAP, 0.24], 0.5, palette.pale);
+    let (inner, outer) = (APSE.radius - 0.11, APSE.radius + 0.26);
+    // It rises above the floor of the niche, so that the gap behind it is hidden.
+    let (foot, lip) = (APSE.sill - 0.25, APSE.sill + 0.03);
+    m.block([-outer - 0.1, foot, GAP], [outer + 0.1, lip, 0.24], 0.5, palette.pale);
     for side in [-1.0, 1.0] {
-        let mut post = |near: f64, far: f64, y: [f64; 2], z: [f64; 2], material| {
+        let mut post = |near: f64, far: f64, y: [f64; 2], z: [f64; 2], cell: f64, material| {
             let (a, b) = (side * near, side * far);
-            m.block([a.min(b), y[0], z[0]], [a.max(b), y[1], z[1]], 0.6, material);
+            m.block([a.min(b), y[0], z[0]], [a.max(b), y[1], z[1]], cell, material);
         };
-        post(inner, outer, [APSE.sill, APSE.spring - 0.16 - GAP], [GAP, 0.14], palette.pale);
-        post(inner - 0.03, outer + 0.04, [APSE.spring - 0.16, APSE.spring - GAP], [GAP, 0.18], palette.pale);
+        post(inner, outer, [lip + GAP, APSE.spring - 0.16 - GAP], [GAP, 0.14], 0.6, palette.pale);
+        post(
+            inner - 0.03,
+            outer + 0.04,
+            [APSE.spring - 0.16, APSE.spring - GAP],
+            [GAP, 0.18],
+            0.6,
+            palette.pale,
+        );
         let strip = [APSE.radius - 0.05, APSE.radius - 0.01];
-        post(strip[0], strip[1], [APSE.sill + 0.15, APSE.spring - 0.2], [-0.14, -0.10], palette.niche_lamp);
+        post(
+            strip[0],
+            strip[1],
+            [APSE.sill + 0.15, APSE.spring - 0.2],
+            [-0.065, -0.025],
+            3.0,
+            palette.niche_lamp,
+        );
     }
     let segments = 20;
     let arc = |r: f64| {

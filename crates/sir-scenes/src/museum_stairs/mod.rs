@@ -56,9 +56,9 @@ pub fn museum_stairs() -> Result<Built, SceneError> {
     }
     hall.store(&mut builder);
     for (name, eye, target, degrees) in [
-        ("top", [2.0, 9.5, 18.35], [-0.35, 3.2, 5.0], 62.0),
+        ("top", [2.0, 9.4, 18.35], [-0.3, 3.15, 5.0], 62.0),
         ("foot", [1.1, 1.65, 18.1], [-0.5, 4.6, 2.0], 62.0),
-        ("gallery", [7.1, GALLERY + 1.75, 17.4], [2.6, GALLERY + 0.35, 3.0], 60.0f64),
+        ("gallery", [7.3, GALLERY + 1.75, 18.3], [2.9, GALLERY + 0.45, 3.0], 58.0f64),
     ] {
         let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
         if let Some(mut camera) = Camera::looking_at(eye, target, DVec3::Y, degrees.to_radians()) {

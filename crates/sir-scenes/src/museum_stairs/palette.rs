@@ -82,7 +82,7 @@ impl Palette {
             green_wall: paint("green wall", 0.13, 0.29, 0.20),
             frieze: paint("frieze", 0.66, 0.48, 0.25),
             plaster: paint("plaster", 0.79, 0.75, 0.67),
-            niche: paint("niche", 0.10, 0.24, 0.32),
+            niche: paint("niche", 0.13, 0.29, 0.36),
             coffer: paint("coffer", 0.11, 0.20, 0.36),
             carpet: paint("carpet", 0.55, 0.035, 0.035),
             carpet_border: paint("carpet border", 0.66, 0.44, 0.14),
@@ -112,10 +112,10 @@ impl Palette {
             let exitance = PI * radiance * Rgb::new(r, g, b);
             builder.add_material(Material::diffuse(name, Rgb::splat(0.3)).emitting(exitance))
         };
-        palette.sky = light("sky", 9.5, 0.66, 0.88, 1.16);
-        palette.cove_lamp = light("cove lamp", 9.0, 1.30, 0.86, 0.44);
-        palette.niche_lamp = light("niche lamp", 17.0, 1.30, 0.86, 0.46);
-        palette.bulb = light("bulb", 120.0, 1.32, 0.84, 0.42);
+        palette.sky = light("sky", 11.5, 0.57, 0.86, 1.26);
+        palette.cove_lamp = light("cove lamp", 8.0, 1.30, 0.86, 0.44);
+        palette.niche_lamp = light("niche lamp", 13.0, 1.30, 0.86, 0.46);
+        palette.bulb = light("bulb", 170.0, 1.32, 0.84, 0.42);
         palette.globe = light("globe", 11.0, 1.25, 0.90, 0.52);
         palette.spot = light("spot", 60.0, 1.20, 0.92, 0.60);
         palette

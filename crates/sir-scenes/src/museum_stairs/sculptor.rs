@@ -78,15 +78,12 @@ pub(super) fn figure(p: DVec3, kind: Figure) -> f64 {
     d = d.max(0.004 - p.y);
     d = blend(d, limb(q, [0.0, 1.48, -0.01], [0.0, 1.66, 0.01], [0.062, 0.050]), 0.05);
     let turn = DVec2::from_angle(-0.3).rotate(DVec2::new(q.x, q.z));
-    d = blend(d, head(0.95 * DVec3::new(turn.x, q.y - 1.79, turn.y)), 0.03);
+    d = blend(d, head(0.9 * DVec3::new(turn.x, q.y - 1.80, turn.y)), 0.03);
     match kind {
         Figure::Victory => {
             d = blend(d, arm(q, [[0.19, 1.47, 0.0], [0.43, 1.56, 0.07], [0.50, 1.86, 0.16]]), 0.05);
             d = blend(d, arm(q, [[-0.19, 1.47, 0.0], [-0.34, 1.22, -0.02], [-0.30, 1.02, 0.19]]), 0.05);
-            // A wreath in the raised hand.
-            let wreath = q - DVec3::new(0.50, 2.03, 0.17);
-            d = blend(d, (wreath.truncate().length() - 0.13).hypot(wreath.z) - 0.034, 0.03);
-            wings(q).min(d)
+            blend(wings(q), d, 0.02)
         }
         Figure::WaterBearer => {
             d = blend(d, arm(q, [[0.19, 1.47, 0.0], [0.37, 1.60, 0.06], [0.27, 1.90, 0.02]]), 0.05);
@@ -103,7 +100,7 @@ fn body(q: DVec3) -> f64 {
     let angle = q.x.atan2(q.z);
     // Folds run down the dress and die out toward the belt; those of the overfold end in a wave at the hip.
     let fade = (1.0 - q.y / 1.1).clamp(0.0, 1.0);
-    let folds = (0.008 + 0.034 * fade) * (8.0 * angle + 0.8 * (2.5 * q.y).sin()).sin();
+    let folds = (0.010 + 0.046 * fade) * (8.0 * angle + 0.9 * (2.5 * q.y).sin()).sin();
     let narrow = DVec3::new(q.x, q.y, 1.18 * q.z);
     let dress = limb(narrow, [0.0, 0.0, 0.0], [0.0, 1.02, 0.0], [0.34, 0.185]) + folds;
     let over = limb(narrow, [0.0, 0.78, 0.0], [0.0, 1.08, 0.0], [0.255, 0.185])
@@ -125,9 +122,9 @@ fn body(q: DVec3) -> f64 {
 
 /// An arm through shoulder, elbow and wrist, with a closed hand.
 fn arm(q: DVec3, [shoulder, elbow, wrist]: [[f64; 3]; 3]) -> f64 {
-    let upper = limb(q, shoulder, elbow, [0.062, 0.048]);
-    let lower = limb(q, elbow, wrist, [0.048, 0.036]);
-    blend(blend(upper, lower, 0.02), egg(q, wrist, [0.046, 0.055, 0.046]), 0.02)
+    let upper = limb(q, shoulder, elbow, [0.068, 0.056]);
+    let lower = limb(q, elbow, wrist, [0.056, 0.047]);
+    blend(blend(upper, lower, 0.02), egg(q, wrist, [0.058, 0.066, 0.058]), 0.02)
 }
 
 /// A pair of raised wings with long feathers.
@@ -135,15 +132,18 @@ fn wings(q: DVec3) -> f64 {
     let r = DVec3::new(q.x.abs(), q.y, q.z);
     let (root, wrist, tip) = ([0.07, 1.36, -0.14], [0.34, 1.88, -0.28], [0.58, 2.16, -0.33]);
     let mut d = blend(limb(r, root, wrist, [0.085, 0.075]), limb(r, wrist, tip, [0.075, 0.055]), 0.03);
-    let feathers = 7;
+    let feathers = 8;
+    // Feathers are wider than thick: they are limbs in a space that is stretched across the wing.
+    let thin = DVec3::new(1.0, 1.0, 1.7);
     for i in 0..feathers {
         let t = f64::from(i) / f64::from(feathers - 1);
         // From the arm of the wing outward and down, the outer ones longest.
-        let from = [0.10 + 0.46 * t, 1.36 + 0.78 * t.powf(0.8), -0.17 - 0.16 * t];
-        let (sin, cos) = (-1.42 + 1.45 * t).sin_cos();
-        let long = 0.52 + 0.10 * t;
-        let to = [from[0] + long * 0.72 * cos, from[1] + long * sin, from[2] - 0.05 * long];
-        d = blend(d, limb(r, from, to, [0.058, 0.052]), 0.02);
+        let from = DVec3::new(0.11 + 0.45 * t, 1.34 + 0.78 * t.powf(0.8), -0.17 - 0.16 * t);
+        let (sin, cos) = (-1.45 + 1.25 * t).sin_cos();
+        let long = 0.50 + 0.12 * t;
+        let to = from + long * DVec3::new(0.70 * cos, sin, -0.05);
+        let [from, to] = [from, to].map(|p| (thin * p).to_array());
+        d = blend(d, 0.75 * limb(thin * r, from, to, [0.088, 0.076]), 0.012);
     }
     d
 }

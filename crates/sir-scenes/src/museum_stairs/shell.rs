@@ -130,7 +130,7 @@ fn heights(low: f64, high: f64) -> Vec<f64> {
 }
 
 /// Segments of the arches.
-const ARC: usize = 16;
+const ARC: usize = 14;
 
 /// The sides and the back of a niche.
 fn recessed(m: &mut Model, wall: Wall, n: Niche, palette: &Palette) {

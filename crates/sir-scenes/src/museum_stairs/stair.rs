@@ -48,11 +48,8 @@ pub(super) fn stair(palette: &Palette) -> Model {
         0.65..0.73 => palette.carpet_border,
         _ => palette.stone,
     };
-    let lanes = [0.34, 0.42, 0.84, 1.3, 1.72, 1.80];
-    let mut lanes: Vec<f64> = lanes.to_vec();
-    lanes.insert(0, far);
-    lanes.push(near);
-    let mut z = lanes.clone();
+    let lanes = [far, 0.34, 0.42, 0.84, 1.3, 1.72, 1.80, near];
+    let mut z = lanes.to_vec();
     z.push(SIDE - GAP);
     let landing = |d: DVec3, p: DVec3| {
         let way = (1.07 - p.z).abs() - 0.65;

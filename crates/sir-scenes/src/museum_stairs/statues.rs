@@ -18,7 +18,7 @@ pub(super) fn statues(palette: &Palette) -> Model {
     let plinth = 0.55;
     let z = -0.36;
     plinth_at(&mut m, palette.verde, [0.0, APSE.sill + GAP, z], [0.5, plinth]);
-    let victory = carved(palette.marble, Figure::Victory, 0.0477);
+    let victory = carved(palette.marble, Figure::Victory, 0.0457);
     let place = DVec3::new(0.0, APSE.sill + plinth + 2.0 * GAP, z);
     m.add(
         &victory,
@@ -26,7 +26,7 @@ pub(super) fn statues(palette: &Palette) -> Model {
     );
 
     // Two water bearers beside the foot of the stair.
-    let bearer = carved(palette.marble, Figure::WaterBearer, 0.053);
+    let bearer = carved(palette.marble, Figure::WaterBearer, 0.0553);
     for side in [-1.0, 1.0] {
         let place = [side * 3.9, GAP, FOOT - 1.7];
         plinth_at(&mut m, palette.verde, place, [0.45, 0.9]);
@@ -38,10 +38,10 @@ pub(super) fn statues(palette: &Palette) -> Model {
 
     // Abstract works on the floor of the hall and on the gallery.
     let knot = knot(palette.bronze);
-    plinth_at(&mut m, palette.rosso, [-3.55, GAP, 11.9], [0.55, 0.8]);
-    m.add_at(&knot, -3.55, 0.8 + 2.0 * GAP, 11.9);
-    plinth_at(&mut m, palette.rosso, [3.55, GAP, 11.9], [0.45, 0.7]);
-    m.add_at(&twisted(palette.verdigris), 3.55, 0.7 + 2.0 * GAP, 11.9);
+    plinth_at(&mut m, palette.rosso, [-2.75, GAP, 11.4], [0.55, 0.8]);
+    m.add_at(&knot, -2.75, 0.8 + 2.0 * GAP, 11.4);
+    plinth_at(&mut m, palette.rosso, [2.75, GAP, 11.4], [0.45, 0.7]);
+    m.add_at(&twisted(palette.verdigris), 2.75, 0.7 + 2.0 * GAP, 11.4);
     for side in [-1.0, 1.0] {
         let place = [side * (HALF_WIDTH - 0.95), GALLERY + GAP, LENGTH - 0.95];
         plinth_at(&mut m, palette.verde, place, [0.3, 0.9]);
@@ -54,7 +54,7 @@ pub(super) fn statues(palette: &Palette) -> Model {
 fn busts(m: &mut Model, palette: &Palette) {
     let mut carved = Model::default();
     let bounds = [DVec3::new(-0.2555, -0.0431, -0.2407), DVec3::new(0.27, 0.74, 0.26)];
-    carved.carve(bounds, 0.0317, bust, |_| palette.marble);
+    carved.carve(bounds, 0.0291, bust, |_| palette.marble);
     let mut on_foot = Model::default();
     let foot = [[0.13, 0.0], [0.13, 0.03], [0.08, 0.06], [0.065, 0.12], [0.10, 0.16], [0.10, 0.18]];
     on_foot.lathe(&foot, 16, palette.rosso);
@@ -63,7 +63,7 @@ fn busts(m: &mut Model, palette: &Palette) {
         for side in [-1.0, 1.0] {
             let x = side * (HALF_WIDTH + 0.5 * SMALL.depth - 0.02);
             let y = SMALL.sill + GAP;
-            if (i + usize::from(side > 0.0)) % 2 == 0 {
+            if (i + usize::from(side > 0.0)) % 3 == 0 {
                 plinth_at(m, palette.pale, [x, y, z], [0.19, 0.42]);
                 let place = DAffine3::from_translation(DVec3::new(x, y + 0.42 + GAP, z));
                 m.add(&on_foot, place * DAffine3::from_rotation_y(-side * 0.5 * PI));
@@ -191,11 +191,11 @@ pub(super) fn amphora(body: MaterialId, band: MaterialId, size: f64) -> Model {
     m
 }
 
-/// Benches of stone under the gallery's edge.
+/// Benches along the gallery's edge.
 pub(super) fn benches(palette: &Palette) -> Model {
     let mut m = Model::default();
-    for z in [10.2, 15.2] {
-        for side in [-1.0, 1.0] {
+    for (side, places) in [(-1.0, [11.0, 15.0]), (1.0, [12.9, 15.4])] {
+        for z in places {
             let x = side * (EDGE - 0.95);
             m.block([x - 0.22, 0.40, z - 0.9], [x + 0.22, 0.47, z + 0.9], 0.6, palette.dark_wood);
             m.block([x - 0.2, 0.47 + GAP, z - 0.88], [x + 0.2, 0.53, z + 0.88], 0.6, palette.leather);

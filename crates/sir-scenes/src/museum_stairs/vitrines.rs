@@ -1,9 +1,10 @@
 //! Open vitrines with vases under hidden lamps.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
+use sir_geom::MaterialId;
 
 use super::palette::Palette;
-use super::size::{EDGE, FOOT, SOUTH_EDGE};
+use super::size::{FOOT, SOUTH_EDGE};
 use super::statues::amphora;
 use crate::model::{GAP, Model};
 
@@ -16,15 +17,16 @@ pub(super) fn vitrines(palette: &Palette) -> Model {
         [palette.glaze, palette.clay],
         [palette.paints[0], palette.marble],
     ];
-    let places = [[-1.0, FOOT + 1.3], [1.0, FOOT + 1.3], [-1.0, SOUTH_EDGE - 1.6], [1.0, SOUTH_EDGE - 1.6]];
-    for (colours, [side, z]) in colours.into_iter().zip(places) {
-        m.add_at(&vitrine(palette, colours), side * (EDGE - 2.5), GAP, z);
+    let far = SOUTH_EDGE - 1.6;
+    let places = [[-3.1, FOOT + 1.3], [4.05, FOOT + 1.3], [-4.05, far], [4.05, far]];
+    for (colours, [x, z]) in colours.into_iter().zip(places) {
+        m.add_at(&vitrine(palette, colours), x, GAP, z);
     }
     m
 }
 
 /// A plinth with a cap on four posts, on the origin.
-fn vitrine(palette: &Palette, [body, band]: [sir_geom::MaterialId; 2]) -> Model {
+fn vitrine(palette: &Palette, [body, band]: [MaterialId; 2]) -> Model {
     let mut m = Model::default();
     let (half, plinth, clear) = (0.34, 0.92, 1.05);
     m.block([-half, 0.0, -half], [half, 0.10, half], 0.6, palette.dark_wood);
@@ -43,6 +45,12 @@ fn vitrine(palette: &Palette, [body, band]: [sir_geom::MaterialId; 2]) -> Model 
         }
     }
     m.block([-half, high, -half], [half, high + 0.09, half], 0.6, palette.dark_wood);
+    // A hipped roof: a turned body with four sides.
+    let roof = [[half * std::f64::consts::SQRT_2 - 0.02, 0.0], [0.12, 0.16], [0.09, 0.19]];
+    let mut hipped = Model::default();
+    hipped.lathe(&roof, 4, palette.bronze);
+    let turn = DAffine3::from_rotation_y(std::f64::consts::FRAC_PI_4);
+    m.add(&hipped, DAffine3::from_translation(DVec3::new(0.0, high + 0.09 + GAP, 0.0)) * turn);
     // A rim hides the lamp.
     let rim = half - 0.06;
     let mut bar = |x: [f64; 2], z: [f64; 2]| {
