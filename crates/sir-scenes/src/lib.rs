@@ -9,6 +9,7 @@
 //!   at.
 //! * [`airplane_cabin`] has many small things, and light that is hidden almost everywhere: it is there to be looked at,
 //!   and to be computed by many processors.
+//! * [`museum_stairs`] is a large hall full of sculpture, likewise to be looked at.
 //!
 //! All lengths are metres, `y` is up, and no scene has light that can leave it, but for the Cornell box, which is open
 //! at the front.
@@ -19,6 +20,7 @@ mod error;
 mod exact;
 mod gltf;
 mod model;
+mod museum_stairs;
 mod random;
 mod reading_room;
 mod spectrum;
@@ -29,5 +31,6 @@ pub use cornell_box::cornell_box;
 pub use error::Error;
 pub use exact::{SphereShell, concentric_spheres, concentric_spheres_answer, furnace, furnace_answer};
 pub use gltf::write_gltf;
+pub use museum_stairs::museum_stairs;
 pub use reading_room::reading_room;
 pub use stored::{FURNACE_EXITANCE, FURNACE_REFLECTANCE, INNER_SPHERE, OUTER_SPHERE, Stored, stored};

@@ -2,7 +2,9 @@
 
 use sir_geom::{Rgb, Scene, SceneError};
 
-use crate::{SphereShell, airplane_cabin, concentric_spheres, cornell_box, furnace, reading_room};
+use crate::{
+    SphereShell, airplane_cabin, concentric_spheres, cornell_box, furnace, museum_stairs, reading_room,
+};
 
 /// Reflectance of the stored furnace: the radiosity is 2, 5 and 10 W/m².
 pub const FURNACE_REFLECTANCE: Rgb = Rgb::new(0.5, 0.8, 0.9);
@@ -42,5 +44,6 @@ pub fn stored() -> Result<Vec<Stored>, SceneError> {
         },
         Stored { path: "reading-room/reading-room.glb", scene: reading_room()?.scene },
         Stored { path: "airplane-cabin/airplane-cabin.glb", scene: airplane_cabin()?.scene },
+        Stored { path: "museum-stairs/museum-stairs.glb", scene: museum_stairs()?.scene },
     ])
 }

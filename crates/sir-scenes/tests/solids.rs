@@ -6,13 +6,14 @@ use glam::DVec3;
 use sir_geom::{Scene, SceneError};
 use sir_scenes::{
     FURNACE_EXITANCE, FURNACE_REFLECTANCE, INNER_SPHERE, OUTER_SPHERE, airplane_cabin, concentric_spheres,
-    furnace, reading_room,
+    furnace, museum_stairs, reading_room,
 };
 
-fn closed_scenes() -> Result<[(&'static str, Scene); 4], SceneError> {
+fn closed_scenes() -> Result<[(&'static str, Scene); 5], SceneError> {
     Ok([
         ("furnace", furnace(1.0, FURNACE_REFLECTANCE, FURNACE_EXITANCE)?.scene),
         ("concentric spheres", concentric_spheres(INNER_SPHERE, OUTER_SPHERE, 2)?.scene),
+        ("museum stairs", museum_stairs()?.scene),
         ("reading room", reading_room()?.scene),
         ("airplane cabin", airplane_cabin()?.scene),
     ])

@@ -7,16 +7,20 @@
 //!   average with its whole patch, and lose it where it is hidden.
 //! * Positions are multiples of 2⁻¹⁶ m (see [`Model::store`]).
 
+mod carve;
 mod lathe;
+mod loft;
 mod pillow;
 mod prism;
 mod sheet;
+mod wall;
 
 use glam::{DAffine3, DVec3};
 use sir_geom::{MaterialId, SceneBuilder};
 
 pub(crate) use pillow::Ends;
 pub(crate) use sheet::lines;
+pub(crate) use wall::{Wall, half_rings};
 
 /// Distance between things that stand on or lean against each other \[m\].
 pub(crate) const GAP: f64 = 0.001;

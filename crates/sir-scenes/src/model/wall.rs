@@ -1,0 +1,61 @@
+//! Upright walls and the arched recesses in them.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use sir_geom::MaterialId;
+
+use super::{Model, lines};
+
+/// A wall seen from inside: `u` metres from its left end, `v` above the floor, `w` behind its surface.
+#[derive(Clone, Copy)]
+pub(crate) struct Wall {
+    pub(crate) left: DVec3,
+    pub(crate) right: DVec3,
+}
+
+impl Wall {
+    pub(crate) fn at(self, u: f64, v: f64, w: f64) -> DVec3 {
+        self.left + u * self.right + v * DVec3::Y - w * self.right.cross(DVec3::Y)
+    }
+
+    /// A half circle, counter-clockwise from its right end.
+    pub(crate) fn arc(self, [u, v, w]: [f64; 3], radius: f64, segments: usize) -> Vec<DVec3> {
+        (0..=segments)
+            .map(|i| {
+                let (sin, cos) = (PI * i as f64 / segments as f64).sin_cos();
+                self.at(u + radius * cos, v + radius * sin, w)
+            })
+            .collect()
+    }
+}
+
+/// Radii and numbers of segments of half circles from the given one down to the centre, a cell apart.
+pub(crate) fn half_rings(radius: f64, segments: usize, cell: f64) -> Vec<(f64, usize)> {
+    lines(radius, 0.0, -cell)
+        .iter()
+        .map(|&r| (r, ((segments as f64 * r / radius).round() as usize).max(1)))
+        .collect()
+}
+
+impl Model {
+    /// Adds the sides of a recess: `edge` is its closed outline, counter-clockwise seen from the room, and `inward` leads
+    /// to its bottom.
+    pub(crate) fn recess(&mut self, edge: &[DVec3], inward: DVec3, material: MaterialId) {
+        self.sheet([edge.len() - 1, 2], |i, j| edge[i] + 0.5 * j as f64 * inward, |_, _| material);
+    }
+
+    /// Adds the area between half circles about one centre. A circle of radius zero is the centre itself.
+    pub(crate) fn half_disc(
+        &mut self,
+        wall: Wall,
+        centre: [f64; 3],
+        rings: &[(f64, usize)],
+        material: MaterialId,
+    ) {
+        for pair in rings.windows(2) {
+            let [outer, inner] = [pair[0], pair[1]].map(|(r, segments)| wall.arc(centre, r, segments));
+            self.stitch(&outer, &inner, material);
+        }
+    }
+}

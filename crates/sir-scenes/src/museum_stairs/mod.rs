@@ -1,0 +1,88 @@
+//! The hall of a museum's stair.
+//!
+//! Cool light of the sky falls through deep coffers into the middle of the hall. All else has it from walls, floors
+//! and carpets, or from warm lamps that hide: in a trough on the cornice, in bowls on the pilasters, in the great
+//! niche and under the caps of the vitrines. Only the globes on the stair can be seen.
+
+mod balustrade;
+mod coffers;
+mod columns;
+mod cornice;
+mod floor;
+mod gallery;
+mod lamps;
+mod palette;
+mod pictures;
+mod sculptor;
+mod shell;
+mod size;
+mod stair;
+mod statues;
+mod vitrines;
+
+use glam::DVec3;
+use sir_geom::{Built, Camera, SceneBuilder, SceneError};
+
+use crate::model::{GAP, Model, lines};
+use palette::Palette;
+use size::{FOOT, GALLERY, LENGTH};
+
+/// The hall of a stair in a museum, 16 m wide, 21 m long and 13 m high: a wide flight leads to a landing, two lead on
+/// to a gallery on columns; statues, vases and paintings. It is closed: no light leaves it.
+///
+/// Cameras: `top` from under the ceiling toward the stair, `foot` from the entrance, and `gallery` along the gallery.
+///
+/// # Errors
+///
+/// None that can occur with the numbers of the hall; the signature is that of every scene.
+pub fn museum_stairs() -> Result<Built, SceneError> {
+    let mut builder = SceneBuilder::new();
+    let palette = Palette::new(&mut builder);
+    let mut hall = shell::shell(&palette);
+    for part in [
+        coffers::fittings(&palette),
+        columns::columns(&palette),
+        gallery::gallery(&palette),
+        cornice::cornice(&palette),
+        stair::stair(&palette),
+        runner(&palette),
+        lamps::lamps(&palette),
+        statues::statues(&palette),
+        statues::benches(&palette),
+        vitrines::vitrines(&palette),
+        pictures::pictures(&palette),
+    ] {
+        hall.add_at(&part, 0.0, 0.0, 0.0);
+    }
+    hall.store(&mut builder);
+    for (name, eye, target, degrees) in [
+        ("top", [2.0, 9.4, 18.35], [-0.3, 3.15, 5.0], 62.0),
+        ("foot", [1.1, 1.65, 18.1], [-0.5, 4.6, 2.0], 62.0),
+        ("gallery", [7.3, GALLERY + 1.75, 18.3], [2.9, GALLERY + 0.45, 3.0], 58.0f64),
+    ] {
+        let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
+        if let Some(mut camera) = Camera::looking_at(eye, target, DVec3::Y, degrees.to_radians()) {
+            camera.name = name.to_owned();
+            camera.aspect = Some(16.0 / 9.0);
+            builder.add_camera(camera);
+        }
+    }
+    builder.build()
+}
+
+/// The carpet between the entrance and the stair.
+fn runner(palette: &Palette) -> Model {
+    let mut m = Model::default();
+    let (half, border) = (stair::CARPET, stair::BORDER);
+    let (from, to) = (FOOT + 0.02, LENGTH - 0.6);
+    let x = [-half, border - half, -0.4, 0.4, half - border, half];
+    let mut z = vec![from];
+    z.extend(lines(from + border, to - border, 0.6));
+    z.push(to);
+    let colour = |_, p: DVec3| {
+        let edge = (half - p.x.abs()).min((p.z - from).min(to - p.z));
+        if edge < border { palette.carpet_border } else { palette.carpet }
+    };
+    m.grid_block([&x, &[GAP, 0.012], &z], colour);
+    m
+}
