@@ -53,12 +53,14 @@ mod hit;
 mod kits;
 mod lanes;
 mod leaf;
+mod memory;
 mod search;
 mod tracer;
 mod tree;
 mod triangle;
 
 pub use hit::Hit;
+pub use memory::{collect_in_large_pages, prefetch};
 pub use tracer::{LineHits, Ray, Tracer};
 
 use sir_geom::Scene;
@@ -66,12 +68,6 @@ use sir_geom::Scene;
 use crate::grid::Grid;
 use crate::kits::Kits;
 use crate::tree::Tree;
-
-/// Begins to bring something to the caches, because it will soon be needed: a hint, without any other effect.
-#[inline]
-pub fn prefetch<T>(what: &T) {
-    lanes::prefetch(std::ptr::from_ref(what).cast(), size_of::<T>());
-}
 
 /// The triangles of a scene, arranged for lines to be traced.
 #[derive(Clone, Debug)]

@@ -8,6 +8,7 @@ use crate::build::{self, Hierarchy};
 use crate::grid::Grid;
 use crate::lanes::{BOXES, Kit};
 use crate::leaf::Leaf;
+use crate::memory::collect_in_large_pages;
 use crate::triangle::GridTriangle;
 
 /// How much boxes are enlarged, in radii of the scene: more than single precision loses on the way through a node.
@@ -73,11 +74,12 @@ impl Tree {
         let Hierarchy { nodes, leaves: ranges, order } = build::hierarchy(&triangles);
         let mut places = vec![0; triangles.len()];
         order.iter().zip(0..).for_each(|(&i, place)| places[i as usize] = place);
-        let triangles: Vec<GridTriangle> = order.iter().map(|&i| triangles[i as usize]).collect();
+        let triangles = collect_in_large_pages(order.iter().map(|&i| triangles[i as usize]));
         let of = |range: &Range<u32>| triangles[range.start as usize..range.end as usize].iter();
-        let leaves = ranges.iter().map(|range| Leaf::new(of(range))).collect();
+        let leaves = collect_in_large_pages(ranges.iter().map(|range| Leaf::new(of(range))));
         let firsts = ranges.iter().map(|range| range.start).collect();
         let most_waiting = most_waiting(&nodes, 0);
+        let nodes = collect_in_large_pages(nodes.into_iter());
         Self { nodes, leaves, firsts, triangles, places, most_waiting }
     }
 

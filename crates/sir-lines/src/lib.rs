@@ -42,6 +42,7 @@ mod facets;
 mod forecast;
 mod local;
 mod stream;
+mod turn;
 
 pub use allocation::Allocation;
 pub use domain::Domain;

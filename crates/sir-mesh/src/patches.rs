@@ -199,6 +199,13 @@ impl PatchMesh {
         }
     }
 
+    /// Where [`sides_at`](Self::sides_at) looks a triangle up, for those who want to have it in the caches in time.
+    #[inline]
+    #[must_use]
+    pub fn place_of(&self, triangle: TriangleId) -> &impl Sized {
+        &self.cuts[triangle.index()]
+    }
+
     /// The front and, if it takes part in light transport, the back of the patch in which a point of a triangle lies.
     #[inline]
     #[must_use]

@@ -122,7 +122,7 @@ impl<'m> FirstShot<'m> {
         let page = tally.ledger.page(worker);
         let mut tracer = accel.tracer();
         let (mut rays, mut powers) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
-        let mut gifts = Vec::with_capacity(RAYS);
+        let (mut met, mut gifts) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
         let mut first = lines.start;
         while first < lines.end {
             let end = lines.end.min(first + RAYS as u64);
@@ -133,25 +133,29 @@ impl<'m> FirstShot<'m> {
                 powers.push(self.per_line[source]);
             }
             first = end;
+            met.clear();
             gifts.clear();
             tracer.closest_each(&rays, |i, hit| {
-                let power = powers[i];
-                books.balance.emitted += power;
+                books.balance.emitted += powers[i];
                 books.counts.lines += 1;
                 match hit {
+                    Some(hit) => met.push((hit, powers[i])),
                     None => {
-                        books.balance.escaped += power;
+                        books.balance.escaped += powers[i];
                         books.counts.empty += 1;
-                    }
-                    Some(hit) => {
-                        books.counts.crossings += 1;
-                        match mesh.side_at(hit.triangle, hit.point, hit.side) {
-                            Some(side) => gifts.push((side, power)),
-                            None => books.balance.blocked += power,
-                        }
                     }
                 }
             });
+            books.counts.crossings += met.len() as u64;
+            for (i, &(hit, power)) in met.iter().enumerate() {
+                if let Some((ahead, _)) = met.get(i + AHEAD) {
+                    sir_accel::prefetch(mesh.place_of(ahead.triangle));
+                }
+                match mesh.side_at(hit.triangle, hit.point, hit.side) {
+                    Some(side) => gifts.push((side, power)),
+                    None => books.balance.blocked += power,
+                }
+            }
             // Records are far apart in memory, which is asked for some time before.
             for (i, &(side, power)) in gifts.iter().enumerate() {
                 if let Some(&(ahead, _)) = gifts.get(i + AHEAD) {

@@ -9,7 +9,7 @@ use crate::segments::{End, Segment, Segments};
 use crate::{Counts, Model};
 
 /// How many records ahead memory is asked for.
-pub(crate) const AHEAD: usize = 16;
+pub(crate) const AHEAD: usize = 40;
 
 /// Lines that are made at a time.
 const LINES: usize = 1024;

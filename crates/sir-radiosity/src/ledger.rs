@@ -63,8 +63,7 @@ impl Ledger {
     pub(crate) fn new(sides: usize, workers: usize, least: usize, unit: SquareUnit) -> Self {
         let affordable = workers * sides * size_of::<Record>() <= AFFORDABLE;
         let copies = if affordable { workers.max(1) } else { workers.clamp(1, least) };
-        let mut records = Vec::with_capacity(sides * copies);
-        records.resize_with(sides * copies, Record::default);
+        let records = sir_accel::collect_in_large_pages((0..sides * copies).map(|_| Record::default()));
         Self { records, sides, unit, shared: copies < workers }
     }
 

@@ -53,6 +53,9 @@ pub struct Segments {
     found: Vec<(u32, [Packed; 2])>,
 }
 
+/// How many hits ahead memory is asked for.
+const AHEAD: usize = 24;
+
 /// The mark of a hit that is not the first of its line.
 const LATER: u32 = u32::MAX;
 
@@ -64,7 +67,10 @@ impl Segments {
         // them at once.
         let count = hits.hits().len();
         self.ends.clear();
-        self.ends.extend(hits.hits().iter().map(|hit| {
+        let found = hits.hits();
+        self.ends.extend(found.iter().enumerate().map(|(i, hit)| {
+            let ahead = found[(i + AHEAD).min(count - 1)].triangle;
+            sir_accel::prefetch(mesh.place_of(ahead));
             let (front, back) = mesh.sides_at(hit.triangle, hit.point);
             let front = Packed(front.0, hit.triangle.0);
             let back = Packed(back.map_or(Packed::INACTIVE.0, |back| back.0), hit.triangle.0);
