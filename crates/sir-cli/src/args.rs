@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 
+use crate::experiment::ExperimentArgs;
 use crate::scaling::ScalingArgs;
 
 const EXAMPLES: &str = "\
@@ -92,6 +93,12 @@ pub enum Command {
     /// whole run. Checks that all results are the same. The output directory gets scaling.csv, scaling.json,
     /// scaling.md and scaling.svg.
     Scaling(ScalingArgs),
+    /// Repeat the experiment of Martínez, Forés and Martín (2009), section 5.
+    ///
+    /// Measures speed-up and efficiency, error, the best share of local lines, how many global lines miss the scene, how evenly
+    /// their work is shared, and what the mean of independent replicas loses. The output directory gets report.md with diagrams
+    /// and pictures, report.json, and all runs with their pipelines. Takes hours; a small --scale, minutes.
+    Experiment(ExperimentArgs),
 }
 
 /// How to run a pipeline.
