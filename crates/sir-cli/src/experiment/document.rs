@@ -172,7 +172,7 @@ impl Findings {
         let claims =
             || self.scenes.iter().flat_map(|scene| scene.claims.iter().map(move |claim| (scene, claim)));
         let mut rules: Vec<&str> = Vec::new();
-        let mut grid = Grid::new(&["claim of the paper", "scene", "here", "verdict", "rule"]);
+        let mut grid = Grid::of_words(&["claim of the paper", "scene", "here", "verdict", "rule"]);
         // Claims side by side, each for all scenes.
         let mut names: Vec<&str> = Vec::new();
         for (_, claim) in claims() {
@@ -200,8 +200,14 @@ impl Findings {
         }
         let rules: String =
             (1..).zip(&rules).map(|(number, rule): (usize, _)| format!("{number}. {rule}.\n")).collect();
+        let smaller = if self.scale < 1.0 {
+            "With so few lines, verdicts on speed, errors and replicas are about a smaller task than the paper's.\n\n"
+        } else {
+            ""
+        };
         format!(
-            "## Summary\n\n{}A claim is *confirmed* if its rule holds, *open* if too little was measured to tell, else *not confirmed*:\n\n{rules}\n",
+            "## Summary\n\n{}A claim is *confirmed* if its rule holds, *open* if too little was measured to tell, else *not \
+             confirmed*:\n\n{rules}\n{smaller}",
             grid.end()
         )
     }

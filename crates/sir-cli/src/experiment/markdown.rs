@@ -8,7 +8,16 @@ pub(crate) struct Grid {
 impl Grid {
     /// A table with these columns.
     pub(crate) fn new(columns: &[&str]) -> Self {
-        let rules = std::iter::once("---").chain(columns.iter().skip(1).map(|_| "--:"));
+        Self::aligned(columns, "--:")
+    }
+
+    /// A table of words.
+    pub(crate) fn of_words(columns: &[&str]) -> Self {
+        Self::aligned(columns, "---")
+    }
+
+    fn aligned(columns: &[&str], rule: &'static str) -> Self {
+        let rules = std::iter::once("---").chain(columns.iter().skip(1).map(|_| rule));
         let mut grid = Self { text: String::new() };
         grid.row(columns.iter().map(|&c| c.to_owned()));
         grid.row(rules.map(str::to_owned));

@@ -4,10 +4,10 @@
 //! their results; what needs no solution it counts in its own process. Each run has a directory that is kept, with its
 //! pipeline and its report: an experiment that was interrupted goes on with the runs that are missing.
 //!
-//! * [`Subject`](subject::Subject): a pipeline, and those derived from it. [`runs`]: making them, once.
-//! * A module for each part finds numbers and writes a section: [`speed`], [`precision`], [`mix`], [`bodies`], [`spread`],
-//!   [`farm`].
-//! * [`paper`]: what was published. [`verdict`]: whether the numbers agree. [`document`]: the report.
+//! * `subject`: a pipeline, and those derived from it; `runs`: making them, once; `scene`: what is made for one.
+//! * A module for each part finds numbers and writes a section: `speed` (scaling), `precision` (error), `mix`, `bodies`
+//!   (domains), `spread`, `farm`.
+//! * `paper`: what was published; `verdict`: whether the numbers agree; `document`: the report.
 
 mod accuracy;
 mod agenda;

@@ -45,6 +45,9 @@ pub(crate) struct Speed {
     pub(crate) published: Option<Published>,
 }
 
+/// Takes a part of a run from its row.
+type Pick = fn(&Row) -> Option<Part>;
+
 /// The run on these workers.
 pub(crate) fn wanted(subject: &Subject, workers: Workers) -> Wanted {
     let name = format!("scaling-{}x{}", workers.ranks, workers.threads);
@@ -138,11 +141,11 @@ impl Speed {
             );
         }
         let mut grid = Grid::new(&["", "T(1) [s]", "T(8) [s]", "S(8)", "E(8)"]);
-        let here = |pick: fn(&Row) -> Option<Part>, p| {
+        let here = |pick: Pick, p| {
             let row = self.study.rows.iter().find(|row| row.p == p && row.workers.ranks.get() == 1);
             row.and_then(pick)
         };
-        let parts: [(&str, Times, fn(&Row) -> Option<Part>); 3] = [
+        let parts: [(&str, Times, Pick); 3] = [
             ("first shot", published.first_shot, |row| row.first_shot),
             ("multipath", published.multipath, |row| row.multipath),
             ("all", published.whole, |row| Some(row.whole)),
@@ -150,7 +153,8 @@ impl Speed {
         for (name, times, pick) in parts {
             let part = times.part();
             let ratios = [part.speed_up, part.efficiency].map(|x| format!("{x:.2}"));
-            let cells = [format!("{name}, paper"), seconds(times.sequential), seconds(times.parallel)];
+            let [one, many] = [times.sequential, times.parallel].map(|t| format!("{t:.1}"));
+            let cells = [format!("{name}, paper"), one, many];
             grid.row(cells.into_iter().chain(ratios));
             let one = here(pick, 1).map_or("-".into(), |one| seconds(one.seconds.median));
             let eight = here(pick, P).map_or_else(

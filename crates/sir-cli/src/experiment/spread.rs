@@ -130,7 +130,7 @@ impl Unevenness {
             "### Cost of a line\n\n{} global lines meet {:.2} surfaces each; the standard deviation from line to line is {:.2}. In blocks of \
              lines it evens out:\n\n{}{P} equal shares of them, traced one after the other by one thread (times are for drawing lines and finding \
              crossings, and have the noise of the machine in them):\n\n{}The largest deviation is {}. Of {P} equal shares of the pipeline's \
-             global lines, the standard deviation is to be {}.\n\n",
+             global lines, a standard deviation of {} is to be expected.\n\n",
             markdown::count(self.lines),
             self.mean,
             self.deviation,

@@ -90,7 +90,7 @@ impl Subject {
         }
     }
 
-    /// The first picture that can be shown in a report.
+    /// The pictures that the pipeline asks for.
     pub(crate) fn pictures(&self) -> impl Iterator<Item = &Output> {
         self.pipeline.outputs().filter(|output| matches!(output.content, Content::Image(_)))
     }

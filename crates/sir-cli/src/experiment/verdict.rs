@@ -94,10 +94,13 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 pub(crate) fn of_speed(speed: &Speed) -> Vec<Claim> {
     let rows: Vec<&Row> = speed.study.rows.iter().filter(|row| row.p > 1 && !row.more_than_cores).collect();
     let efficiencies = range(rows.iter().map(|row| row.whole.efficiency));
-    let most = rows.iter().map(|row| row.p).max().unwrap_or(1);
     let mut numbers: Vec<usize> = rows.iter().map(|row| row.p).collect();
     numbers.dedup();
-    let too_few = || format!("measured with {} numbers of workers above 1", numbers.len());
+    let range_of_p = format!("p = {}", numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(", "));
+    let too_few = || match numbers.len() {
+        0 => "measured with no more workers than one".to_owned(),
+        _ => format!("measured for {range_of_p} only"),
+    };
     let communication =
         range(rows.iter().filter(|row| row.workers.ranks.get() > 1).map(|row| row.communication.share));
     let least = EFFICIENCY - EFFICIENCY_SLACK;
@@ -110,7 +113,10 @@ pub(crate) fn of_speed(speed: &Speed) -> Vec<Claim> {
             format!(
                 "the smallest efficiency of a whole run, with 2 workers or more but not more than cores, is at least {least:.2}"
             ),
-            efficiencies.map_or_else(too_few, |(a, b)| format!("E = {a:.2} to {b:.2} for p = 2 to {most}")),
+            efficiencies.map_or_else(too_few, |(a, b)| {
+                let values = if a == b { format!("{a:.2}") } else { format!("{a:.2} to {b:.2}") };
+                format!("E = {values} for {range_of_p}")
+            }),
             efficiencies.map(|(a, _)| a >= least),
         ),
         claim(
@@ -120,7 +126,7 @@ pub(crate) fn of_speed(speed: &Speed) -> Vec<Claim> {
             ),
             efficiencies
                 .filter(|_| numbers.len() >= SEVERAL)
-                .map_or_else(too_few, |(a, b)| format!("E differs by {:.2} for p = 2 to {most}", b - a)),
+                .map_or_else(too_few, |(a, b)| format!("E differs by {:.2} for {range_of_p}", b - a)),
             efficiencies.filter(|_| numbers.len() >= SEVERAL).map(|(a, b)| b - a <= CONSTANT),
         ),
         claim(
