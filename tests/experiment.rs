@@ -43,7 +43,7 @@ fn a_report_has_all_parts_and_nothing_is_run_twice() {
     let (_, after_summary) = report.split_once("## Summary").unwrap();
     let mut rest = after_summary;
     for section in [
-        "| efficiency is about 90 % for any number of processors up to 8 | box |",
+        "| efficiency is about 90 % for any number of processors up to 8 (threads) | box |",
         "## box",
         "### Pictures\n\n![box](box.png)",
         "### Speed-up and efficiency",

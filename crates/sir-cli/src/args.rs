@@ -17,6 +17,7 @@ Examples:
   sir resume results/cornell-box                 go on where it was stopped, by Ctrl-C or a power cut
   mpirun -n 4 sir run room.ron                   on several machines, if built with --features mpi
   sir scaling room.ron --threads 1,2,4           how much faster are more threads?
+  sir experiment --scale 0.01                    what does the paper of 2009 claim, and does it hold?
 
 A pipeline is a text file like this one (docs/pipeline.md tells all):
   Pipeline(

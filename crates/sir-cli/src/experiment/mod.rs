@@ -68,7 +68,9 @@ pub fn command(args: &ExperimentArgs) -> Result<String, Error> {
     let subjects = subjects(args)?;
     let cores = sir_parallel::cores();
     let plan = args.plan(cores, sir_parallel::HAS_MPI);
-    let launcher = Launcher::new(&args.mpirun, plan.most_ranks(), interrupt::flag())?;
+    // Who does not measure speed-ups needs no MPI.
+    let most_ranks = if args.parts().contains(&Part::Scaling) { plan.most_ranks() } else { 1 };
+    let launcher = Launcher::new(&args.mpirun, most_ranks, interrupt::flag())?;
     let folder = folder(args.out.as_deref())?;
     let agenda = Agenda::default();
     let mut runs = Runs { launcher, folder: folder.clone(), cores, agenda, progress: Progress::Lines };

@@ -92,22 +92,39 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 
 /// Claims about speed-up. Only rows with several workers, but not more than cores, say something of them.
 pub(crate) fn of_speed(speed: &Speed) -> Vec<Claim> {
-    let rows: Vec<&Row> = speed.study.rows.iter().filter(|row| row.p > 1 && !row.more_than_cores).collect();
+    let rows = || speed.study.rows.iter().filter(|row| row.p > 1 && !row.more_than_cores);
+    let (threads, ranks): (Vec<&Row>, Vec<&Row>) = rows().partition(|row| row.workers.ranks.get() == 1);
+    let mut claims = of_efficiency("threads", &threads);
+    if !ranks.is_empty() {
+        claims.extend(of_efficiency("ranks", &ranks));
+    }
+    let communication = range(ranks.iter().map(|row| row.communication.share));
+    claims.push(claim(
+        "communication costs very little".into(),
+        format!("with ranks, it is at most {} of the whole run", whole_percent(LITTLE)),
+        communication.map_or_else(
+            || "not measured with ranks".into(),
+            |(_, b)| format!("up to {} of the run, waiting included", percent(b)),
+        ),
+        communication.map(|(_, b)| b <= LITTLE),
+    ));
+    claims
+}
+
+/// Claims about the efficiency of one kind of workers.
+fn of_efficiency(kind: &str, rows: &[&Row]) -> Vec<Claim> {
     let efficiencies = range(rows.iter().map(|row| row.whole.efficiency));
-    let mut numbers: Vec<usize> = rows.iter().map(|row| row.p).collect();
-    numbers.dedup();
-    let range_of_p = format!("p = {}", numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(", "));
-    let too_few = || match numbers.len() {
-        0 => "measured with no more workers than one".to_owned(),
-        _ => format!("measured for {range_of_p} only"),
+    let several = efficiencies.filter(|_| rows.len() >= SEVERAL);
+    let numbers = rows.iter().map(|row| row.p.to_string()).collect::<Vec<_>>().join(", ");
+    let too_few = || match rows.len() {
+        0 => "measured with no more than one worker".to_owned(),
+        _ => format!("measured for p = {numbers} only"),
     };
-    let communication =
-        range(rows.iter().filter(|row| row.workers.ranks.get() > 1).map(|row| row.communication.share));
     let least = EFFICIENCY - EFFICIENCY_SLACK;
     vec![
         claim(
             format!(
-                "efficiency is about {} for any number of processors up to {P}",
+                "efficiency is about {} for any number of processors up to {P} ({kind})",
                 whole_percent(EFFICIENCY)
             ),
             format!(
@@ -115,28 +132,17 @@ pub(crate) fn of_speed(speed: &Speed) -> Vec<Claim> {
             ),
             efficiencies.map_or_else(too_few, |(a, b)| {
                 let values = if a == b { format!("{a:.2}") } else { format!("{a:.2} to {b:.2}") };
-                format!("E = {values} for {range_of_p}")
+                format!("E = {values} for p = {numbers}")
             }),
             efficiencies.map(|(a, _)| a >= least),
         ),
         claim(
-            "efficiency stays constant with more processors".into(),
+            format!("efficiency stays constant with more processors ({kind})"),
             format!(
                 "the efficiencies of at least {SEVERAL} numbers of workers above 1 differ by at most {CONSTANT}"
             ),
-            efficiencies
-                .filter(|_| numbers.len() >= SEVERAL)
-                .map_or_else(too_few, |(a, b)| format!("E differs by {:.2} for {range_of_p}", b - a)),
-            efficiencies.filter(|_| numbers.len() >= SEVERAL).map(|(a, b)| b - a <= CONSTANT),
-        ),
-        claim(
-            "communication costs very little".into(),
-            format!("with ranks, it is at most {} of the whole run", whole_percent(LITTLE)),
-            communication.map_or_else(
-                || "not measured with ranks".into(),
-                |(a, b)| format!("{} to {} of the run, waiting included", percent(a), percent(b)),
-            ),
-            communication.map(|(_, b)| b <= LITTLE),
+            several.map_or_else(too_few, |(a, b)| format!("E differs by {:.2} for p = {numbers}", b - a)),
+            several.map(|(a, b)| b - a <= CONSTANT),
         ),
     ]
 }
@@ -237,6 +243,21 @@ mod tests {
         // Two numbers of workers are no trend, and more workers than cores say nothing.
         assert_eq!(verdicts(2, &[12.0, 6.5, 6.0, 6.0]), [Confirmed, Open, Open]);
         assert_eq!(verdicts(1, &[12.0]), [Open, Open, Open]);
+    }
+
+    #[test]
+    fn ranks_are_judged_by_themselves() {
+        let numbers = [1, 2].map(|n| NonZeroUsize::new(n).unwrap());
+        let plan = Plan::each(&numbers, &numbers, NonZeroUsize::MIN);
+        let timing = |whole, communication| {
+            vec![Timing { first_shot: None, multipath: None, whole, sequential: 0.0, communication }]
+        };
+        // One worker, two threads, two ranks.
+        let timings = [timing(10.0, 0.0), timing(5.5, 0.0), timing(8.0, 0.3)];
+        let speed = Speed { study: Study::new("x", 2, &plan, &timings), stages: Vec::new(), published: None };
+        let verdicts: Vec<_> = of_speed(&speed).iter().map(|claim| claim.verdict).collect();
+        use Verdict::{Confirmed, Open, Refuted};
+        assert_eq!(verdicts, [Confirmed, Open, Refuted, Open, Confirmed]);
     }
 
     #[test]
