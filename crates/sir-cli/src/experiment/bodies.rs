@@ -62,20 +62,25 @@ impl Bodies {
 
     /// The section of the report.
     pub(crate) fn section(&self) -> String {
-        let mut grid = Grid::new(&["domain", "surface [m²]", "lines that meet nothing"]);
+        let columns = ["domain", "surface [m²]", "lines that pass the hull by", "lines that meet nothing"];
+        let mut grid = Grid::new(&columns);
+        // Lines through a convex body meet a smaller one in it with a probability of the ratio of the surfaces.
+        let least = self.bodies.iter().map(|miss| miss.surface).fold(f64::INFINITY, f64::min);
         for Miss { body, surface, empty_share } in &self.bodies {
-            grid.row([body.clone(), format!("{surface:.2}"), percent(*empty_share)]);
+            let past = if *surface > 0.0 { 1.0 - least / surface } else { 0.0 };
+            grid.row([body.clone(), format!("{surface:.2}"), percent(past), percent(*empty_share)]);
         }
         let filled = self.sphere_to_box.map_or_else(String::new, |ratio| {
             format!(
-                "The bounding box fills {} of the bounding sphere, whose volume is therefore {} larger. The share of lines that pass a convex \
-                 body by depends on surfaces, not on volumes.\n\n",
+                "The bounding box fills {} of the bounding sphere, whose volume is therefore {} larger. The \
+                 share of lines that pass a convex body by depends on surfaces, not on volumes.\n\n",
                 percent(1.0 / ratio),
                 percent(ratio - 1.0)
             )
         });
         format!(
-            "### Lines that miss the scene\n\n{} lines through each body around the scene:\n\n{}{filled}",
+            "### Lines that miss the scene\n\n{} lines through each body around the scene. How many pass \
+             the convex hull by follows from the surfaces; the others were counted:\n\n{}{filled}",
             markdown::count(self.lines),
             grid.end()
         )

@@ -158,8 +158,8 @@ impl Findings {
         if *scale < 1.0 {
             text += &format!("* Scale: all numbers of lines are {scale} times those of the pipelines.\n");
         }
-        text += "* Each run is in its own folder in `runs`, with its pipeline (`sir run runs/…/pipeline.ron` repeats it) and its `result.json`. \
-                 All numbers are in `report.json`.\n\n";
+        text += "* Each run is in its own folder in `runs`, with its pipeline (`sir run \
+            runs/…/pipeline.ron` repeats it) and its `result.json`. All numbers are in `report.json`.\n\n";
         text += &self.summary();
         for scene in &self.scenes {
             text += &scene.section(*scale);
@@ -201,13 +201,14 @@ impl Findings {
         let rules: String =
             (1..).zip(&rules).map(|(number, rule): (usize, _)| format!("{number}. {rule}.\n")).collect();
         let smaller = if self.scale < 1.0 {
-            "With so few lines, verdicts on speed, errors and replicas are about a smaller task than the paper's.\n\n"
+            "With so few lines, verdicts on speed, errors and replicas are about a smaller task than the \
+             paper's.\n\n"
         } else {
             ""
         };
         format!(
-            "## Summary\n\n{}A claim is *confirmed* if its rule holds, *open* if too little was measured to tell, else *not \
-             confirmed*:\n\n{rules}\n{smaller}",
+            "## Summary\n\n{}A claim is *confirmed* if its rule holds, *open* if too little was measured to \
+             tell, else *not confirmed*:\n\n{rules}\n{smaller}",
             grid.end()
         )
     }

@@ -9,8 +9,8 @@ use thiserror::Error;
 pub enum ExperimentError {
     /// No pipelines were named, and the usual ones are not there.
     #[error(
-        "there is no {}; start `sir experiment` in the folder of the project, which has the scenes, or name pipelines: \
-         `sir experiment room.ron`", path.display()
+        "there is no {}; start `sir experiment` in the folder of the project, which has the scenes, or name \
+         pipelines: `sir experiment room.ron`", path.display()
     )]
     NoScenes {
         /// Where one of them should be.
@@ -18,8 +18,8 @@ pub enum ExperimentError {
     },
     /// There is nothing to measure.
     #[error(
-        "{} has no `Multipath` stage, which the experiment is about; add for instance `Multipath(lines: 1_000_000)` after \
-         `FirstShot`", path.display()
+        "{} has no `Multipath` stage, which the experiment is about; add for instance `Multipath(lines: \
+         1_000_000)` after `FirstShot`", path.display()
     )]
     NoMultipath {
         /// The pipeline.

@@ -132,9 +132,11 @@ impl Farm {
             grid.row(std::iter::once(name).chain(biases).chain(rest));
         }
         format!(
-            "### Replicas and batches\n\nThe paper's processors compute independent replicas, whose mean is the result; each loses what it has not \
-             sent on when its lines end (`tail: 0`). Reflected light is the power that surfaces reflect after the first reflection of the direct light, \
-             against the reference; the RMS is that of luminance of all light. Batches make up for what was not sent on.\n\n{}",
+            "### Replicas and batches\n\nThe paper's processors compute independent replicas, whose mean is \
+             the result; each loses what it has not sent on when its lines end (`tail: 0`). Reflected light \
+             is the power that surfaces reflect after the first reflection of the direct light, against the \
+             reference; the RMS is that of luminance of all light. Batches make up for what was not sent \
+             on.\n\n{}",
             grid.end()
         )
     }

@@ -154,10 +154,11 @@ impl Mix {
     /// The section of the report; `figure` is the file of the diagram.
     pub(crate) fn section(&self, figure: &str) -> String {
         let mut text = format!(
-            "### Local and global lines\n\nA quarter of the lines ({} in all), divided between the first shot and multipath, against the \
-             reference. For equal time the numbers of lines are such that both stages take {:.3} s on one thread at the rates of the sequential \
-             run ({} local and {} global lines per second). Times are those measured on all cores, so they also show what does not depend \
-             on the lines.\n\n",
+            "### Local and global lines\n\nA quarter of the lines ({} in all), divided between the first \
+             shot and multipath, against the reference. For equal time the numbers of lines are such that \
+             both stages take {:.3} s on one thread at the rates of the sequential run ({} local and {} \
+             global lines per second). Times are those measured on all cores, so they also show what does \
+             not depend on the lines.\n\n",
             count(self.lines.total()),
             self.lines.seconds(self.rates),
             count(self.rates.local as u64),

@@ -25,8 +25,8 @@ pub struct ExperimentArgs {
     /// Numbers of threads to measure speed-ups with, such as 1,2,4; default: 1 up to the number of cores.
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = workers)]
     pub threads: Vec<NonZeroUsize>,
-    /// Numbers of processes of one thread each to measure speed-ups with; default: 1 up to the number of cores, if built with
-    /// --features mpi.
+    /// Numbers of processes of one thread each to measure speed-ups with; default: 1 up to the number of cores, if
+    /// built with --features mpi.
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = workers)]
     pub ranks: Vec<NonZeroUsize>,
     /// What starts several processes, as for `sir scaling`.

@@ -12,8 +12,8 @@ pub(crate) const CITATION: &str =
     "Martínez, Forés and Martín (2009), \"Parallel Global-Line Monte Carlo Radiosity\", section 5";
 
 /// On what the authors have measured.
-pub(crate) const MACHINE: &str = "four HP ProLiant DL145 servers, each with two AMD Opteron 244 at 1.8 GHz and 2 GB of \
-                                  memory, on a network of 100 Mbit/s";
+pub(crate) const MACHINE: &str = "four HP ProLiant DL145 servers, each with two AMD Opteron 244 at 1.8 GHz \
+                                  and 2 GB of memory, on a network of 100 Mbit/s";
 
 /// Processors of the parallel runs whose times are reported.
 pub(crate) const P: usize = 8;

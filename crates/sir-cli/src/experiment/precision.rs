@@ -70,9 +70,9 @@ impl Precision {
             ]);
         }
         format!(
-            "### Error\n\nRadiosity of the run with {} local and {} global lines against the reference with {} and {}, with another \
-             seed ({}). Everything is weighted by area and relative to the mean radiosity of the reference, whose own error is in the \
-             RMS, too.\n\n{}",
+            "### Error\n\nRadiosity of the run with {} local and {} global lines against the reference with \
+             {} and {}, with another seed ({}). Everything is weighted by area and relative to the mean \
+             radiosity of the reference, whose own error is in the RMS, too.\n\n{}",
             count(self.lines.local),
             count(self.lines.global),
             count(self.reference_lines.local),

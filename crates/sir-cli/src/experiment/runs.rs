@@ -30,8 +30,8 @@ pub(crate) struct Wanted {
     pub(crate) name: String,
     pub(crate) changes: Changes,
     pub(crate) workers: Workers,
-    /// Whether its time counts: it is then never interrupted by checkpoints, nor put together from two runs, and its table is
-    /// not kept.
+    /// Whether its time counts: it is then never interrupted by checkpoints, nor put together from two runs, and its
+    /// table is not kept.
     pub(crate) timed: bool,
 }
 

@@ -137,7 +137,8 @@ fn in_this_process(runs: &Runs, subject: &Subject, args: &ExperimentArgs) -> Res
     })
 }
 
-/// Copies the picture that the report shows, the first one that can be shown, beside it; returns all pictures, that one first.
+/// Copies the picture that the report shows, the first one that can be shown, beside it; returns all pictures, that
+/// one first.
 fn pictures(runs: &Runs, subject: &Subject, full: &Done) -> Result<Vec<String>, Error> {
     let is_png = |path: &std::path::Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
     let mut paths: Vec<_> = subject.pictures().map(|output| output.path.as_path()).collect();

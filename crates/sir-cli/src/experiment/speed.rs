@@ -114,13 +114,15 @@ impl Speed {
             grid.row(cells.chain([megabytes(s.peak_memory)]));
         }
         let mut text = format!(
-            "### Speed-up and efficiency\n\n{}Loading is reading the scene and making patches; saving is the table. Memory is \
-             that of the largest rank.\n\n{}\n![Speed-up and efficiency over the number of workers]({figure})\n\n",
+            "### Speed-up and efficiency\n\n{}Loading is reading the scene and making patches; saving is \
+             the table. Memory is that of the largest rank.\n\n{}\n![Speed-up and efficiency over the \
+             number of workers]({figure})\n\n",
             grid.end(),
             markdown(&self.study)
         );
         if !sir_parallel::HAS_MPI {
-            text += "This program was built without MPI, so ranks were not measured (`cargo build --release --features mpi`).\n\n";
+            text += "This program was built without MPI, so ranks were not measured (`cargo build --release \
+                --features mpi`).\n\n";
         }
         if let Some(published) = &self.published {
             text += &self.beside(published, scale);
@@ -131,13 +133,13 @@ impl Speed {
     /// Our times beside those of the paper.
     fn beside(&self, published: &Published, scale: f64) -> String {
         let mut text = format!(
-            "The paper has measured a scene of the same subject with as many patches and lines, but not this one, on {MACHINE}. Its speed-ups \
-             and efficiencies are computed from its times.\n\n"
+            "The paper has measured a scene of the same subject with as many patches and lines, but not \
+             this one, on {MACHINE}. Its speed-ups and efficiencies are computed from its times.\n\n"
         );
         if scale < 1.0 {
             text += &format!(
-                "**Here only {scale} times as many lines were traced**, so times cannot be compared, and whatever does not depend \
-                 on the number of lines weighs more here.\n\n"
+                "**Here only {scale} times as many lines were traced**, so times cannot be compared, and \
+                 whatever does not depend on the number of lines weighs more here.\n\n"
             );
         }
         let mut grid = Grid::new(&["", "T(1) [s]", "T(8) [s]", "S(8)", "E(8)"]);

@@ -51,7 +51,8 @@ pub(crate) struct Unevenness {
     pub(crate) blocks: Vec<BlockSpread>,
     /// Eight equal shares of the lines.
     pub(crate) shares: Vec<Share>,
-    /// Standard deviation to expect of one of eight equal shares of the pipeline's global lines, scaled, relative to the mean.
+    /// Standard deviation to expect of one of eight equal shares of the pipeline's global lines, scaled, relative to
+    /// the mean.
     pub(crate) expected: f64,
 }
 
@@ -127,10 +128,11 @@ impl Unevenness {
             shares.row([format!("{number}"), signed_percent(share.deviation), seconds(share.seconds)]);
         }
         format!(
-            "### Cost of a line\n\n{} global lines meet {:.2} surfaces each; the standard deviation from line to line is {:.2}. In blocks of \
-             lines it evens out:\n\n{}{P} equal shares of them, traced one after the other by one thread (times are for drawing lines and finding \
-             crossings, and have the noise of the machine in them):\n\n{}The largest deviation is {}. Of {P} equal shares of the pipeline's \
-             global lines, a standard deviation of {} is to be expected.\n\n",
+            "### Cost of a line\n\n{} global lines meet {:.2} surfaces each; the standard deviation from \
+             line to line is {:.2}. In blocks of lines it evens out:\n\n{}{P} equal shares of them, traced \
+             one after the other by one thread (times are for drawing lines and finding crossings, and have \
+             the noise of the machine in them):\n\n{}The largest deviation is {}. Of {P} equal shares of \
+             the pipeline's global lines, a standard deviation of {} is to be expected.\n\n",
             markdown::count(self.lines),
             self.mean,
             self.deviation,

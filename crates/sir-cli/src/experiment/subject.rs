@@ -120,7 +120,8 @@ impl Subject {
         let derived = Pipeline { path: PathBuf::new(), text: String::new(), seed: changes.seed, stages };
         let Self { name, digest, .. } = self;
         format!(
-            "// Derived from the pipeline of {name} by `sir experiment`. SHA-256 of the scene file:\n// {digest}\n{}",
+            "// Derived from the pipeline of {name} by `sir experiment`. SHA-256 of the scene file:\n// \
+             {digest}\n{}",
             ron_text::text(&derived)
         )
     }

@@ -128,7 +128,8 @@ fn of_efficiency(kind: &str, rows: &[&Row]) -> Vec<Claim> {
                 whole_percent(EFFICIENCY)
             ),
             format!(
-                "the smallest efficiency of a whole run, with 2 workers or more but not more than cores, is at least {least:.2}"
+                "the smallest efficiency of a whole run, with 2 workers or more but not more than cores, is \
+                 at least {least:.2}"
             ),
             efficiencies.map_or_else(too_few, |(a, b)| {
                 let values = if a == b { format!("{a:.2}") } else { format!("{a:.2} to {b:.2}") };
