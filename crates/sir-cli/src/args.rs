@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 
+use crate::experiment::ExperimentArgs;
 use crate::scaling::ScalingArgs;
 
 const EXAMPLES: &str = "\
@@ -16,6 +17,7 @@ Examples:
   sir resume results/cornell-box                 go on where it was stopped, by Ctrl-C or a power cut
   mpirun -n 4 sir run room.ron                   on several machines, if built with --features mpi
   sir scaling room.ron --threads 1,2,4           how much faster are more threads?
+  sir experiment --scale 0.01                    what does the paper of 2009 claim, and does it hold?
 
 A pipeline is a text file like this one (docs/pipeline.md tells all):
   Pipeline(
@@ -92,6 +94,12 @@ pub enum Command {
     /// whole run. Checks that all results are the same. The output directory gets scaling.csv, scaling.json,
     /// scaling.md and scaling.svg.
     Scaling(ScalingArgs),
+    /// Repeat the experiment of Martínez, Forés and Martín (2009), section 5.
+    ///
+    /// Measures speed-up and efficiency, error, the best share of local lines, how many global lines miss the scene, how evenly
+    /// their work is shared, and what the mean of independent replicas loses. The output directory gets report.md with diagrams
+    /// and pictures, report.json, and all runs with their pipelines. Takes hours; a small --scale, minutes.
+    Experiment(ExperimentArgs),
 }
 
 /// How to run a pipeline.

@@ -10,6 +10,7 @@ use sir_view::ViewError;
 use thiserror::Error;
 
 use crate::diagnostic::Diagnostics;
+use crate::experiment::ExperimentError;
 use crate::scaling::ScalingError;
 
 /// Why a command fails. Every message ends with what to do, where that is not obvious.
@@ -127,6 +128,9 @@ pub enum Error {
     /// Speed-ups cannot be measured.
     #[error(transparent)]
     Scaling(#[from] ScalingError),
+    /// The experiment cannot be done.
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
 }
 
 impl From<SolveError> for Error {
@@ -151,6 +155,7 @@ impl Error {
             Self::Run(RunError::Interrupted { .. }) => 130,
             Self::Elsewhere { code, .. } => *code,
             Self::Scaling(error) => error.exit_code(),
+            Self::Experiment(error) => error.exit_code(),
             _ => 1,
         }
     }

@@ -36,9 +36,11 @@ mod decode_outputs;
 pub mod diagnostic;
 mod directory;
 mod error;
+pub mod experiment;
 mod fields;
 mod fingerprint;
 mod interrupt;
+mod memory;
 mod order;
 pub mod pipeline;
 pub mod prepare;
@@ -127,6 +129,7 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
             })
         }
         Command::Scaling(args) => scaling::command(&args),
+        Command::Experiment(args) => experiment::command(&args),
     }
 }
 

@@ -154,6 +154,10 @@ pub struct Time {
     /// Of a stage with lines: time for exchanging numbers with other ranks, and for waiting for them \[s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub communication: Option<f64>,
+    /// Of a whole run: most memory that a rank had in use, that of the largest one \[bytes\]; only where the operating system
+    /// tells, as Linux does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_memory: Option<u64>,
 }
 
 impl Report {
@@ -169,7 +173,7 @@ impl Time {
     /// The time of something without lines.
     #[must_use]
     pub fn of(seconds: f64) -> Self {
-        Self { seconds, lines_per_second: None, sequential: None, communication: None }
+        Self { seconds, lines_per_second: None, sequential: None, communication: None, peak_memory: None }
     }
 }
 

@@ -15,6 +15,7 @@ use sir_radiosity::{Model, MultipathSettings, Quanta, Shot, Solution};
 use crate::Error;
 use crate::directory::{absolute, check_given, make_given, make_new, run_name};
 use crate::fingerprint::{self, PROGRAM};
+use crate::memory;
 use crate::pipeline::{Action, Output, Pipeline, Transport};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
@@ -187,7 +188,8 @@ impl Run<'_> {
         }
         self.stages(&mut checkpoints, saved, earlier).map_err(|error| self.name_directory(error))?;
         let Self { directory, comm, mut head, watch, .. } = self;
-        head.report.time = Time::of(earlier + watch.seconds());
+        let peak_memory = memory::largest_peak(comm);
+        head.report.time = Time { peak_memory, ..Time::of(earlier + watch.seconds()) };
         let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
         agree(comm, written)?;
         if comm.is_first() {
@@ -336,6 +338,7 @@ fn stage_time(time: StageTime, lines: u64) -> Time {
         lines_per_second: Some(lines as f64 / seconds.max(1e-9)),
         sequential: Some(time.sequential().as_secs_f64()),
         communication: Some(time.communication.as_secs_f64()),
+        peak_memory: None,
     }
 }
 

@@ -38,6 +38,7 @@ fn stage(name: &str, tracing: f64, sequential: f64, communication: f64) -> Stage
         lines_per_second: None,
         sequential: Some(sequential),
         communication: Some(communication),
+        peak_memory: None,
     };
     StageReport { name: name.into(), lines: Some(lines), time }
 }

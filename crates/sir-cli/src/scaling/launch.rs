@@ -1,5 +1,6 @@
 //! Running this program again, on other workers.
 
+use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -8,17 +9,18 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::{ScalingError, Workers};
 use crate::Error;
-use crate::directory::absolute;
 use crate::report::Report;
 
 /// Open MPI refuses to start as root, as which one is in a container, unless it is told twice. Others ignore
 /// it.
 const ROOT: [(&str, &str); 2] = [("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")];
 
-/// Starts runs of one pipeline.
+/// Checkpoints cost time that has nothing to do with the number of workers: runs whose time counts make none.
+pub(crate) const NO_CHECKPOINTS: [&str; 2] = ["--checkpoint-every", "1000000"];
+
+/// Starts runs of pipelines.
 pub(crate) struct Launcher {
     program: PathBuf,
-    pipeline: PathBuf,
     /// What starts several processes, with its arguments.
     mpirun: Vec<String>,
     /// Set by Ctrl-C, which the children get, too.
@@ -27,12 +29,7 @@ pub(crate) struct Launcher {
 
 impl Launcher {
     /// Checks that runs on so many ranks can be started: better now than after hours on one.
-    pub(crate) fn new(
-        pipeline: &Path,
-        mpirun: &str,
-        most_ranks: usize,
-        stop: Arc<AtomicBool>,
-    ) -> Result<Self, ScalingError> {
+    pub(crate) fn new(mpirun: &str, most_ranks: usize, stop: Arc<AtomicBool>) -> Result<Self, ScalingError> {
         let mpirun: Vec<String> = mpirun.split_whitespace().map(str::to_owned).collect();
         if most_ranks > 1 {
             if !sir_parallel::HAS_MPI {
@@ -44,22 +41,29 @@ impl Launcher {
             tried.map_err(|source| ScalingError::Mpirun { command, source })?;
         }
         let program = std::env::current_exe().map_err(ScalingError::Program)?;
-        Ok(Self { program, pipeline: absolute(pipeline), mpirun, stop })
+        Ok(Self { program, mpirun, stop })
     }
 
-    /// Runs the pipeline in a temporary directory inside `folder`, where there is room for the real results,
-    /// too.
-    pub(crate) fn run(&self, workers: Workers, folder: &Path) -> Result<Report, Error> {
+    /// Runs a pipeline, whose path is from the root, in a temporary directory inside `folder`, where there is room for the
+    /// real results, too.
+    pub(crate) fn run(&self, pipeline: &Path, workers: Workers, folder: &Path) -> Result<Report, Error> {
         self.check_stop()?;
         let directory = tempfile::Builder::new().prefix(".run-").tempdir_in(folder);
         let directory = directory.map_err(Error::directory(folder))?;
-        let output = self.command(workers, directory.path()).output();
+        let words = ["run".as_ref(), pipeline.as_os_str(), "--out".as_ref(), directory.path().as_ref()];
+        self.execute(workers, &[&words, &NO_CHECKPOINTS.map(OsStr::new)[..]].concat())
+    }
+
+    /// Starts this program with some words of a command line that prints a report, such as those of `sir run`.
+    pub(crate) fn execute(&self, workers: Workers, words: &[&OsStr]) -> Result<Report, Error> {
+        self.check_stop()?;
+        let output = self.command(workers, words).output();
         let output = output.map_err(|source| self.not_started(workers, source))?;
         self.check_stop()?;
         Ok(read(workers, &output)?)
     }
 
-    fn check_stop(&self) -> Result<(), ScalingError> {
+    pub(crate) fn check_stop(&self) -> Result<(), ScalingError> {
         if self.stop.load(Relaxed) { Err(ScalingError::Interrupted) } else { Ok(()) }
     }
 
@@ -73,7 +77,7 @@ impl Launcher {
     }
 
     /// The command line of one run.
-    fn command(&self, workers: Workers, out: &Path) -> Command {
+    fn command(&self, workers: Workers, words: &[&OsStr]) -> Command {
         let mut command = match self.mpirun.split_first() {
             Some((mpirun, options)) if workers.ranks.get() > 1 => {
                 let mut command = Command::new(mpirun);
@@ -82,10 +86,8 @@ impl Launcher {
             }
             _ => Command::new(&self.program),
         };
-        command.arg("run").arg(&self.pipeline).arg("--out").arg(out);
-        command.args(["--threads", &workers.threads.to_string(), "--quiet", "--json"]);
-        // Checkpoints cost time that has nothing to do with the number of workers.
-        command.args(["--checkpoint-every", "1000000"]).envs(ROOT).stdin(Stdio::null());
+        command.args(words).args(["--threads", &workers.threads.to_string(), "--quiet", "--json"]);
+        command.envs(ROOT).stdin(Stdio::null());
         command
     }
 }
@@ -113,7 +115,6 @@ mod tests {
     fn launcher(program: &str) -> Launcher {
         Launcher {
             program: program.into(),
-            pipeline: "/a/room.ron".into(),
             mpirun: ["srun", "--exclusive"].map(str::to_owned).into(),
             stop: Arc::default(),
         }
@@ -126,19 +127,18 @@ mod tests {
     #[test]
     fn several_ranks_are_started_by_another_program() {
         let line = |ranks| {
-            let command = launcher("/bin/sir").command(workers(ranks), Path::new("/tmp/x"));
+            let command = launcher("/bin/sir").command(workers(ranks), &["run", "room.ron"].map(OsStr::new));
             let words = std::iter::once(command.get_program()).chain(command.get_args());
             words.map(|word| word.to_str().unwrap().to_owned()).collect::<Vec<_>>().join(" ")
         };
-        let run =
-            "/bin/sir run /a/room.ron --out /tmp/x --threads 4 --quiet --json --checkpoint-every 1000000";
+        let run = "/bin/sir run room.ron --threads 4 --quiet --json";
         assert_eq!(line(1), run);
         assert_eq!(line(2), format!("srun --exclusive -n 2 {run}"));
     }
 
     #[test]
     fn ranks_need_mpi_and_what_starts_them() {
-        let tried = Launcher::new(Path::new("x.ron"), "no-such-command --now", 2, Arc::default()).err();
+        let tried = Launcher::new("no-such-command --now", 2, Arc::default()).err();
         if sir_parallel::HAS_MPI {
             let named =
                 matches!(&tried, Some(ScalingError::Mpirun { command, .. }) if command == "no-such-command");
@@ -146,13 +146,15 @@ mod tests {
         } else {
             assert!(matches!(tried, Some(ScalingError::NoMpi)), "{tried:?}");
         }
-        assert!(Launcher::new(Path::new("x.ron"), "no-such-command", 1, Arc::default()).is_ok());
+        assert!(Launcher::new("no-such-command", 1, Arc::default()).is_ok());
     }
 
     #[test]
     fn what_goes_wrong_in_a_run_is_told() {
         let folder = tempfile::tempdir().unwrap();
-        let told = |launcher: &Launcher| launcher.run(workers(1), folder.path()).unwrap_err();
+        let told = |launcher: &Launcher| {
+            launcher.run(Path::new("/a/room.ron"), workers(1), folder.path()).unwrap_err()
+        };
         assert!(told(&launcher("/no/such/program")).chain().starts_with("cannot start this program again: "));
         let stopped = launcher("true");
         stopped.stop.store(true, Relaxed);

@@ -12,20 +12,20 @@
 //! * [`measure`]: makes the runs, by a function that is given to it.
 //! * [`Study`]: times, speed-ups and efficiencies, as [`text`], [`markdown`], [`csv`], [`json`] and [`svg`].
 
-mod axis;
+pub(crate) mod axis;
 mod error;
 mod files;
-mod launch;
-mod legend;
+pub(crate) mod launch;
+pub(crate) mod legend;
 mod measure;
-mod options;
+pub(crate) mod options;
 mod plot;
 mod same;
 mod series;
 mod statistics;
 mod study;
 mod table;
-mod workers;
+pub(crate) mod workers;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,10 +34,12 @@ pub use error::ScalingError;
 pub use files::{csv, json, write};
 pub use measure::measure;
 pub use options::ScalingArgs;
-pub use plot::svg;
+pub use plot::{svg, svg_beside};
 pub use statistics::{Overhead, Part, Spread};
 pub use study::{Row, Study, Timing, VERSION};
+pub(crate) use table::seconds;
 pub use table::{markdown, text};
+pub(crate) use workers::counted;
 pub use workers::{Plan, Workers};
 
 use crate::Error;
@@ -60,14 +62,15 @@ pub fn command(args: &ScalingArgs) -> Result<String, Error> {
     let pipeline = Pipeline::read(&args.pipeline)?;
     let cores = sir_parallel::cores();
     let plan = args.plan(cores);
-    let launcher = Launcher::new(&pipeline.path, &args.mpirun, plan.most_ranks(), interrupt::flag())?;
+    let launcher = Launcher::new(&args.mpirun, plan.most_ranks(), interrupt::flag())?;
     let name = run_name(&pipeline.path);
     let folder = Folder::make(args.out.as_deref(), &format!("{name}-scaling"))?;
     let progress = Progress::Lines;
     if plan.baseline_added {
         progress.note(&format!("{} is measured, too: speed-ups are relative to it", Workers::BASELINE));
     }
-    let run = &mut |workers| launcher.run(workers, &folder.path);
+    let path = absolute(&pipeline.path);
+    let run = &mut |workers| launcher.run(&path, workers, &folder.path);
     let study = measure(&name, cores.get(), &plan, progress, run).and_then(|study| {
         write(&study, &folder.path)?;
         Ok(study)

@@ -38,7 +38,7 @@ pub struct ScalingArgs {
 
 /// What starts several processes on one machine. Without the options, Open MPI refuses more ranks than cores,
 /// and binds each rank, with all of its threads, to one core.
-const MPIRUN: &str = "mpirun --oversubscribe --bind-to none";
+pub(crate) const MPIRUN: &str = "mpirun --oversubscribe --bind-to none";
 
 impl ScalingArgs {
     /// What they ask for, on a machine with so many cores.
@@ -64,7 +64,7 @@ fn number(text: &str, most: usize) -> Option<NonZeroUsize> {
     text.trim().parse().ok().filter(|&n| n <= most).and_then(NonZeroUsize::new)
 }
 
-fn workers(text: &str) -> Result<NonZeroUsize, String> {
+pub(crate) fn workers(text: &str) -> Result<NonZeroUsize, String> {
     number(text, 4096).ok_or_else(|| "write whole numbers from 1 to 4096, with commas between them".into())
 }
 
@@ -72,7 +72,7 @@ fn repeats(text: &str) -> Result<NonZeroUsize, String> {
     number(text, 1000).ok_or_else(|| "write a whole number from 1 to 1000".into())
 }
 
-fn command(text: &str) -> Result<String, String> {
+pub(crate) fn command(text: &str) -> Result<String, String> {
     if text.trim().is_empty() {
         return Err("write a command, such as `mpirun` or `srun`".into());
     }

@@ -9,7 +9,7 @@ use super::axis::Axis;
 use super::legend::{Canvas, Failure, GREY, INK, Pixel, ROW, draw_legend, draw_line, draw_mark, write};
 use super::series::{Kind, Stage, kinds, stages};
 use super::statistics::Part;
-use super::study::Study;
+use super::study::{Row, Study};
 use super::workers::counted;
 
 const WIDTH: u32 = 1000;
@@ -25,13 +25,26 @@ const ROOM: f64 = 1.06;
 ///
 /// None that are known: it is drawn in memory.
 pub fn svg(study: &Study) -> io::Result<String> {
+    svg_beside(study, &[], "")
+}
+
+/// As [`svg`], with some points that others have measured, and their name.
+///
+/// # Errors
+///
+/// As [`svg`].
+pub fn svg_beside(study: &Study, others: &[Row], name: &str) -> io::Result<String> {
     let mut text = String::new();
-    draw(study, &mut text).map_err(io::Error::other)?;
+    draw(study, others, name, &mut text).map_err(io::Error::other)?;
     Ok(text)
 }
 
-fn draw(study: &Study, text: &mut String) -> Result<(), Failure> {
-    let (stages, kinds) = (stages(study), kinds(study));
+fn draw(study: &Study, others: &[Row], name: &str, text: &mut String) -> Result<(), Failure> {
+    let (stages, mut kinds) = (stages(study), kinds(study));
+    let rows = [&study.rows, others].concat();
+    if !others.is_empty() {
+        kinds.push(Kind::published(name, study.rows.len()..rows.len()));
+    }
     let legend = ROW as u32 * (kinds.len() as u32 + 1) + 20;
     let canvas = SVGBackend::with_string(text, (WIDTH, TITLE + PANELS + legend)).into_drawing_area();
     canvas.fill(&WHITE)?;
@@ -43,7 +56,7 @@ fn draw(study: &Study, text: &mut String) -> Result<(), Failure> {
     let (_, below) = canvas.split_vertically(TITLE);
     let (panels, _) = below.split_vertically(PANELS);
     let (left, right) = panels.split_horizontally(WIDTH / 2);
-    let most = study.rows.iter().map(|row| row.p).max().unwrap_or(1) as f64;
+    let most = rows.iter().map(|row| row.p).max().unwrap_or(1) as f64;
     let speed_ups = Panel {
         label: "speed-up S(p) = T(1) / T(p)",
         value: |part| part.speed_up,
@@ -58,8 +71,8 @@ fn draw(study: &Study, text: &mut String) -> Result<(), Failure> {
         last: 1.1,
         least_step: 0.2,
     };
-    speed_ups.draw(study, &stages, &kinds, &canvas, &left)?;
-    efficiencies.draw(study, &stages, &kinds, &canvas, &right)?;
+    speed_ups.draw((study.cores, &rows), &stages, &kinds, &canvas, &left)?;
+    efficiencies.draw((study.cores, &rows), &stages, &kinds, &canvas, &right)?;
     draw_legend(&canvas, (TITLE + PANELS) as i32, &stages, &kinds)?;
     canvas.present()
 }
@@ -80,17 +93,16 @@ impl Panel {
     /// Draws it into `area`, which is a part of `canvas`.
     fn draw(
         &self,
-        study: &Study,
+        (cores, rows): (usize, &[Row]),
         stages: &[Stage],
         kinds: &[Kind],
         canvas: &Canvas<'_>,
         area: &Canvas<'_>,
     ) -> Result<(), Failure> {
-        let value = |stage: &Stage, row: usize| (stage.part)(&study.rows[row]).map(self.value);
-        let all =
-            (0..study.rows.len()).flat_map(|row| stages.iter().filter_map(move |stage| value(stage, row)));
+        let value = |stage: &Stage, row: usize| (stage.part)(&rows[row]).map(self.value);
+        let all = (0..rows.len()).flat_map(|row| stages.iter().filter_map(move |stage| value(stage, row)));
         let y_last = all.fold(self.last, |last, y| last.max(ROOM * y));
-        let x_last = ROOM * study.rows.iter().map(|row| row.p).max().unwrap_or(1) as f64;
+        let x_last = ROOM * rows.iter().map(|row| row.p).max().unwrap_or(1) as f64;
         let mut chart = ChartBuilder::on(area)
             .margin(14)
             .x_label_area_size(48)
@@ -113,17 +125,17 @@ impl Panel {
         let at = |x: f64, y: f64| chart.backend_coord(&(x, y));
         let ideal = self.ideal.map(|(x, y)| at(x, y));
         canvas.draw(&PathElement::new(ideal.to_vec(), GREY.stroke_width(1)))?;
-        let cores = study.cores as f64;
-        if cores < x_last / ROOM {
-            let (x, top) = at(cores, y_last);
-            let line = vec![(x, top + 18), at(cores, 0.0)];
+        let place = cores as f64;
+        if place < x_last / ROOM {
+            let (x, top) = at(place, y_last);
+            let line = vec![(x, top + 18), at(place, 0.0)];
             canvas.draw(&DashedPathElement::new(line, 2, 3, GREY.stroke_width(1)))?;
-            write(canvas, &counted(study.cores, "core"), (x, top + 8), true, 14, GREY)?;
+            write(canvas, &counted(cores, "core"), (x, top + 8), true, 14, GREY)?;
         }
         let series = || stages.iter().rev().flat_map(|stage| kinds.iter().map(move |kind| (stage, kind)));
-        let points = |stage: &Stage, rows: &[usize]| -> Vec<Pixel> {
-            let point = |&row: &usize| Some(at(study.rows[row].p as f64, value(stage, row)?));
-            rows.iter().filter_map(point).collect()
+        let points = |stage: &Stage, shown: &[usize]| -> Vec<Pixel> {
+            let point = |&row: &usize| Some(at(rows[row].p as f64, value(stage, row)?));
+            shown.iter().filter_map(point).collect()
         };
         for (stage, kind) in series() {
             draw_line(canvas, &points(stage, &kind.rows), kind, stage)?;

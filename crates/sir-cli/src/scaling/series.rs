@@ -42,6 +42,17 @@ pub(crate) struct Kind {
     pub(crate) dashed: bool,
 }
 
+/// Two strokes across each other.
+const CROSS: &[(i32, i32)] = &[(-6, -6), (6, 6), (0, 0), (6, -6), (-6, 6), (0, 0)];
+
+impl Kind {
+    /// What others have measured: crosses.
+    pub(crate) fn published(name: &str, rows: std::ops::Range<usize>) -> Self {
+        let rows: Vec<usize> = rows.collect();
+        Self { label: name.into(), rows: rows.clone(), marked: rows, mark: CROSS, dashed: true }
+    }
+}
+
 /// A triangle, a square, a diamond, and a triangle on its head.
 const MARKS: [&[(i32, i32)]; 4] = [
     &[(0, -6), (6, 5), (-6, 5)],

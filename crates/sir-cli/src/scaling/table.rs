@@ -113,7 +113,7 @@ fn groups(study: &Study) -> Vec<Group> {
 }
 
 /// A time with four digits, but no finer than a tenth of a millisecond.
-fn seconds(seconds: f64) -> String {
+pub(crate) fn seconds(seconds: f64) -> String {
     let decimals = match seconds {
         s if s < 1.0 => 4,
         s if s < 10.0 => 3,

@@ -53,7 +53,19 @@ impl Plan {
     #[must_use]
     pub fn new(ranks: &[NonZeroUsize], threads: &[NonZeroUsize], repeats: NonZeroUsize) -> Self {
         let pairs = ranks.iter().flat_map(|&ranks| threads.iter().map(move |&threads| (ranks, threads)));
-        let mut workers: Vec<Workers> = pairs.map(|(ranks, threads)| Workers { ranks, threads }).collect();
+        Self::of(pairs.map(|(ranks, threads)| Workers { ranks, threads }).collect(), repeats)
+    }
+
+    /// Every number of threads on one rank, every number of ranks with one thread each, and the baseline.
+    #[must_use]
+    pub fn each(ranks: &[NonZeroUsize], threads: &[NonZeroUsize], repeats: NonZeroUsize) -> Self {
+        let one = NonZeroUsize::MIN;
+        let threads = threads.iter().map(|&threads| Workers { ranks: one, threads });
+        let ranks = ranks.iter().map(|&ranks| Workers { ranks, threads: one });
+        Self::of(threads.chain(ranks).collect(), repeats)
+    }
+
+    fn of(mut workers: Vec<Workers>, repeats: NonZeroUsize) -> Self {
         let baseline_added = !workers.contains(&Workers::BASELINE);
         if baseline_added {
             workers.push(Workers::BASELINE);
@@ -92,6 +104,13 @@ mod tests {
         assert_eq!(found, [(1, 1), (1, 2), (2, 1), (1, 4), (2, 2), (2, 4)]);
         assert!(!plan.baseline_added);
         assert_eq!(plan.most_ranks(), 2);
+    }
+
+    #[test]
+    fn threads_and_ranks_may_be_tried_by_themselves() {
+        let plan = Plan::each(&numbers([2, 1]), &numbers([1, 2]), NonZeroUsize::MIN);
+        let found: Vec<_> = plan.workers.iter().map(|w| (w.ranks.get(), w.threads.get())).collect();
+        assert_eq!(found, [(1, 1), (1, 2), (2, 1)]);
     }
 
     #[test]

@@ -1,0 +1,215 @@
+//! The report: as JSON for programs, and as Markdown for people.
+
+use serde::Serialize;
+
+use super::Part;
+use super::bodies::Bodies;
+use super::farm::Farm;
+use super::lines::Lines;
+use super::machine::Machine;
+use super::markdown::{Grid, count, megabytes};
+use super::mix::Mix;
+use super::paper::CITATION;
+use super::precision::Precision;
+use super::speed::Speed;
+use super::spread::Unevenness;
+use super::verdict::{self, Claim};
+use crate::scaling::counted;
+
+/// Version of the layout of `report.json`.
+pub(crate) const VERSION: u32 = 1;
+
+/// Everything that was found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Findings {
+    /// Version of this layout: [`VERSION`].
+    pub(crate) version: u32,
+    /// Name and version of the program.
+    pub(crate) program: String,
+    /// The command line.
+    pub(crate) command: String,
+    /// Day on which the experiment ended.
+    pub(crate) date: String,
+    /// The machine.
+    pub(crate) machine: Machine,
+    /// What the numbers of lines of the pipelines were multiplied by.
+    pub(crate) scale: f64,
+    /// Lines of the references as a multiple of those.
+    pub(crate) reference: f64,
+    /// What was done.
+    pub(crate) parts: Vec<Part>,
+    /// The scenes.
+    pub(crate) scenes: Vec<SceneFindings>,
+}
+
+/// What was found about a scene. Parts that were not asked for are missing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct SceneFindings {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its pipeline, as it was named.
+    pub(crate) pipeline: String,
+    /// Triangles.
+    pub(crate) triangles: usize,
+    /// Patches.
+    pub(crate) patches: usize,
+    /// Lines of the pipeline, scaled.
+    pub(crate) lines: Lines,
+    /// Times, speed-ups, efficiencies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) scaling: Option<Speed>,
+    /// Error against the reference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) error: Option<Precision>,
+    /// Error over the share of local lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) mix: Option<Mix>,
+    /// Lines that miss the scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) domains: Option<Bodies>,
+    /// Cost of lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) spread: Option<Unevenness>,
+    /// Replicas and batches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) farm: Option<Farm>,
+    /// Pictures: the one that is shown, and the others, as files beside the report.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) pictures: Option<Vec<String>>,
+    /// Claims of the paper.
+    pub(crate) claims: Vec<Claim>,
+}
+
+/// Names of a scene's diagrams.
+pub(crate) fn figures(name: &str) -> [String; 2] {
+    [format!("{name}-scaling.svg"), format!("{name}-mix.svg")]
+}
+
+impl SceneFindings {
+    /// What the paper claims, about the parts that were done.
+    pub(crate) fn judge(&self) -> Vec<Claim> {
+        [
+            self.scaling.as_ref().map(verdict::of_speed),
+            self.mix.as_ref().map(verdict::of_mix),
+            self.domains.as_ref().map(verdict::of_bodies),
+            self.spread.as_ref().map(verdict::of_spread),
+            self.farm.as_ref().map(verdict::of_farm),
+        ]
+        .into_iter()
+        .flatten()
+        .flatten()
+        .collect()
+    }
+
+    fn section(&self, scale: f64) -> String {
+        let [scaling, mix] = figures(&self.name);
+        let intro = format!(
+            "## {}\n\n`{}`: {} triangles in {} patches; {} local and {} global lines.\n\n",
+            self.name,
+            self.pipeline,
+            count(self.triangles as u64),
+            count(self.patches as u64),
+            count(self.lines.local),
+            count(self.lines.global)
+        );
+        let sections = [
+            Some(intro),
+            self.pictures.as_deref().map(|files| pictures(&self.name, files)),
+            self.scaling.as_ref().map(|speed| speed.section(&scaling, scale)),
+            self.error.as_ref().map(Precision::section),
+            self.mix.as_ref().map(|found| found.section(&mix)),
+            self.domains.as_ref().map(Bodies::section),
+            self.spread.as_ref().map(Unevenness::section),
+            self.farm.as_ref().map(Farm::section),
+        ];
+        sections.into_iter().flatten().collect()
+    }
+}
+
+fn pictures(name: &str, files: &[String]) -> String {
+    let Some((first, others)) = files.split_first() else {
+        return "### Pictures\n\nThe pipeline asks for none.\n\n".into();
+    };
+    let shown =
+        if first.ends_with(".png") { format!("![{name}]({first})") } else { format!("[{first}]({first})") };
+    let others: String = others.iter().map(|file| format!("* [{file}]({file})\n")).collect();
+    let others = if others.is_empty() { others } else { format!("Others:\n\n{others}\n") };
+    format!("### Pictures\n\n{shown}\n\n{others}")
+}
+
+impl Findings {
+    /// All numbers, for programs.
+    pub(crate) fn json(&self) -> String {
+        // A tree of plain structs; numbers that are not finite become `null`.
+        serde_json::to_string_pretty(self).map(|json| json + "\n").unwrap_or_default()
+    }
+
+    /// The report for people.
+    pub(crate) fn markdown(&self) -> String {
+        let Self { program, command, date, machine, scale, .. } = self;
+        let mut text = format!(
+            "# The experiment of Martínez, Forés and Martín (2009), repeated\n\nAfter {CITATION}. Made by `{program}` on {date}.\n\n\
+             * Command: `{command}`\n* Machine: {}, {}, {} of memory, {}\n",
+            machine.cpu.as_deref().unwrap_or("unknown processor"),
+            counted(machine.cores, "core"),
+            megabytes(machine.memory),
+            machine.system
+        );
+        if *scale < 1.0 {
+            text += &format!("* Scale: all numbers of lines are {scale} times those of the pipelines.\n");
+        }
+        text += "* Each run is in its own folder in `runs`, with its pipeline (`sir run \
+            runs/…/pipeline.ron` repeats it) and its `result.json`. All numbers are in `report.json`.\n\n";
+        text += &self.summary();
+        for scene in &self.scenes {
+            text += &scene.section(*scale);
+        }
+        text.trim_end().to_owned() + "\n"
+    }
+
+    /// The claims, and the rules by which they were judged.
+    fn summary(&self) -> String {
+        let claims =
+            || self.scenes.iter().flat_map(|scene| scene.claims.iter().map(move |claim| (scene, claim)));
+        let mut rules: Vec<&str> = Vec::new();
+        let mut grid = Grid::of_words(&["claim of the paper", "scene", "here", "verdict", "rule"]);
+        // Claims side by side, each for all scenes.
+        let mut names: Vec<&str> = Vec::new();
+        for (_, claim) in claims() {
+            if !names.contains(&claim.claim.as_str()) {
+                names.push(&claim.claim);
+            }
+        }
+        for name in &names {
+            for (scene, claim) in claims().filter(|(_, claim)| claim.claim == *name) {
+                let rule = rules.iter().position(|rule| *rule == claim.rule).unwrap_or_else(|| {
+                    rules.push(&claim.rule);
+                    rules.len() - 1
+                });
+                grid.row([
+                    claim.claim.clone(),
+                    scene.name.clone(),
+                    claim.here.clone(),
+                    claim.verdict.word().into(),
+                    (rule + 1).to_string(),
+                ]);
+            }
+        }
+        if names.is_empty() {
+            return String::new();
+        }
+        let rules: String =
+            (1..).zip(&rules).map(|(number, rule): (usize, _)| format!("{number}. {rule}.\n")).collect();
+        let smaller = if self.scale < 1.0 {
+            "With so few lines, verdicts on speed, errors and replicas are about a smaller task than the \
+             paper's.\n\n"
+        } else {
+            ""
+        };
+        format!(
+            "## Summary\n\n{}A claim is *confirmed* if its rule holds, *open* if too little was measured to \
+             tell, else *not confirmed*:\n\n{rules}\n{smaller}",
+            grid.end()
+        )
+    }
+}

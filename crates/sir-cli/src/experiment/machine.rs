@@ -1,0 +1,108 @@
+//! When and where the experiment was made.
+
+use std::fs;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use serde::Serialize;
+
+/// The machine.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct Machine {
+    /// Model of the processor, if it is known.
+    pub(crate) cpu: Option<String>,
+    /// Cores that this process may use.
+    pub(crate) cores: usize,
+    /// Memory \[bytes\], if it is known.
+    pub(crate) memory: Option<u64>,
+    /// The operating system, and for which kind of processor.
+    pub(crate) system: String,
+}
+
+impl Machine {
+    /// This machine.
+    #[must_use]
+    pub(crate) fn this() -> Self {
+        let read = |path| fs::read_to_string(path).unwrap_or_default();
+        let memory = field(&read("/proc/meminfo"), "MemTotal");
+        let release = read("/proc/sys/kernel/osrelease");
+        let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
+        Self {
+            cpu: field(&read("/proc/cpuinfo"), "model name"),
+            cores: sir_parallel::cores().get(),
+            memory: memory.and_then(|m| m.strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)),
+            system: format!("{os} {} ({arch})", release.trim()).replace("  ", " "),
+        }
+    }
+}
+
+/// The first value of a name in a text of lines `name : value`.
+fn field(text: &str, name: &str) -> Option<String> {
+    let pairs = text.lines().filter_map(|line| line.split_once(':'));
+    pairs
+        .map(|(key, value)| (key.trim(), value.trim()))
+        .find(|(key, _)| *key == name)
+        .map(|(_, v)| v.to_owned())
+}
+
+/// Today's date in Greenwich, such as `2026-11-24`.
+#[must_use]
+pub(crate) fn today() -> String {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
+    let (year, month, day) = date(seconds / 86_400);
+    format!("{year}-{month:02}-{day:02}")
+}
+
+/// The date so many days after 1970-01-01.
+fn date(mut days: u64) -> (u64, u64, u64) {
+    let is_leap =
+        |year: u64| year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
+    let mut year = 1970;
+    while days >= 365 + u64::from(is_leap(year)) {
+        days -= 365 + u64::from(is_leap(year));
+        year += 1;
+    }
+    let mut month = 1;
+    for length in [31, 28 + u64::from(is_leap(year)), 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    (year, month, days + 1)
+}
+
+/// The command line of this process, quoted where a shell needs it.
+#[must_use]
+pub(crate) fn command_line() -> String {
+    let words = std::env::args().skip(1).map(|word| {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+".contains(c);
+        if !word.is_empty() && word.chars().all(plain) {
+            word
+        } else {
+            format!("'{}'", word.replace('\'', r"'\''"))
+        }
+    });
+    std::iter::once("sir".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates_know_leap_years() {
+        assert_eq!(
+            [0, 58, 59, 789, 11_016, 11_017].map(date),
+            [(1970, 1, 1), (1970, 2, 28), (1970, 3, 1), (1972, 2, 29), (2000, 2, 29), (2000, 3, 1),]
+        );
+        assert_eq!(date(20_781), (2026, 11, 24));
+    }
+
+    #[test]
+    fn values_are_found_by_their_whole_name() {
+        let text = "model\t\t: 1\nmodel name\t: A 244\nmodel name\t: B\n";
+        assert_eq!(field(text, "model name").as_deref(), Some("A 244"));
+        assert_eq!(field(text, "name"), None);
+    }
+}
