@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use sir_geom::{Rgb, Scene};
 use sir_parallel::cores;
-use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, SolveError};
+use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, SecondShot, SolveError};
 
 use crate::Error;
 use crate::fields::grouped;
@@ -91,6 +91,13 @@ fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, Solve
                 let (tally, mut books) = (first_shot.tally(1), Books::default());
                 let rate = rate(lines, |block| first_shot.trace(0, block, &tally, &mut books));
                 shot = Some(first_shot.finish(tally, books)?);
+                estimates.push(StageEstimate { name, lines, rate });
+            }
+            Action::SecondShot { lines } => {
+                let Some(shot) = shot.clone() else { continue };
+                let second_shot = SecondShot::new(model, shot, lines, pipeline.seed);
+                let (tally, mut books) = (second_shot.tally(1), Books::default());
+                let rate = rate(second_shot.lines(), |block| second_shot.trace(0, block, &tally, &mut books));
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::Multipath { lines, body, .. } => {

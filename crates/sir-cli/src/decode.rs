@@ -11,7 +11,7 @@ use crate::order::check_order;
 use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
 
-const STAGES: [&str; 5] = ["Load", "Subdivide", "FirstShot", "Multipath", "Save"];
+const STAGES: [&str; 6] = ["Load", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Save"];
 
 /// Most replicas: a table of them must fit into memory.
 const MOST_REPLICAS: u64 = 1_000_000;
@@ -120,16 +120,17 @@ impl<'a> Decoder<'a> {
         match name {
             "Load" => self.load(node),
             "Subdivide" => self.subdivide(node).map(Action::Subdivide),
-            "FirstShot" => {
-                let mut fields = self.reader.fields(node, "FirstShot", &["lines"]);
-                let lines = self.reader.required(&mut fields, "lines", "1_000_000")?;
-                Some(Action::FirstShot {
-                    lines: self.reader.count(&lines, "lines", (1, ABSURD), "1_000_000")?,
-                })
-            }
+            "FirstShot" => self.local_lines(node, name).map(|lines| Action::FirstShot { lines }),
+            "SecondShot" => self.local_lines(node, name).map(|lines| Action::SecondShot { lines }),
             "Multipath" => self.multipath(node),
             _ => self.save(node),
         }
+    }
+
+    fn local_lines(&mut self, node: Node<'a>, name: &'static str) -> Option<u64> {
+        let mut fields = self.reader.fields(node, name, &["lines"]);
+        let lines = self.reader.required(&mut fields, "lines", "1_000_000")?;
+        self.reader.count(&lines, "lines", (1, ABSURD), "1_000_000")
     }
 
     fn load(&mut self, node: Node<'a>) -> Option<Action> {

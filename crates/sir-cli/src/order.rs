@@ -9,7 +9,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[(&'static str, &str
         reader.problem(list, "the pipeline has no stages", "begin with `Load(path: \"scene.gltf\")`");
         return;
     };
-    let (mut scene, mut first_shot) = (false, false);
+    let (mut scene, mut first_shot, mut multipath) = (false, false, false);
     for (i, &(name, place)) in stages.iter().enumerate() {
         if name != "Save"
             && let Some((_, first)) = stages[..i].iter().find(|(n, _)| *n == name)
@@ -37,16 +37,21 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[(&'static str, &str
                 "move `Subdivide` to before `FirstShot`",
             ),
             "FirstShot" => first_shot = true,
-            "Multipath" | "Save" if !first_shot => {
-                let why = if name == "Save" {
-                    "there is no result yet"
-                } else {
-                    "there is no light to distribute yet"
+            "SecondShot" if multipath => reader.problem(
+                place,
+                "`SecondShot` after `Multipath`: all light has been distributed",
+                "move `SecondShot` to before `Multipath`",
+            ),
+            "SecondShot" | "Multipath" | "Save" if !first_shot => {
+                let why = match name {
+                    "Save" => "there is no result yet",
+                    _ => "there is no light to distribute yet",
                 };
                 let help = format!("put `FirstShot(lines: 1_000_000)` before `{name}`");
                 reader.problem(place, format!("`{name}` before `FirstShot`: {why}"), help);
                 first_shot = true;
             }
+            "Multipath" => multipath = true,
             _ => {}
         }
     }

@@ -50,6 +50,11 @@ pub enum Action {
         /// How many lines, at least 1.
         lines: u64,
     },
+    /// Lets the brightest patches send what they reflect along local lines, too.
+    SecondShot {
+        /// How many lines, at least 1.
+        lines: u64,
+    },
     /// Distributes the reflected light along global lines.
     Multipath {
         /// How many lines, at least 1.
@@ -111,6 +116,7 @@ impl Action {
             Self::Load { .. } => "Load",
             Self::Subdivide(_) => "Subdivide",
             Self::FirstShot { .. } => "FirstShot",
+            Self::SecondShot { .. } => "SecondShot",
             Self::Multipath { .. } => "Multipath",
             Self::Save(_) => "Save",
         }

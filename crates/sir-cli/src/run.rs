@@ -228,7 +228,10 @@ impl Run<'_> {
             let mut lines_report = None;
             let mut crew = Crew::of(threads);
             crew.comm = self.comm;
-            if let Action::FirstShot { lines } | Action::Multipath { lines, .. } = stage.action {
+            if let Action::FirstShot { lines }
+            | Action::SecondShot { lines }
+            | Action::Multipath { lines, .. } = stage.action
+            {
                 crew.observer = Box::new(self.progress.stage(name, lines, &self.options.stop));
                 self.head.stage = number;
                 self.head.report.time.seconds = earlier + self.watch.seconds();
@@ -238,8 +241,16 @@ impl Run<'_> {
             match &stage.action {
                 Action::Load { .. } => time = Some(Time::of(self.prepared.load_seconds)),
                 Action::Subdivide(_) => time = Some(Time::of(self.prepared.build_seconds)),
-                Action::FirstShot { lines } => {
-                    let done = sir_parallel::first_shot(model, *lines, seed, &mut crew, saved.take());
+                Action::FirstShot { lines } | Action::SecondShot { lines } => {
+                    let done = if let Action::FirstShot { .. } = stage.action {
+                        sir_parallel::first_shot(model, *lines, seed, &mut crew, saved.take())
+                    } else {
+                        // The decoder lets it follow nothing but a first shot; if that is not in memory, the state of
+                        // this stage was saved. The same holds for multipath.
+                        let shot = shot.take().unwrap_or_else(|| Shot::nothing(model));
+                        drop(solution.take());
+                        sir_parallel::second_shot(model, shot, *lines, seed, &mut crew, saved.take())
+                    };
                     let done = agree(self.comm, done.map_err(Error::from))?;
                     drop(crew);
                     let Shot { unit, balance, counts, ref received, .. } = done.outcome;
@@ -261,8 +272,6 @@ impl Run<'_> {
                     solution = Some(direct);
                 }
                 Action::Multipath { lines, transport, body } => {
-                    // The decoder lets multipath follow nothing but a first shot; if that is not in memory, the state
-                    // of this stage was saved.
                     let shot = shot.take().unwrap_or_else(|| Shot::nothing(model));
                     // The direct light has been saved if it was wanted, and takes much memory.
                     drop(solution.take());

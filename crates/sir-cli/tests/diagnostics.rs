@@ -139,7 +139,7 @@ fn unknown_names_and_fields() {
     x.ron:6:1: error: unknown stage `Render`
     6 | Render,
       | ^^^^^^
-      = help: stages are `Load`, `Subdivide`, `FirstShot`, `Multipath` and `Save`
+      = help: stages are `Load`, `Subdivide`, `FirstShot`, `SecondShot`, `Multipath` and `Save`
 
     x.ron:7:7: error: unknown output `Picture`
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
@@ -642,4 +642,31 @@ proptest! {
             prop_assert!(all.to_string().contains(": error: "));
         }
     }
+}
+
+#[test]
+fn second_shots_out_of_place() {
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: "room.obj"),"#,
+        r#"SecondShot(lines: 10),"#,
+        r#"Multipath(lines: 10),"#,
+        r#"Save([Table(path: "a.csv")]),"#,
+    ]), @"
+    x.ron:3:1: error: `SecondShot` before `FirstShot`: there is no light to distribute yet
+    3 | SecondShot(lines: 10),
+      | ^^^^^^^^^^
+      = help: put `FirstShot(lines: 1_000_000)` before `SecondShot`
+    ");
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: "room.obj"),"#,
+        r#"FirstShot(lines: 10),"#,
+        r#"Multipath(lines: 10),"#,
+        r#"SecondShot(lines: 10),"#,
+        r#"Save([Table(path: "a.csv")]),"#,
+    ]), @"
+    x.ron:5:1: error: `SecondShot` after `Multipath`: all light has been distributed
+    5 | SecondShot(lines: 10),
+      | ^^^^^^^^^^
+      = help: move `SecondShot` to before `Multipath`
+    ");
 }

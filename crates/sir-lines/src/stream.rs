@@ -16,6 +16,8 @@ impl Stage {
     pub const GLOBAL: Self = Self(3);
     /// Sub-pixel positions of pictures.
     pub const PICTURE: Self = Self(4);
+    /// Local lines of the second shot.
+    pub const SECOND_SHOT: Self = Self(6);
     /// Lines that are traced to learn about a scene, not to solve it.
     pub const PROBE: Self = Self(5);
 }

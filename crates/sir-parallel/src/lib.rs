@@ -66,4 +66,4 @@ pub use connect::{ConnectError, HAS_MPI, connect};
 pub use crew::{Crew, StageTime, cores};
 pub use error::{CheckpointError, RunError};
 pub use observer::{Observer, Silent};
-pub use stages::{StageRun, batches, first_shot, multipath};
+pub use stages::{StageRun, batches, first_shot, multipath, second_shot};

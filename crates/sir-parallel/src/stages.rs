@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use sir_lines::Domain;
 use sir_radiosity::{
-    Batches, Books, FirstShot, FirstShotTally, Model, Multipath, MultipathSettings, Shot, Totals,
+    Batches, Books, FirstShot, FirstShotTally, Model, Multipath, MultipathSettings, SecondShot, Shot, Totals,
     Transported, Visitor,
 };
 
@@ -64,6 +64,68 @@ pub fn first_shot(
         work.visit(visitor);
     });
     let FirstShotWork { stage, tally } = work;
+    let outcome = stage.finish(tally, position.books)?;
+    Ok(StageRun { outcome, time: shift.time(), batches: 1 })
+}
+
+struct SecondShotWork<'m> {
+    stage: SecondShot<'m>,
+    tally: FirstShotTally,
+}
+
+impl Work for SecondShotWork<'_> {
+    fn trace(&self, thread: usize, lines: Range<u64>, books: &mut Books) {
+        self.stage.trace(thread, lines, &self.tally, books);
+    }
+
+    fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.stage.visit(visitor);
+        self.tally.visit(visitor);
+    }
+}
+
+/// Lets the brightest patches send what they reflect of a first shot along `lines` local lines, or goes on with a second shot
+/// that was saved; `shot` is then not looked at.
+///
+/// # Errors
+///
+/// If a tally overflowed, the observer wants to stop, or a checkpoint cannot be saved or restored.
+pub fn second_shot(
+    model: &Model,
+    mut shot: Shot,
+    lines: u64,
+    seed: u64,
+    crew: &mut Crew<'_>,
+    saved: Option<Saved>,
+) -> Result<StageRun<Shot>, RunError> {
+    let mut shift = Shift::begin(crew, lines, &[4, model.mesh.side_count() as u64, lines, seed]);
+    let mut position = Position::default();
+    let threads = shift.threads();
+    let work = |shot: Shot| {
+        let stage = SecondShot::new(model, shot, lines, seed);
+        SecondShotWork { tally: stage.tally(threads), stage }
+    };
+    let mut work = match saved {
+        None => work(shot),
+        Some(saved) => {
+            let mut restored = None;
+            shift.restore(saved, &mut position, &mut |visitor| {
+                // Which patches are bright follows from the first shot.
+                shot.visit(visitor);
+                let mut work = work(shot.clone());
+                work.tally.visit(visitor);
+                restored = Some(work);
+            })?;
+            restored.unwrap_or_else(|| work(shot))
+        }
+    };
+    let lines = work.stage.lines();
+    shift.trace(&mut work, &mut position, lines)?;
+    shift.add_up(|visitor| {
+        position.books.visit(visitor);
+        work.visit(visitor);
+    });
+    let SecondShotWork { stage, tally } = work;
     let outcome = stage.finish(tally, position.books)?;
     Ok(StageRun { outcome, time: shift.time(), batches: 1 })
 }

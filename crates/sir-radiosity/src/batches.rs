@@ -86,8 +86,8 @@ struct Account {
     unshot: Quanta,
     /// Power that lines have brought.
     brought: Quanta,
-    /// As `brought`, when the sources had ceased.
-    ceased: [f32; 3],
+    /// While the sources are sent out, what is to be sent of them; afterwards, as `brought` when they had ceased.
+    noted: [f32; 3],
     /// Lines that have crossed it.
     crossings: u64,
 }
@@ -141,7 +141,6 @@ pub struct Part<'a> {
     ledger: &'a Ledger,
     plan: Plan,
     first: u32,
-    direct: &'a [Quanta],
     accounts: &'a mut [Account],
 }
 
@@ -150,6 +149,7 @@ impl<'m> Batches<'m> {
     /// workers: how many there are has no effect on the result, but on the time.
     #[must_use]
     pub fn new(model: &'m Model, shot: Shot, lines: u64, domain: Domain, seed: u64, workers: usize) -> Self {
+        let unshot = shot.unshot(model);
         let Shot { received: direct, unit, balance, .. } = shot;
         let sides = model.mesh.side_count();
         let mut accounts = Vec::with_capacity(sides);
@@ -158,16 +158,16 @@ impl<'m> Batches<'m> {
         let (mut area, mut square, mut most, mut brightest) = (0.0, 0.0, 0.0, [0.0; 3]);
         model.mesh.for_each_side(|triangle, _, _, side| {
             let reflectance = model.scene.material(triangle).reflectance;
-            let reflected = direct.power[side.index()].scaled(reflectance);
-            source += reflected;
-            accounts.push(Account { unshot: reflected, ..Account::default() });
+            let unshot = unshot[side.index()];
+            source += unshot;
+            accounts.push(Account { unshot, noted: unshot.0.map(|q| q as f32), ..Account::default() });
             let a = model.mesh.patch_area(triangle);
             (area, square) = (area + a, square + a * a);
             let crossings = forecast.crossings(a);
             most = f64::max(most, crossings);
             for band in 0..3 {
                 // All light that a side reflects, if what it sees is as bright, over all its crossings.
-                let share = reflected.0[band] as f64 / (1.0 - reflectance[band]) / crossings;
+                let share = unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings;
                 brightest[band] = f64::max(brightest[band], share);
             }
         });
@@ -225,12 +225,11 @@ impl<'m> Batches<'m> {
 
     /// Cuts the sides into at most `count` parts.
     pub fn parts(&mut self, count: usize) -> impl Iterator<Item = Part<'_>> {
-        let Self { model, ref domain, ref ledger, ref direct, ref mut accounts, plan, .. } = *self;
+        let Self { model, ref domain, ref ledger, ref mut accounts, plan, .. } = *self;
         let size = accounts.len().div_ceil(count.max(1)).max(1);
-        let slices = direct.power.chunks(size).zip(accounts.chunks_mut(size));
-        slices.enumerate().map(move |(i, (direct, accounts))| {
+        accounts.chunks_mut(size).enumerate().map(move |(i, accounts)| {
             let first = (i * size) as u32;
-            Part { model, domain, ledger, plan, first, direct, accounts }
+            Part { model, domain, ledger, plan, first, accounts }
         })
     }
 
@@ -335,7 +334,7 @@ impl Account {
     /// The power that lines have brought, the part of it in the tail, and all with the tail stretched.
     fn stretched(&self, band: usize, stretch: f64) -> [f64; 3] {
         let brought = self.brought.0[band] as f64;
-        let tail = brought - f64::from(self.ceased[band]);
+        let tail = brought - f64::from(self.noted[band]);
         [brought, tail, brought + tail * stretch]
     }
 
@@ -351,15 +350,15 @@ impl Account {
             accounts,
             visitor,
             |account| {
-                let Self { unshot: Quanta([a, b, c]), brought: Quanta([d, e, f]), ceased, crossings } =
+                let Self { unshot: Quanta([a, b, c]), brought: Quanta([d, e, f]), noted, crossings } =
                     *account;
-                let [g, h, i] = ceased.map(to_word);
+                let [g, h, i] = noted.map(to_word);
                 [a, b, c, d, e, f, g, h, i, crossings as i64]
             },
             |[a, b, c, d, e, f, g, h, i, crossings]| Self {
                 unshot: Quanta([a, b, c]),
                 brought: Quanta([d, e, f]),
-                ceased: [g, h, i].map(from_word),
+                noted: [g, h, i].map(from_word),
                 crossings: crossings as u64,
             },
         );
@@ -428,16 +427,15 @@ impl<'a> Part<'a> {
         let withheld = self.plan.withheld();
         let ceased = self.plan.number == self.plan.parts;
         for (triangle, sides) in self.sides() {
-            let reflectance = self.model.scene.material(triangle).reflectance;
             let expected = forecast.crossings(self.model.mesh.patch_area(triangle));
             let lines = expected + 1.0 + expected.sqrt() * expected.min(1.0);
             for i in sides {
                 let k = (i - self.first) as usize;
                 let account = &mut self.accounts[k];
                 if ceased {
-                    account.ceased = account.brought.0.map(|q| q as f32);
+                    account.noted = account.brought.0.map(|q| q as f32);
                 }
-                let kept = |band: usize| withheld * reflectance[band] * self.direct[k].0[band] as f64;
+                let kept = |band: usize| withheld * f64::from(account.noted[band]);
                 let share = |band: usize| (account.unshot.0[band] as f64 - kept(band)) / lines;
                 self.ledger.set_share(SideId(i), [0, 1, 2].map(share));
             }

@@ -7,10 +7,12 @@ use std::ops::Range;
 use sir_accel::Ray;
 use sir_geom::{Line, Rgb};
 use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
+use sir_mesh::SideId;
 
 use crate::global::AHEAD;
 use crate::ledger::{Counters, Ledger, SquareUnit};
 use crate::sources::{Source, sources};
+use crate::state::visit_counts;
 use crate::{Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Solution, SolveError, Visitor};
 
 /// Rays that are made at a time.
@@ -46,9 +48,37 @@ pub struct Shot {
     pub balance: Balance,
     /// What the lines met.
     pub counts: Counts,
+    /// What some sides have sent of the light that they reflect, in a second shot.
+    pub sent: Vec<(SideId, Quanta)>,
 }
 
 impl Shot {
+    /// Power that each side reflects and has not sent; by chance a little less than nothing where it has sent all.
+    #[must_use]
+    pub fn unshot(&self, model: &Model) -> Vec<Quanta> {
+        let mut unshot = Vec::with_capacity(model.mesh.side_count());
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let reflectance = model.scene.material(triangle).reflectance;
+            unshot.push(self.received.power[side.index()].scaled(reflectance));
+        });
+        for &(side, sent) in &self.sent {
+            unshot[side.index()] = unshot[side.index()] - sent;
+        }
+        unshot
+    }
+
+    /// Shows a first shot to a visitor.
+    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.received.visit(visitor);
+        self.unit.visit(visitor);
+        let Balance { emitted, absorbed, blocked, escaped, unshot } = &mut self.balance;
+        for quanta in [emitted, absorbed, blocked, escaped, unshot] {
+            visitor.same(&mut quanta.0);
+        }
+        let Counts { lines, empty, odd, crossings } = &mut self.counts;
+        visit_counts([lines, empty, odd, crossings], visitor);
+    }
+
     /// The direct light alone: the irradiance by the sources, before any reflection.
     #[must_use]
     pub fn solution(&self, model: &Model) -> Solution {
@@ -63,6 +93,7 @@ impl Shot {
             unit: PowerUnit::for_total(1.0, 0.0),
             balance: Balance::default(),
             counts: Counts::default(),
+            sent: Vec::new(),
         }
     }
 }
@@ -75,20 +106,43 @@ impl<'m> FirstShot<'m> {
     /// If nothing emits.
     pub fn new(model: &'m Model, lines: u64, seed: u64) -> Result<Self, SolveError> {
         let sources = sources(&model.scene);
-        let weights: Vec<f64> = sources.iter().map(|s| s.power.element_sum()).collect();
         let total = sources.iter().fold(Rgb::ZERO, |sum, s| sum + s.power);
         if total.max_element() <= 0.0 {
             return Err(SolveError::NoLight);
         }
         let reflectance = model.scene.materials().iter().map(|m| m.reflectance.max_element());
         let unit = PowerUnit::for_total(total.max_element(), reflectance.fold(0.0, f64::max));
+        Ok(Self::of(model, sources, unit, lines, seed, Stage::FIRST_SHOT))
+    }
+
+    /// As [`new`](Self::new), with these sources, all of which emit.
+    pub(crate) fn of(
+        model: &'m Model,
+        sources: Vec<Source>,
+        unit: PowerUnit,
+        lines: u64,
+        seed: u64,
+        stage: Stage,
+    ) -> Self {
+        let weights: Vec<f64> = sources.iter().map(|s| s.power.element_sum()).collect();
         // A line carries ΣΦ/N in all, in the colour of its source.
-        let line = total.element_sum() / lines as f64;
+        let line = weights.iter().sum::<f64>() / lines.max(1) as f64;
         let per_line = sources.iter().zip(&weights).map(|(s, w)| unit.quanta(s.power * (line / w))).collect();
-        let offset = Streams::new(seed, Stage::ALLOCATION).line(0).unit();
+        let offset = Streams::new(seed, Stage::ALLOCATION).line(stage.0 - Stage::FIRST_SHOT.0).unit();
         let allocation = Allocation::new(&weights, lines, offset);
-        let streams = Streams::new(seed, Stage::FIRST_SHOT);
-        Ok(Self { model, sources, per_line, allocation, streams, unit, lines })
+        let streams = Streams::new(seed, stage);
+        Self { model, sources, per_line, allocation, streams, unit, lines }
+    }
+
+    /// Number of lines.
+    #[must_use]
+    pub fn lines(&self) -> u64 {
+        self.lines
+    }
+
+    /// Power that all lines of each source carry.
+    pub(crate) fn sent(&self) -> impl Iterator<Item = Quanta> {
+        self.per_line.iter().enumerate().map(|(k, power)| power.times(self.allocation.count(k) as i64))
     }
 
     /// An empty tally, for this number of workers: how many there are has no effect on the result, but on the time.
@@ -172,26 +226,35 @@ impl<'m> FirstShot<'m> {
     ///
     /// If a tally overflowed.
     pub fn finish(&self, tally: FirstShotTally, books: Books) -> Result<Shot, SolveError> {
+        self.add(Received::nothing(self.model.mesh.side_count()), tally, books)
+    }
+
+    /// Adds what the lines have brought to what was received before.
+    pub(crate) fn add(
+        &self,
+        mut received: Received,
+        tally: FirstShotTally,
+        books: Books,
+    ) -> Result<Shot, SolveError> {
         let Books { mut balance, counts } = books;
-        let mut received = Received::nothing(self.model.mesh.side_count());
         let lines = counts.lines.max(1) as f64;
         self.model.mesh.for_each_side(|triangle, _, _, side| {
             let power = tally.ledger.power(side);
             let reflected = power.scaled(self.model.scene.material(triangle).reflectance);
             balance.unshot += reflected;
             balance.absorbed += power - reflected;
-            received.power[side.index()] = power;
+            received.power[side.index()] += power;
             // The number of lines is given, so the variance of a sum is binomial: Σw² − (Σw)²/N.
-            let squares = tally.ledger.squares(side);
-            received.variance[side.index()] = std::array::from_fn(|k| {
+            let (squares, variance) = (tally.ledger.squares(side), &mut received.variance[side.index()]);
+            for (k, variance) in variance.iter_mut().enumerate() {
                 let power = power.0[k] as f64;
-                (squares[k] - power * power / lines).max(0.0) as f32
-            });
+                *variance += (squares[k] - power * power / lines).max(0.0) as f32;
+            }
         });
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "first shot" });
         }
-        Ok(Shot { received, unit: self.unit, balance, counts })
+        Ok(Shot { received, unit: self.unit, balance, counts, sent: Vec::new() })
     }
 }
 

@@ -116,13 +116,13 @@ impl<'m> Multipath<'m> {
     #[must_use]
     pub fn new(model: &'m Model, shot: Shot, settings: MultipathSettings, seed: u64, workers: usize) -> Self {
         let forecast = settings.domain.forecast(settings.lines.saturating_sub(settings.tail));
+        let unshot = shot.unshot(model);
         let mut shares = Vec::with_capacity(model.mesh.side_count());
         let (mut largest, mut most) = ([0.0; 3], 0.0);
         model.mesh.for_each_side(|triangle, _, _, side| {
             let reflectance = model.scene.material(triangle).reflectance;
-            let reflected = shot.received.power[side.index()].scaled(reflectance);
             let crossings = forecast.crossings(model.mesh.patch_area(triangle));
-            let share = reflected.0.map(|q| q as f64 / crossings);
+            let share = unshot[side.index()].0.map(|q| q as f64 / crossings);
             for band in 0..3 {
                 largest[band] = f64::max(largest[band], share[band] / (1.0 - reflectance[band]));
             }

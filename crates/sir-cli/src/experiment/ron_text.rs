@@ -28,6 +28,7 @@ fn action(action: &Action) -> Option<String> {
             Subdivision::Patches(count) => format!("Subdivide(patches: {count})"),
         },
         Action::FirstShot { lines } => format!("FirstShot(lines: {lines})"),
+        Action::SecondShot { lines } => format!("SecondShot(lines: {lines})"),
         Action::Multipath { lines, transport, body } => {
             let transport = match transport {
                 Transport::Batches => "Batches".into(),

@@ -108,11 +108,20 @@ impl Subject {
                 _ => {}
             }
         }
+        let second_shot = self.pipeline.stages.iter().find_map(|stage| match stage.action {
+            // In proportion to the local lines.
+            Action::SecondShot { lines } => {
+                let share = changes.lines.local as f64 / self.asked.local as f64;
+                Some(Action::SecondShot { lines: ((lines as f64 * share) as u64).max(1) })
+            }
+            _ => None,
+        });
         actions.push(Action::FirstShot { lines: changes.lines.local });
         if changes.direct {
             actions.push(Action::Save(vec![table(DIRECT)]));
         }
         let (lines, transport, body) = (changes.lines.global, changes.transport, self.body);
+        actions.extend(second_shot);
         actions.push(Action::Multipath { lines, transport, body });
         let pictures = self.pictures().filter(|_| changes.pictures).cloned();
         actions.push(Action::Save(std::iter::once(table(TABLE)).chain(pictures).collect()));

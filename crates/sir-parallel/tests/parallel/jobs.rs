@@ -7,11 +7,13 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder, Sides};
 use sir_lines::Domain;
-use sir_mesh::Subdivision;
-use sir_parallel::{Communicator, Crew, RunError, Saved, StageRun, batches, first_shot, multipath};
+use sir_mesh::{SideId, Subdivision};
+use sir_parallel::{
+    Communicator, Crew, RunError, Saved, StageRun, batches, first_shot, multipath, second_shot,
+};
 use sir_radiosity::{
-    Balance, Batches, Books, Counts, FirstShot, Model, Multipath, MultipathSettings, Quanta, Received, Shot,
-    Totals, Transported,
+    Balance, Batches, Books, Counts, FirstShot, Model, Multipath, MultipathSettings, Quanta, Received,
+    SecondShot, Shot, Totals, Transported,
 };
 
 use crate::observers::StopAfter;
@@ -38,6 +40,7 @@ pub(crate) static FINE_ROOM: LazyLock<Room> = LazyLock::new(|| Room::new(40_000)
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Job {
     FirstShot,
+    SecondShot,
     Batches,
     Multipath { replicas: u64, tail: u64 },
 }
@@ -51,11 +54,13 @@ pub(crate) struct Outcome {
     pub(crate) counts: Counts,
     pub(crate) made_up: Quanta,
     pub(crate) batches: u64,
+    pub(crate) sent: Vec<(SideId, Quanta)>,
 }
 
 /// All stages, multipath with various settings.
-pub(crate) const JOBS: [Job; 8] = [
+pub(crate) const JOBS: [Job; 9] = [
     Job::FirstShot,
+    Job::SecondShot,
     Job::Batches,
     Job::Multipath { replicas: 1, tail: 0 },
     Job::Multipath { replicas: 3, tail: 0 },
@@ -124,6 +129,7 @@ impl Job {
         let shot = || if saved.is_some() { Shot::nothing(model) } else { room.shot.clone() };
         match self {
             Self::FirstShot => first_shot(model, LINES, SEED, crew, saved).map(Outcome::of_shot),
+            Self::SecondShot => second_shot(model, shot(), LINES, SEED, crew, saved).map(Outcome::of_shot),
             Self::Batches => {
                 batches(model, shot(), LINES, domain, SEED, crew, saved).map(Outcome::of_transport)
             }
@@ -140,6 +146,13 @@ impl Job {
         let run = match self {
             Self::FirstShot => {
                 let stage = FirstShot::new(model, LINES, SEED).unwrap();
+                let tally = stage.tally(1);
+                stage.trace(0, 0..LINES, &tally, &mut books);
+                let outcome = stage.finish(tally, books).unwrap();
+                return Outcome::of_shot(StageRun { outcome, time: Default::default(), batches: 1 });
+            }
+            Self::SecondShot => {
+                let stage = SecondShot::new(model, shot, LINES, SEED);
                 let tally = stage.tally(1);
                 stage.trace(0, 0..LINES, &tally, &mut books);
                 let outcome = stage.finish(tally, books).unwrap();
@@ -178,13 +191,13 @@ impl Job {
 
 impl Outcome {
     fn of_shot(StageRun { outcome, batches, .. }: StageRun<Shot>) -> Self {
-        let Shot { received, unit, balance, counts } = outcome;
-        Self { received, quantum: unit.quantum(), balance, counts, made_up: Quanta::ZERO, batches }
+        let Shot { received, unit, balance, counts, sent } = outcome;
+        Self { received, quantum: unit.quantum(), balance, counts, made_up: Quanta::ZERO, batches, sent }
     }
 
     fn of_transport(StageRun { outcome, batches, .. }: StageRun<Transported>) -> Self {
         let Transported { received, unit, balance, counts, made_up, .. } = outcome;
-        Self { received, quantum: unit.quantum(), balance, counts, made_up, batches }
+        Self { received, quantum: unit.quantum(), balance, counts, made_up, batches, sent: Vec::new() }
     }
 
     /// Equal to the last bit.

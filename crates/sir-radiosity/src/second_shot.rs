@@ -1,0 +1,123 @@
+//! The second shot: the brightest patches send what they reflect of the first one along local lines, too.
+//!
+//! Castro, Martínez and Sbert (1998) call it an extended first shot. A global line carries as much as the patch that it leaves is
+//! bright; where light falls on a wall from nearby, it is as bright as a lamp, and what it sends makes most of the noise of all that
+//! see it. Local lines carry the same from everywhere. The brightest patches are those whose power is to all the power of the
+//! sources as the lines of this shot are to those of the first: then a line carries as much as a line of the first shot.
+
+use std::ops::Range;
+
+use sir_geom::{Rgb, Side};
+use sir_lines::Stage;
+use sir_mesh::{PatchId, SideId};
+
+use crate::first_shot::{FirstShot, FirstShotTally, Shot};
+use crate::sources::Source;
+use crate::{Books, Model, Quanta, SolveError, Visitor};
+
+/// The lines of a second shot.
+#[derive(Clone, Debug)]
+pub struct SecondShot<'m> {
+    /// What the first shot has brought.
+    shot: Shot,
+    lines: FirstShot<'m>,
+    /// The side that each source of the lines is, or is a part of.
+    sides: Vec<SideId>,
+}
+
+impl<'m> SecondShot<'m> {
+    /// Shares `lines` lines among the brightest patches. If nothing reflects, there are no lines.
+    #[must_use]
+    pub fn new(model: &'m Model, shot: Shot, lines: u64, seed: u64) -> Self {
+        let unshot = shot.unshot(model);
+        let total = sum(shot.balance.emitted) * lines as f64 / shot.counts.lines.max(1) as f64;
+        let bright = brightest(model, &unshot, total);
+        let (mut sources, mut sides) = (Vec::new(), Vec::new());
+        for triangle in model.scene.triangle_ids() {
+            let (corners, front) = (model.scene.corners(triangle), model.scene.normal(triangle));
+            let patches = model.mesh.patches_of(triangle);
+            // A face that is one patch has several triangles.
+            let part = model.scene.area(triangle) / (patches.len() as f64 * model.mesh.patch_area(triangle));
+            for patch in patches.map(PatchId) {
+                for (side, normal) in [(Side::Front, front), (Side::Back, -front)] {
+                    let Some(id) = model.mesh.side_of(triangle, patch, side) else { continue };
+                    if bright[id.index()] {
+                        let corners = model.mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
+                        let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
+                        sources.push(Source { triangle, side, corners, normal, power });
+                        sides.push(id);
+                    }
+                }
+            }
+        }
+        let lines = if sources.is_empty() { 0 } else { lines };
+        let lines = FirstShot::of(model, sources, shot.unit, lines, seed, Stage::SECOND_SHOT);
+        Self { shot, lines, sides }
+    }
+
+    /// Number of lines.
+    #[must_use]
+    pub fn lines(&self) -> u64 {
+        self.lines.lines()
+    }
+
+    /// An empty tally, for this number of workers: how many there are has no effect on the result, but on the time.
+    #[must_use]
+    pub fn tally(&self, workers: usize) -> FirstShotTally {
+        self.lines.tally(workers)
+    }
+
+    /// Traces some of the lines. Each line should be traced once, by whomever; `worker` is the number of who does.
+    pub fn trace(&self, worker: usize, lines: Range<u64>, tally: &FirstShotTally, books: &mut Books) {
+        self.lines.trace(worker, lines, tally, books);
+    }
+
+    /// Shows what the first shot has brought to a visitor.
+    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.shot.visit(visitor);
+    }
+
+    /// Closes the books once all lines are traced: the light of both shots, and what patches have still to send.
+    ///
+    /// # Errors
+    ///
+    /// If a tally overflowed.
+    pub fn finish(self, tally: FirstShotTally, books: Books) -> Result<Shot, SolveError> {
+        let Self { shot: Shot { received, sent, .. }, lines, sides } = self;
+        let shot = lines.add(received, tally, books)?;
+        let mut all = sent;
+        for (side, power) in sides.into_iter().zip(lines.sent()) {
+            match all.last_mut() {
+                Some((last, sum)) if *last == side => *sum += power,
+                _ => all.push((side, power)),
+            }
+        }
+        Ok(Shot { sent: all, ..shot })
+    }
+}
+
+/// Which sides are the brightest ones that hold `total` together, or all that hold something.
+fn brightest(model: &Model, unshot: &[Quanta], total: f64) -> Vec<bool> {
+    let mut sides = Vec::new();
+    model.mesh.for_each_side(|triangle, _, _, side| {
+        let power = sum(unshot[side.index()]);
+        if power > 0.0 {
+            sides.push((power / model.mesh.patch_area(triangle), power, side));
+        }
+    });
+    sides.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)));
+    let (mut bright, mut held) = (vec![false; unshot.len()], 0.0);
+    for (_, power, side) in sides {
+        if held >= total {
+            break;
+        }
+        held += power;
+        bright[side.index()] = true;
+    }
+    bright
+}
+
+/// Sum over bands.
+fn sum(quanta: Quanta) -> f64 {
+    quanta.0.iter().map(|&q| q as f64).sum()
+}
