@@ -43,21 +43,25 @@ mod builder;
 mod camera;
 mod hull;
 mod index;
+mod light;
 mod line;
 mod load;
 mod material;
 mod scene;
 pub mod shapes;
+mod sky;
 
 pub use bounds::{BoundingBox, BoundingSphere};
 pub use builder::{Built, SceneBuilder, SceneError, Warning};
 pub use camera::{Camera, Projection};
 pub use hull::ConvexHull;
 pub use index::{FaceId, MaterialId, TriangleId, VertexId};
+pub use light::{Arrival, Light, LightKind, Spread};
 pub use line::{Barycentric, Line};
 pub use load::{LoadError, LoadOptions, SidesPolicy, load};
 pub use material::{MAX_REFLECTANCE, Material, Sides};
 pub use scene::{Scene, Side, Triangle};
+pub use sky::{Sky, SkyModel};
 
 /// A colour or a spectral quantity in three bands: linear Rec. 709 red, green and blue.
 ///
