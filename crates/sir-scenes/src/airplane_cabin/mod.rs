@@ -15,10 +15,9 @@ mod size;
 mod spine;
 mod window;
 
-use glam::DVec3;
-use sir_geom::{Built, Camera, SceneBuilder, SceneError};
+use sir_geom::{Built, SceneBuilder, SceneError};
 
-use crate::model::{GAP, Model};
+use crate::model::{GAP, Model, add_cameras};
 use crate::random::Random;
 use palette::Palette;
 use seat::HALF_GROUP;
@@ -49,18 +48,12 @@ pub fn airplane_cabin() -> Result<Built, SceneError> {
     }
     cabin.store(&mut builder);
     let row = FIRST_ROW + PITCH * 12.0;
-    for (name, eye, target, degrees) in [
+    let views = [
         ("aisle", [0.0, 1.6, REAR - 7.1], [0.0, 1.2, 2.0], 52.0),
         ("row", [-0.55, 1.30, row + 0.62], [1.5, 0.96, row - 1.05], 52.0),
-        ("galley", [0.12, 1.72, FRONT + 0.15], [-0.1, 1.2, FRONT + 6.0], 62.0f64),
-    ] {
-        let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
-        if let Some(mut camera) = Camera::looking_at(eye, target, DVec3::Y, degrees.to_radians()) {
-            camera.name = name.to_owned();
-            camera.aspect = Some(16.0 / 9.0);
-            builder.add_camera(camera);
-        }
-    }
+        ("galley", [0.12, 1.72, FRONT + 0.15], [-0.1, 1.2, FRONT + 6.0], 62.0),
+    ];
+    add_cameras(&mut builder, &views);
     builder.build()
 }
 

@@ -1,8 +1,8 @@
 //! The materials of the cabin.
 
-use std::f64::consts::PI;
-
 use sir_geom::{Material, MaterialId, Rgb, SceneBuilder};
+
+use crate::model::lamp;
 
 /// Numbers of the materials.
 pub(super) struct Palette {
@@ -115,8 +115,7 @@ impl Palette {
             screens: [panel; 3],
         };
         let mut light = |name: &str, radiance: f64, r, g, b| {
-            let exitance = PI * radiance * Rgb::new(r, g, b);
-            builder.add_material(Material::diffuse(name, Rgb::splat(0.3)).emitting(exitance))
+            builder.add_material(lamp(name, radiance * Rgb::new(r, g, b)))
         };
         palette.sky = light("sky", 1.9, 0.54, 0.82, 1.18);
         palette.cove_lamp = light("cove lamp", 8.0, 0.47, 0.40, 1.55);

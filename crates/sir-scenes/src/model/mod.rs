@@ -8,6 +8,7 @@
 //! * Positions are multiples of 2⁻¹⁶ m (see [`Model::store`]).
 
 mod carve;
+mod furnish;
 mod lathe;
 mod loft;
 mod pillow;
@@ -18,6 +19,7 @@ mod wall;
 use glam::{DAffine3, DVec3};
 use sir_geom::{MaterialId, SceneBuilder};
 
+pub(crate) use furnish::{add_cameras, lamp};
 pub(crate) use pillow::Ends;
 pub(crate) use sheet::lines;
 pub(crate) use wall::{Wall, half_rings};

@@ -21,9 +21,9 @@ mod statues;
 mod vitrines;
 
 use glam::DVec3;
-use sir_geom::{Built, Camera, SceneBuilder, SceneError};
+use sir_geom::{Built, SceneBuilder, SceneError};
 
-use crate::model::{GAP, Model, lines};
+use crate::model::{GAP, Model, add_cameras, lines};
 use palette::Palette;
 use size::{FOOT, GALLERY, LENGTH};
 
@@ -55,18 +55,12 @@ pub fn museum_stairs() -> Result<Built, SceneError> {
         hall.add_at(&part, 0.0, 0.0, 0.0);
     }
     hall.store(&mut builder);
-    for (name, eye, target, degrees) in [
+    let views = [
         ("top", [2.0, 9.4, 18.35], [-0.3, 3.15, 5.0], 62.0),
         ("foot", [1.1, 1.65, 18.1], [-0.5, 4.6, 2.0], 62.0),
-        ("gallery", [7.3, GALLERY + 1.75, 18.3], [2.9, GALLERY + 0.45, 3.0], 58.0f64),
-    ] {
-        let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
-        if let Some(mut camera) = Camera::looking_at(eye, target, DVec3::Y, degrees.to_radians()) {
-            camera.name = name.to_owned();
-            camera.aspect = Some(16.0 / 9.0);
-            builder.add_camera(camera);
-        }
-    }
+        ("gallery", [7.3, GALLERY + 1.75, 18.3], [2.9, GALLERY + 0.45, 3.0], 58.0),
+    ];
+    add_cameras(&mut builder, &views);
     builder.build()
 }
 

@@ -1,8 +1,8 @@
 //! The materials of the hall.
 
-use std::f64::consts::PI;
-
 use sir_geom::{Material, MaterialId, Rgb, SceneBuilder};
+
+use crate::model::lamp;
 
 /// Numbers of the materials.
 pub(super) struct Palette {
@@ -109,8 +109,7 @@ impl Palette {
             palette.paints[i] = paint(&format!("paint {i}"), r, g, b);
         }
         let mut light = |name: &str, radiance: f64, r, g, b| {
-            let exitance = PI * radiance * Rgb::new(r, g, b);
-            builder.add_material(Material::diffuse(name, Rgb::splat(0.3)).emitting(exitance))
+            builder.add_material(lamp(name, radiance * Rgb::new(r, g, b)))
         };
         palette.sky = light("sky", 11.5, 0.57, 0.86, 1.26);
         palette.cove_lamp = light("cove lamp", 8.0, 1.30, 0.86, 0.44);

@@ -16,9 +16,9 @@ mod table;
 use std::f64::consts::PI;
 
 use glam::{DAffine3, DVec3};
-use sir_geom::{Built, Camera, SceneBuilder, SceneError};
+use sir_geom::{Built, SceneBuilder, SceneError};
 
-use crate::model::{GAP, Model, lines};
+use crate::model::{GAP, Model, add_cameras, lines};
 use crate::random::Random;
 use bookcase::{Bookcase, books_on_table, ladder};
 use palette::Palette;
@@ -51,18 +51,12 @@ pub fn reading_room() -> Result<Built, SceneError> {
     }
     room.add_at(&dais::globe(&palette), 2.4, DAIS + GAP, 1.2);
     room.store(&mut builder);
-    for (name, eye, target, degrees) in [
+    let views = [
         ("nave", [-0.6, 1.75, LENGTH - 0.6], [0.2, 2.5, 0.0], 56.0),
         ("dais", [1.2, DAIS + 1.75, 1.2], [-0.6, 2.0, LENGTH], 58.0),
-        ("table", [-0.2, 1.35, 11.2], [2.9, 1.05, 5.2], 45.0f64),
-    ] {
-        let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
-        if let Some(mut camera) = Camera::looking_at(eye, target, DVec3::Y, degrees.to_radians()) {
-            camera.name = name.to_owned();
-            camera.aspect = Some(16.0 / 9.0);
-            builder.add_camera(camera);
-        }
-    }
+        ("table", [-0.2, 1.35, 11.2], [2.9, 1.05, 5.2], 45.0),
+    ];
+    add_cameras(&mut builder, &views);
     builder.build()
 }
 

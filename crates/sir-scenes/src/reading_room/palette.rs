@@ -1,8 +1,8 @@
 //! The materials of the room.
 
-use std::f64::consts::PI;
-
 use sir_geom::{Material, MaterialId, Rgb, SceneBuilder};
+
+use crate::model::lamp;
 
 /// Numbers of the materials.
 pub(super) struct Palette {
@@ -85,8 +85,7 @@ impl Palette {
         palette.books =
             BOOKS.iter().enumerate().map(|(i, [r, g, b])| paint(&format!("book {i}"), *r, *g, *b)).collect();
         let mut light = |name: &str, radiance: f64, r, g, b| {
-            let exitance = PI * radiance * Rgb::new(r, g, b);
-            builder.add_material(Material::diffuse(name, Rgb::splat(0.3)).emitting(exitance))
+            builder.add_material(lamp(name, radiance * Rgb::new(r, g, b)))
         };
         palette.sky = light("sky", 2.6, 0.58, 0.84, 1.22);
         palette.cove_lamp = light("cove lamp", 14.0, 1.30, 0.84, 0.42);

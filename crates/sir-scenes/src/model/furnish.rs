@@ -1,0 +1,24 @@
+//! What our rooms have alike beside shapes.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use sir_geom::{Camera, Material, Rgb, SceneBuilder};
+
+/// A name, the position of the eye, what is looked at, and the vertical opening angle in degrees.
+pub(crate) type View = (&'static str, [f64; 3], [f64; 3], f64);
+
+/// Adds cameras for wide pictures.
+pub(crate) fn add_cameras(builder: &mut SceneBuilder, views: &[View]) {
+    for &(name, eye, target, degrees) in views {
+        let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
+        if let Some(camera) = Camera::looking_at(eye, target, DVec3::Y, degrees.to_radians()) {
+            builder.add_camera(Camera { name: name.to_owned(), aspect: Some(16.0 / 9.0), ..camera });
+        }
+    }
+}
+
+/// A surface that emits a radiance \[W/(m² sr)\] and reflects a little.
+pub(crate) fn lamp(name: &str, radiance: Rgb) -> Material {
+    Material::diffuse(name, Rgb::splat(0.3)).emitting(PI * radiance)
+}
