@@ -172,34 +172,97 @@ fn cornell_box() {
     assert_agrees(deviations);
 }
 
-/// A scene's materials: the area-weighted mean of the fronts of their triangles.
-fn by_material(folder: &Path, file: &str, effort: &Effort) -> Deviations {
-    let model = model(&folder.join(file), effort);
-    let mut means: BTreeMap<&str, Vec<Rgb>> = BTreeMap::new();
-    let mut areas: BTreeMap<&str, f64> = BTreeMap::new();
-    for t in model.scene.triangle_ids() {
-        *areas.entry(&model.scene.material(t).name).or_default() += model.scene.area(t);
-    }
-    for run in solve(&model, effort) {
-        let mut sums: BTreeMap<&str, Rgb> = BTreeMap::new();
-        for t in model.scene.triangle_ids() {
-            *sums.entry(&model.scene.material(t).name).or_default() += model.scene.area(t) * run[t.index()];
-        }
-        for (name, sum) in sums {
-            means.entry(name).or_default().push(sum / areas[name]);
-        }
-    }
-    let mut deviations = Deviations::default();
-    for (name, theirs) in reference(&folder.join("reference-radiosity-by-material.csv")) {
-        deviations.add(&name, Estimate::of(&means[name.as_str()]), theirs);
-    }
-    deviations
+/// A scene, its light in several runs, and what others have found.
+struct Compared {
+    model: Model,
+    runs: Vec<Vec<Rgb>>,
+    folder: PathBuf,
 }
 
-/// A small office, of the RenderPark distribution.
+impl Compared {
+    fn of(folder: PathBuf, file: &str, effort: &Effort) -> Self {
+        let model = model(&folder.join(file), effort);
+        let runs = solve(&model, effort);
+        Self { model, runs, folder }
+    }
+
+    /// Materials: the area-weighted mean of the fronts of their triangles. Those in `but` are left out.
+    fn by_material(&self, but: &[&str]) -> Deviations {
+        let scene = &self.model.scene;
+        let mut means: BTreeMap<&str, Vec<Rgb>> = BTreeMap::new();
+        let mut areas: BTreeMap<&str, f64> = BTreeMap::new();
+        for t in scene.triangle_ids() {
+            *areas.entry(&scene.material(t).name).or_default() += scene.area(t);
+        }
+        for run in &self.runs {
+            let mut sums: BTreeMap<&str, Rgb> = BTreeMap::new();
+            for t in scene.triangle_ids() {
+                *sums.entry(&scene.material(t).name).or_default() += scene.area(t) * run[t.index()];
+            }
+            for (name, sum) in sums {
+                means.entry(name).or_default().push(sum / areas[name]);
+            }
+        }
+        let mut deviations = Deviations::default();
+        for (name, theirs) in reference(&self.folder.join("reference-radiosity-by-material.csv")) {
+            if !but.contains(&name.as_str()) {
+                deviations.add(&name, Estimate::of(&means[name.as_str()]), theirs);
+            }
+        }
+        deviations
+    }
+
+    /// Triangles that do not emit, are larger than `area` \[m²\], and whose reference is better than 3 %.
+    fn by_triangle(&self, area: f64) -> Deviations {
+        let scene = &self.model.scene;
+        let reference = reference(&self.folder.join("reference-radiosity.csv"));
+        let mut deviations = Deviations::default();
+        for t in scene
+            .triangle_ids()
+            .filter(|&t| scene.area(t) > area && scene.exitance(t, Side::Front) == Rgb::ZERO)
+        {
+            let name = scene.triangle(t).source.to_string();
+            let theirs = reference[&name];
+            if theirs.mean.min_element() > 0.0 && (theirs.se / theirs.mean).max_element() < 0.03 {
+                let ours: Vec<_> = self.runs.iter().map(|run| run[t.index()]).collect();
+                deviations.add(&format!("{name} ({})", scene.material(t).name), Estimate::of(&ours), theirs);
+            }
+        }
+        deviations
+    }
+}
+
+/// Narrow strips of window frames that are 7 and 8 % darker in the reference. Path tracing with exact geometry (the example
+/// `path_traced` of sir-radiosity) agrees with this program there: .1054 ± .0011 and .1381 ± .0013 in green.
+const LEUVEN_FRAMES: [&str; 2] = ["487 ", "531 "];
+
+/// A small office, of the RenderPark distribution: materials, and triangles of more than 200 cm².
+///
+/// Smaller ones need smaller patches, or have the same trouble as [`LEUVEN_FRAMES`]: the shells of the chairs (docs/accuracy.md).
 #[test]
 fn leuven_office() {
     let Some(folder) = scene_folder("mgf-leuven-office") else { return };
-    let effort = Effort { patches: 40_000, lines: (1_000_000, 10_000_000), seeds: 8 };
-    assert_agrees(by_material(&folder, "leuven-office.obj", &effort));
+    let effort = Effort { patches: 300_000, lines: (2_000_000, 10_000_000), seeds: 8 };
+    let compared = Compared::of(folder, "leuven-office.obj", &effort);
+    assert_agrees(compared.by_material(&[]));
+    let mut triangles = compared.by_triangle(0.02);
+    triangles.0.retain(|(what, _)| !LEUVEN_FRAMES.iter().any(|frame| what.starts_with(frame)));
+    assert!(triangles.0.len() > 3 * 200);
+    assert_agrees(triangles);
+}
+
+/// Materials of the ice cream store with parts that lie on or in each other: what is hidden has light in the reference where it is
+/// closer to the surface than single precision can tell.
+const SODA_IN_CONTACT: [&str; 5] = ["blue_vinyl", "chrome", "khaki", "normal_glass", "stainless_steel"];
+
+/// An ice cream store by Greg Ward: materials, and triangles.
+#[test]
+fn soda() {
+    let Some(folder) = scene_folder("mgf-soda") else { return };
+    let effort = Effort { patches: 400_000, lines: (2_000_000, 6_000_000), seeds: 8 };
+    let compared = Compared::of(folder, "soda.obj", &effort);
+    assert_agrees(compared.by_material(&SODA_IN_CONTACT));
+    let triangles = compared.by_triangle(0.0);
+    assert!(triangles.0.len() > 3 * 400);
+    assert_agrees(triangles);
 }
