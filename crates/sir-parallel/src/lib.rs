@@ -63,7 +63,7 @@ mod stages;
 pub use checkpoint::{Checkpoints, Saved};
 pub use communicator::{Alone, Communicator};
 pub use connect::{ConnectError, HAS_MPI, connect};
-pub use crew::{Crew, StageTime, cores};
+pub use crew::{Crew, Earlier, StageTime, cores};
 pub use error::{CheckpointError, RunError};
 pub use observer::{Observer, Silent};
 pub use stages::{StageRun, batches, first_shot, multipath, second_shot};

@@ -29,10 +29,10 @@ fn room(subdivision: Subdivision) -> Model {
 }
 
 fn shoot_again(model: &Model, shot: &Shot, lines: u64, seed: u64) -> Shot {
-    let stage = SecondShot::new(model, shot.clone(), lines, seed);
-    let (tally, mut books) = (stage.tally(1), Books::default());
-    stage.trace(0, 0..stage.lines(), &tally, &mut books);
-    stage.finish(tally, books).unwrap()
+    let stage = SecondShot::new(model, shot, lines, seed);
+    let (tally, mut books) = (stage.lines().tally(1), Books::default());
+    stage.lines().trace(0, 0..stage.lines().lines(), &tally, &mut books);
+    stage.finish(shot.clone(), tally, books).unwrap()
 }
 
 fn mean(values: &[f64]) -> f64 {
