@@ -86,13 +86,17 @@ fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, us
     let repeats = pipeline.stages.iter().any(|stage| matches!(stage.action, Action::Repeat(_)));
     let tracing = tracing + if repeats { Repeats::BYTES_PER_SIDE } else { 0 };
     let shown = pipeline.outputs().any(|o| o.content != Content::Table);
+    // Pictures for measuring have one of standard errors, too.
+    let measured =
+        pipeline.outputs().any(|o| o.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
+    let displays = usize::from(shown) + usize::from(measured);
     let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles())),
         // See `PatchMesh`: 28 bytes per triangle.
         ("patches", 28 * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing),
-        ("pictures and lit meshes", if shown { sides * (solution + DISPLAY_BYTES) } else { 0 }),
+        ("pictures and lit meshes", sides * displays.min(1) * solution + sides * displays * DISPLAY_BYTES),
     ];
     // The last two are not needed at the same time.
     let [scene, patches, accel, light, display] = [0, 1, 2, 3, 4].map(|i: usize| memory[i].1);

@@ -44,16 +44,17 @@ impl<'a> Decoder<'a> {
 
     fn until(&mut self, node: Node<'a>) -> Option<Until> {
         let name = self.name_of(&node, "target", &["RelativeError", "Seconds"])?;
-        let example = if name == "Seconds" { "60" } else { "0.01" };
-        let Value::Items(items) = &node.value else { return self.no_number(&node, name, example) };
-        let [number] = items.as_slice() else { return self.no_number(&node, name, example) };
-        let number = self.reader.positive(number, name, example)?;
-        Some(if name == "Seconds" { Until::Seconds(number) } else { Until::RelativeError(number) })
-    }
-
-    fn no_number(&mut self, node: &Node<'a>, name: &str, example: &str) -> Option<Until> {
+        let (example, target): (_, fn(f64) -> Until) = match name {
+            "Seconds" => ("Seconds(60)", Until::Seconds),
+            _ => ("RelativeError(0.01)", Until::RelativeError),
+        };
+        if let Value::Items(items) = &node.value
+            && let [number] = items.as_slice()
+        {
+            return self.reader.positive(number, "until", example).map(target);
+        }
         let message = format!("`{name}` takes one number, but this is {}", node.kind());
-        self.reader.problem(node.text, message, format!("write `until: {name}({example})`"));
+        self.reader.problem(node.text, message, format!("write `until: {example}`"));
         None
     }
 }

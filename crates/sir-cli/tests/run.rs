@@ -93,6 +93,12 @@ fn the_same_pipeline_gives_the_same_files() {
     let (a, b) = (files(&first.directory), files(&second.directory));
     let names: Vec<&str> = a.keys().map(String::as_str).collect();
     assert_eq!(names, ["direct.npy", "patches.csv", "pictures/view.exr", "pictures/view.png", "result.glb"]);
+    // The names of the channels of errors are in the head of the picture for measuring.
+    for band in ["R", "G", "B"] {
+        let channel = format!("error.{band}\0");
+        let picture = &a["pictures/view.exr"];
+        assert!(picture.windows(channel.len()).any(|bytes| bytes == channel.as_bytes()), "{channel}");
+    }
     assert!(a == b, "two runs of one pipeline differ");
     assert_eq!(read_report(&first.directory).unwrap(), first.report);
     assert_eq!(timeless(first.report.clone()), timeless(second.report));
