@@ -63,6 +63,7 @@ impl Run<'_> {
             }
         }
         let (report, solution) = repeats.finish(model);
+        self.progress.note(&format!("Repeat: {} times after {}", repeat + 1, duration(report.time.seconds)));
         for (stage, report) in settings.stages.iter().zip(&report.stages) {
             self.progress.warn(
                 &report.lines.iter().flat_map(|l| unshot_warning(&stage.action, l)).collect::<Vec<_>>(),
