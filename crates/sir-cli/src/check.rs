@@ -9,7 +9,7 @@ use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, Repeats, SecondSho
 
 use crate::Error;
 use crate::fields::grouped;
-use crate::pipeline::{Action, Content, Pipeline, Repeat, Stage, Until};
+use crate::pipeline::{Action, Content, Pipeline, Repeat, Until};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
 
@@ -70,8 +70,7 @@ pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error>
         Action::Repeat(repeat) => Some(repeat),
         _ => None,
     });
-    let stages = repeat.map_or(&pipeline.stages, |repeat| &repeat.stages);
-    let stages = probe(stages, pipeline.seed, &prepared.model)?;
+    let stages = probe(pipeline, &prepared.model)?;
     let repeat = repeat.map(|&Repeat { until, at_most, .. }| Repeated { until, at_most });
     Ok(Estimate { prepared, memory, peak_memory, stages, repeat })
 }
@@ -103,10 +102,11 @@ fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, us
     (memory, scene + patches + accel + light.max(display))
 }
 
-fn probe(stages: &[Stage], seed: u64, model: &Model) -> Result<Vec<StageEstimate>, SolveError> {
+fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, SolveError> {
+    let seed = pipeline.seed;
     let mut shot = None;
     let mut estimates = Vec::new();
-    for stage in stages {
+    for stage in pipeline.flat_stages() {
         let name = stage.action.name();
         match stage.action {
             Action::FirstShot { lines } => {

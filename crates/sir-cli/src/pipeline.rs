@@ -246,6 +246,14 @@ impl Pipeline {
         Diagnostics::new(&self.path, &self.text, problems)
     }
 
+    /// All stages, with those of a `Repeat`, once, in its place.
+    pub fn flat_stages(&self) -> impl Iterator<Item = &Stage> {
+        self.stages.iter().flat_map(|stage| match &stage.action {
+            Action::Repeat(repeat) => repeat.stages.as_slice(),
+            _ => std::slice::from_ref(stage),
+        })
+    }
+
     /// All files that the pipeline asks for, in the order of the file.
     pub fn outputs(&self) -> impl Iterator<Item = &Output> {
         self.stages.iter().flat_map(|stage| match &stage.action {

@@ -8,6 +8,7 @@ use sir_radiosity::{Model, PowerUnit, RepeatedBooks, Repeats, Solution, Visitor}
 
 use crate::Error;
 use crate::check::duration;
+use crate::fields::grouped;
 use crate::lighting::{Done, Lighting};
 use crate::pipeline::{Repeat, Until};
 use crate::progress::PAUSE;
@@ -34,7 +35,8 @@ impl Run<'_> {
         let (mut repeat, mut first) =
             if saved.is_some() { (self.head.repeat, self.head.part) } else { (0, 0) };
         let mut said = Instant::now();
-        self.progress.note(&repeats.title());
+        let lines = settings.stages.iter().map(|stage| stage.action.lines()).sum();
+        self.progress.note(&format!("Repeat: {} lines each time", grouped(lines)));
         loop {
             let seed = seed_of_repeat(self.head.report.seed, repeat);
             for (part, stage) in settings.stages.iter().enumerate().skip(first) {
@@ -156,14 +158,7 @@ impl<'a> Repeating<'a> {
             self.error = Some(relative_error(model, &solution).into_iter().fold(0.0, f64::max));
         }
         let done = self.sums.count();
-        let wanted = match self.settings.until {
-            Until::Times(times) => done < times,
-            Until::RelativeError(target) => self.error.is_some_and(|error| error > target),
-            Until::Seconds(budget) => {
-                let spent = self.elapsed().as_secs_f64();
-                spent + spent / done.max(1) as f64 <= budget
-            }
-        };
+        let wanted = self.settings.until.wants_more(done, self.error, self.elapsed().as_secs_f64());
         let allowed = self.settings.at_most.is_none_or(|most| done < most);
         let mut decision = [i64::from(wanted && allowed)];
         comm.broadcast(&mut decision);
@@ -239,6 +234,18 @@ impl<'a> Repeating<'a> {
     }
 }
 
+impl Until {
+    /// Whether there should be another repeat after some, of which at least one is `done`, with this relative error of the mean and
+    /// in so many seconds.
+    fn wants_more(self, done: u64, error: Option<f64>, seconds: f64) -> bool {
+        match self {
+            Self::Times(times) => done < times,
+            Self::RelativeError(target) => error.is_some_and(|error| error > target),
+            Self::Seconds(budget) => seconds + seconds / done.max(1) as f64 <= budget,
+        }
+    }
+}
+
 /// What to say if the target was not reached.
 fn missed(settings: &Repeat, report: &StageReport) -> Vec<String> {
     let repeats = report.repeats.unwrap_or_default();
@@ -265,5 +272,26 @@ fn missed(settings: &Repeat, report: &StageReport) -> Vec<String> {
             )]
         }
         _ => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_repeat_that_would_end_too_late_is_not_begun() {
+        let budget = Until::Seconds(60.0);
+        // Five of ten seconds each, and a sixth one would end just in time.
+        assert!(budget.wants_more(5, None, 50.0));
+        assert!(!budget.wants_more(5, None, 50.1));
+        assert!(!budget.wants_more(1, None, 31.0));
+    }
+
+    #[test]
+    fn a_target_is_met_when_it_is_reached() {
+        let target = Until::RelativeError(0.01);
+        assert!(target.wants_more(3, Some(0.0101), 1.0) && !target.wants_more(3, Some(0.01), 1.0));
+        assert!(Until::Times(3).wants_more(2, None, 1.0) && !Until::Times(3).wants_more(3, None, 1.0));
     }
 }
