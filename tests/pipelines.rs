@@ -300,8 +300,9 @@ fn stages(report: &Report) -> String {
         ] {
             writeln!(text, "    {what:8} {watts:.9?} W").unwrap();
         }
-        writeln!(text, "    relative error {:.6?}", l.relative_error).unwrap();
-        writeln!(text, "    tally {}", l.tally_hash).unwrap();
+        let light = report.stages.iter().find(|s| s.name == name).and_then(|s| s.light.as_ref()).unwrap();
+        writeln!(text, "    relative error {:.6?}", light.relative_error).unwrap();
+        writeln!(text, "    tally {}", light.tally_hash).unwrap();
     }
     text
 }

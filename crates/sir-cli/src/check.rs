@@ -5,11 +5,11 @@ use std::time::{Duration, Instant};
 
 use sir_geom::{Rgb, Scene};
 use sir_parallel::cores;
-use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, SecondShot, SolveError};
+use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, Repeats, SecondShot, SolveError};
 
 use crate::Error;
 use crate::fields::grouped;
-use crate::pipeline::{Action, Content, Pipeline};
+use crate::pipeline::{Action, Content, Pipeline, Repeat, Until};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
 
@@ -34,6 +34,8 @@ pub struct Estimate {
     /// Lines and lines per second of each stage that has any: the rate of one thread in a short try on this machine now,
     /// times its processor cores.
     pub stages: Vec<StageEstimate>,
+    /// How often these stages are repeated.
+    pub repeat: Option<Repeated>,
 }
 
 /// What a stage will cost.
@@ -47,6 +49,15 @@ pub struct StageEstimate {
     pub rate: f64,
 }
 
+/// How often stages are repeated, see [`Repeat`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repeated {
+    /// Until when.
+    pub until: Until,
+    /// How often at most.
+    pub at_most: Option<u64>,
+}
+
 /// Reads the scene of a pipeline, makes its patches and tries some lines of each stage. Writes nothing.
 ///
 /// # Errors
@@ -55,8 +66,13 @@ pub struct StageEstimate {
 pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error> {
     let prepared = prepare(pipeline, progress)?;
     let (memory, peak_memory) = memory(&prepared.model, pipeline);
+    let repeat = pipeline.stages.iter().find_map(|stage| match &stage.action {
+        Action::Repeat(repeat) => Some(repeat),
+        _ => None,
+    });
     let stages = probe(pipeline, &prepared.model)?;
-    Ok(Estimate { prepared, memory, peak_memory, stages })
+    let repeat = repeat.map(|&Repeat { until, at_most, .. }| Repeated { until, at_most });
+    Ok(Estimate { prepared, memory, peak_memory, stages, repeat })
 }
 
 fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
@@ -66,14 +82,20 @@ fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, us
     // for what is unshot.
     let tracing = size_of::<Quanta>() + size_of::<[f32; 3]>() + 2 * 64;
     let solution = 2 * size_of::<Rgb>();
+    let repeats = pipeline.stages.iter().any(|stage| matches!(stage.action, Action::Repeat(_)));
+    let tracing = tracing + if repeats { Repeats::BYTES_PER_SIDE } else { 0 };
     let shown = pipeline.outputs().any(|o| o.content != Content::Table);
+    // Pictures for measuring have one of standard errors, too.
+    let measured =
+        pipeline.outputs().any(|o| o.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
+    let displays = usize::from(shown) + usize::from(measured);
     let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles())),
         // See `PatchMesh`: 28 bytes per triangle.
         ("patches", 28 * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing),
-        ("pictures and lit meshes", if shown { sides * (solution + DISPLAY_BYTES) } else { 0 }),
+        ("pictures and lit meshes", sides * displays.min(1) * solution + sides * displays * DISPLAY_BYTES),
     ];
     // The last two are not needed at the same time.
     let [scene, patches, accel, light, display] = [0, 1, 2, 3, 4].map(|i: usize| memory[i].1);
@@ -81,30 +103,32 @@ fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, us
 }
 
 fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, SolveError> {
+    let seed = pipeline.seed;
     let mut shot = None;
     let mut estimates = Vec::new();
-    for stage in &pipeline.stages {
+    for stage in pipeline.flat_stages() {
         let name = stage.action.name();
         match stage.action {
             Action::FirstShot { lines } => {
-                let first_shot = FirstShot::new(model, lines, pipeline.seed)?;
+                let first_shot = FirstShot::new(model, lines, seed)?;
                 let (tally, mut books) = (first_shot.tally(1), Books::default());
                 let rate = rate(lines, |block| first_shot.trace(0, block, &tally, &mut books));
                 shot = Some(first_shot.finish(tally, books)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::SecondShot { lines } => {
-                let Some(shot) = shot.clone() else { continue };
-                let second_shot = SecondShot::new(model, shot, lines, pipeline.seed);
-                let (tally, mut books) = (second_shot.tally(1), Books::default());
-                let rate = rate(second_shot.lines(), |block| second_shot.trace(0, block, &tally, &mut books));
+                let Some(shot) = &shot else { continue };
+                let second_shot = SecondShot::new(model, shot, lines, seed);
+                let local = second_shot.lines();
+                let (tally, mut books) = (local.tally(1), Books::default());
+                let rate = rate(local.lines(), |block| local.trace(0, block, &tally, &mut books));
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::Multipath { lines, body, .. } => {
                 let Some(shot) = shot.take() else { continue };
                 // Both transports trace the same lines at about the same rate.
                 let domain = body.around(&model.scene);
-                let transport = Batches::new(model, shot, lines, domain, pipeline.seed, 1);
+                let transport = Batches::new(model, shot, lines, domain, seed, 1);
                 let mut books = Books::default();
                 let rate = rate(lines, |block| transport.trace(0, block, &mut books));
                 estimates.push(StageEstimate { name, lines, rate });
@@ -125,6 +149,32 @@ fn rate(lines: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
         done = end;
     }
     cores().get() as f64 * done as f64 / start.elapsed().as_secs_f64().max(1e-9)
+}
+
+impl Repeated {
+    /// What a repeat of so many seconds comes to: whether that is all, the seconds, and how often it is.
+    fn cost(self, once: f64) -> (&'static str, f64, Option<String>) {
+        let most = self.at_most.map_or(f64::INFINITY, |most| most as f64);
+        let limit = self.at_most.map_or(String::new(), |most| format!(", {} times at most", grouped(most)));
+        match self.until {
+            Until::Times(times) => {
+                let times = most.min(times as f64);
+                (" in all", times * once, Some(format!("{} times", grouped(times as u64))))
+            }
+            Until::Seconds(budget) => {
+                let seconds = budget.min(most * once).max(once);
+                let how = format!("for {}{limit}", duration(budget));
+                (" in all", seconds, Some(how))
+            }
+            Until::RelativeError(target) => {
+                let how = format!("until the relative error is {} %{limit}", 100.0 * target);
+                match self.at_most {
+                    Some(_) => (" at most", most * once, Some(how)),
+                    None => (" or more", once, Some(how)),
+                }
+            }
+        }
+    }
 }
 
 impl fmt::Display for Estimate {
@@ -152,14 +202,19 @@ impl fmt::Display for Estimate {
         for (part, size) in &self.memory {
             writeln!(f, "           {:>9}  {part}", bytes(*size))?;
         }
-        let tracing: f64 = self.stages.iter().map(|s| s.lines as f64 / s.rate).sum();
+        let once: f64 = self.stages.iter().map(|s| s.lines as f64 / s.rate).sum();
+        let (bound, tracing, repeats) =
+            self.repeat.map_or((" in all", once, None), |repeat| repeat.cost(once));
         writeln!(
             f,
-            "time       {} in all, without outputs:",
+            "time       {}{bound}, without outputs:",
             duration(load_seconds + build_seconds + tracing)
         )?;
         writeln!(f, "           {:>9}  Load", duration(*load_seconds))?;
         writeln!(f, "           {:>9}  patches and acceleration structure", duration(*build_seconds))?;
+        if let Some(repeats) = repeats {
+            writeln!(f, "           {:>9}  Repeat: {repeats}; each time", duration(tracing))?;
+        }
         for StageEstimate { name, lines, rate } in &self.stages {
             let time = duration(*lines as f64 / rate);
             writeln!(

@@ -7,11 +7,11 @@ use sir_mesh::Subdivision;
 
 use crate::diagnostic::Diagnostics;
 use crate::fields::{ABSURD, Reader, did_you_mean, list, resembling};
-use crate::order::check_order;
+use crate::order::{Named, check_order};
 use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
 
-const STAGES: [&str; 6] = ["Load", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Save"];
+const STAGES: [&str; 7] = ["Load", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Repeat", "Save"];
 
 /// Most replicas: a table of them must fit into memory.
 const MOST_REPLICAS: u64 = 1_000_000;
@@ -66,13 +66,28 @@ impl<'a> Decoder<'a> {
             self.reader.problem(node.text, message, "write `stages: [Load(…), …]`");
             return None;
         };
+        let (stages, order) = self.stages(nodes, "stage", &STAGES);
+        if let Some(order) = order {
+            check_order(&mut self.reader, &order, node.text);
+        }
+        Some((seed?, stages))
+    }
+
+    /// The stages of a list that may have those in `known`, and their names and places; these only if all are known, or
+    /// nearly: what an unknown stage would have made is not known.
+    pub(crate) fn stages(
+        &mut self,
+        nodes: Vec<Node<'a>>,
+        what: &str,
+        known: &[&'static str],
+    ) -> (Vec<Stage>, Option<Vec<Named<'a>>>) {
         let mut stages = Vec::new();
         let mut order = Vec::new();
         let mut all_known = true;
         for stage in nodes {
             let place = stage.name();
-            let Some(name) = self.name_of(&stage, "stage", &STAGES) else {
-                match resembling(place, &STAGES) {
+            let Some(name) = self.name_of(&stage, what, known) else {
+                match resembling(place, known) {
                     Some(meant) => order.push((*meant, place)),
                     None => all_known = false,
                 }
@@ -84,11 +99,7 @@ impl<'a> Decoder<'a> {
                 stages.push(Stage { action, span });
             }
         }
-        // What an unknown stage would have made is not known.
-        if all_known {
-            check_order(&mut self.reader, &order, node.text);
-        }
-        Some((seed?, stages))
+        (stages, all_known.then_some(order))
     }
 
     /// Which of the `known` things a node `Name(…)` is.
@@ -123,6 +134,7 @@ impl<'a> Decoder<'a> {
             "FirstShot" => self.local_lines(node, name).map(|lines| Action::FirstShot { lines }),
             "SecondShot" => self.local_lines(node, name).map(|lines| Action::SecondShot { lines }),
             "Multipath" => self.multipath(node),
+            "Repeat" => self.repeat(node).map(Action::Repeat),
             _ => self.save(node),
         }
     }

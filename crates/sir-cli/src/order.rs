@@ -2,14 +2,18 @@
 
 use crate::fields::Reader;
 
+/// The name of a stage, and its place in the file.
+pub(crate) type Named<'a> = (&'static str, &'a str);
+
 /// Notes a problem for every stage, given by name and place, whose inputs nothing before it has made. What has
 /// been missed once is not reported again.
-pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[(&'static str, &str)], list: &str) {
+pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &str) {
     let Some(&(_, last)) = stages.last() else {
         reader.problem(list, "the pipeline has no stages", "begin with `Load(path: \"scene.gltf\")`");
         return;
     };
     let (mut scene, mut first_shot, mut multipath) = (false, false, false);
+    let repeat = stages.iter().find(|(name, _)| *name == "Repeat");
     for (i, &(name, place)) in stages.iter().enumerate() {
         if name != "Save"
             && let Some((_, first)) = stages[..i].iter().find(|(n, _)| *n == name)
@@ -18,6 +22,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[(&'static str, &str
             let help = match name {
                 "Load" => "a pipeline has one scene: keep one `Load`",
                 "Subdivide" => "keep one of the two",
+                "Repeat" => "keep one, with as many repeats as both together",
                 _ => "keep one, with all the lines",
             };
             reader.problem(place, format!("a second `{name}`; the first is in line {line}"), help);
@@ -29,14 +34,22 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[(&'static str, &str
             scene = true;
             continue;
         }
+        if let (Some((_, repeat)), "FirstShot" | "SecondShot" | "Multipath") = (repeat, name) {
+            let message = format!("`{name}` beside the `Repeat` in line {}", reader.line(repeat));
+            reader.problem(place, message, format!("move `{name}` into the `stages` of `Repeat`"));
+            continue;
+        }
         match name {
             "Load" => scene = true,
-            "Subdivide" if first_shot => reader.problem(
-                place,
-                "`Subdivide` after `FirstShot`: light has been computed on the patches as they were",
-                "move `Subdivide` to before `FirstShot`",
-            ),
+            "Subdivide" if first_shot => {
+                let light = if repeat.is_some() { "Repeat" } else { "FirstShot" };
+                let message = format!(
+                    "`Subdivide` after `{light}`: light has been computed on the patches as they were"
+                );
+                reader.problem(place, message, format!("move `Subdivide` to before `{light}`"));
+            }
             "FirstShot" => first_shot = true,
+            "Repeat" => (first_shot, multipath) = (true, true),
             "SecondShot" if multipath => reader.problem(
                 place,
                 "`SecondShot` after `Multipath`: all light has been distributed",
@@ -61,5 +74,30 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[(&'static str, &str
             "the pipeline ends without computing anything",
             "add `FirstShot(lines: 1_000_000)` and `Multipath(lines: 1_000_000)`",
         );
+    }
+}
+
+/// Notes a problem for every stage of a `Repeat`, given by name and place, that does not stand where it would stand by itself.
+pub(crate) fn check_repeated(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &str) {
+    let help = "begin the `stages` of `Repeat` with `FirstShot(lines: 1_000_000)`";
+    match stages.first() {
+        None => reader.problem(list, "`Repeat` has no stages", help),
+        Some(("FirstShot", _)) => {}
+        Some((name, place)) => reader.problem(
+            place,
+            format!("`{name}` before `FirstShot`: there is no light to distribute yet"),
+            help,
+        ),
+    }
+    for (&(before, _), &(name, place)) in stages.iter().zip(stages.iter().skip(1)) {
+        let rank = |name| ["FirstShot", "SecondShot", "Multipath"].iter().position(|n| *n == name);
+        if rank(before) >= rank(name) {
+            let message = format!("`{name}` after `{before}`");
+            reader.problem(
+                place,
+                message,
+                "the order is `FirstShot`, `SecondShot`, `Multipath`, each of them once",
+            );
+        }
     }
 }

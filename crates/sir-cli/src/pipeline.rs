@@ -64,8 +64,32 @@ pub enum Action {
         /// What they are drawn through.
         body: Body,
     },
+    /// Runs stages of lines again and again, for the mean of independent results.
+    Repeat(Repeat),
     /// Writes files.
     Save(Vec<Output>),
+}
+
+/// Stages that are run again and again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repeat {
+    /// How often.
+    pub until: Until,
+    /// Not more often than this, in any case: at least 1. Default: no limit.
+    pub at_most: Option<u64>,
+    /// A first shot, and what may follow it but for `Save`.
+    pub stages: Vec<Stage>,
+}
+
+/// When there have been enough repeats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Until {
+    /// After so many: at least 1.
+    Times(u64),
+    /// When the relative error of the mean is not above this, in any band: above 0.
+    RelativeError(f64),
+    /// When another one would end later than after so many seconds: above 0.
+    Seconds(f64),
 }
 
 /// How global lines pass on the light.
@@ -118,7 +142,18 @@ impl Action {
             Self::FirstShot { .. } => "FirstShot",
             Self::SecondShot { .. } => "SecondShot",
             Self::Multipath { .. } => "Multipath",
+            Self::Repeat(_) => "Repeat",
             Self::Save(_) => "Save",
+        }
+    }
+
+    /// How many lines it has, those of a `Repeat` once.
+    #[must_use]
+    pub fn lines(&self) -> u64 {
+        match self {
+            Self::FirstShot { lines } | Self::SecondShot { lines } | Self::Multipath { lines, .. } => *lines,
+            Self::Repeat(repeat) => repeat.stages.iter().map(|stage| stage.action.lines()).sum(),
+            Self::Load { .. } | Self::Subdivide(_) | Self::Save(_) => 0,
         }
     }
 }
@@ -209,6 +244,14 @@ impl Pipeline {
     #[must_use]
     pub fn diagnostics(&self, problems: Vec<Diagnostic>) -> Diagnostics {
         Diagnostics::new(&self.path, &self.text, problems)
+    }
+
+    /// All stages, with those of a `Repeat`, once, in its place.
+    pub fn flat_stages(&self) -> impl Iterator<Item = &Stage> {
+        self.stages.iter().flat_map(|stage| match &stage.action {
+            Action::Repeat(repeat) => repeat.stages.as_slice(),
+            _ => std::slice::from_ref(stage),
+        })
     }
 
     /// All files that the pipeline asks for, in the order of the file.

@@ -11,7 +11,7 @@ use sir_parallel::{Communicator, Observer};
 use crate::fields::grouped;
 
 /// Time between two lines of progress where there is no terminal.
-const PAUSE: Duration = Duration::from_secs(10);
+pub(crate) const PAUSE: Duration = Duration::from_secs(10);
 
 /// Most warnings that are shown one by one.
 const WARNINGS: usize = 10;
@@ -62,12 +62,25 @@ impl Progress {
     }
 
     /// Begins to watch a stage of `total` lines, which ends early if `stop` becomes true.
-    pub(crate) fn stage(self, name: &'static str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
+    pub(crate) fn stage(self, name: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
         self.note(&format!("{name}: {} lines", grouped(total)));
+        let mut watching = self.watch(name, total, stop);
+        watching.says_end = self == Self::Lines;
+        watching
+    }
+
+    /// As [`stage`](Self::stage), for one of many that may be short: nothing is said at its start and end.
+    pub(crate) fn part(self, title: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
+        let watching = self.watch(title, total, stop);
+        watching.bar.set_prefix(format!("{title}  "));
+        watching
+    }
+
+    fn watch(self, name: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
         let bar = match self {
             Self::Bar => {
                 let bar = ProgressBar::new(total);
-                let template = "{bar:30} {percent:>3} %  {human_pos} lines  {per_sec}  {eta} left";
+                let template = "{prefix}{bar:30} {percent:>3} %  {human_pos} lines  {per_sec}  {eta} left";
                 // A wrong template would be a slip in the line above; indicatif's own style then serves as well.
                 if let Ok(style) = ProgressStyle::with_template(template) {
                     bar.set_style(style);
@@ -80,7 +93,8 @@ impl Progress {
         let stop = Arc::clone(stop);
         StageProgress {
             lines: self == Self::Lines,
-            name,
+            says_end: false,
+            name: name.to_owned(),
             bar,
             start: now,
             last: now,
@@ -94,7 +108,9 @@ impl Progress {
 /// Watches one stage.
 pub(crate) struct StageProgress {
     lines: bool,
-    name: &'static str,
+    /// Whether the end is worth a line.
+    says_end: bool,
+    name: String,
     bar: ProgressBar,
     start: Instant,
     last: Instant,
@@ -134,7 +150,7 @@ impl Observer for StageProgress {
 impl Drop for StageProgress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
-        if self.lines {
+        if self.says_end {
             let seconds = self.start.elapsed().as_secs_f64();
             eprintln!("{}: {} lines after {seconds:.1} s", self.name, grouped(self.done));
         }

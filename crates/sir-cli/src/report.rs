@@ -8,7 +8,8 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 use sir_geom::Rgb;
 use sir_lines::Domain;
-use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Received, Solution};
+use sir_parallel::StageTime;
+use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Solution};
 
 /// Version of the layout of `result.json`.
 pub const VERSION: u32 = 2;
@@ -70,9 +71,19 @@ pub struct SceneReport {
 pub struct StageReport {
     /// Name of the stage, such as `FirstShot`.
     pub name: String,
-    /// What its lines did, if it has any.
+    /// What its lines did, if it has any. In the `stages` of a `Repeat`: of all repeats together, but for the balance and what was
+    /// made up, which are means.
     #[serde(default, flatten, skip_serializing_if = "Option::is_none")]
     pub lines: Option<LinesReport>,
+    /// All light after it, if it adds to it.
+    #[serde(default, flatten, skip_serializing_if = "Option::is_none")]
+    pub light: Option<LightReport>,
+    /// How often a `Repeat` ran its stages: `Repeat(times: …)` with this number gives the same result.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repeats: Option<u64>,
+    /// The stages of a `Repeat`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stages: Vec<Self>,
     /// How long it took.
     pub time: Time,
 }
@@ -97,11 +108,37 @@ pub struct LinesReport {
     pub balance: BalanceReport,
     /// Power that was added to what surfaces received to make up for the unshot \[W\], per band.
     pub made_up: [f64; 3],
-    /// Estimated relative error of the irradiance so far, per band: root of the area-weighted mean square of the
-    /// standard errors, over the area-weighted mean irradiance. Zero in a band without light.
+}
+
+/// All light so far.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LightReport {
+    /// Estimated relative error of the irradiance, per band: root of the area-weighted mean square of the standard errors,
+    /// over the area-weighted mean irradiance. Zero in a band without light.
     pub relative_error: [f64; 3],
+    /// Where the standard errors come from.
+    pub errors: ErrorsReport,
     /// SHA-256 of the tallies of received power: the same for the same result.
     pub tally_hash: String,
+}
+
+/// Where standard errors come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ErrorsReport {
+    /// From what?
+    pub from: ErrorsFrom,
+    /// How many independent samples there are: lines of all stages so far, or repeats.
+    pub samples: u64,
+}
+
+/// What standard errors come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ErrorsFrom {
+    /// From what single lines have brought.
+    Lines,
+    /// From the spread of independent repeats.
+    Spread,
 }
 
 /// The domain of global lines.
@@ -169,7 +206,27 @@ impl Report {
     }
 }
 
+impl StageReport {
+    /// A stage that took so long, of which there is nothing else to say.
+    #[must_use]
+    pub fn of(name: &str, time: Time) -> Self {
+        Self { name: name.into(), lines: None, light: None, repeats: None, stages: Vec::new(), time }
+    }
+}
+
 impl Time {
+    /// The time of a stage of so many lines.
+    pub(crate) fn of_lines(time: StageTime, lines: u64) -> Self {
+        let seconds = time.total.as_secs_f64();
+        Self {
+            seconds,
+            lines_per_second: Some(lines as f64 / seconds.max(1e-9)),
+            sequential: Some(time.sequential().as_secs_f64()),
+            communication: Some(time.communication.as_secs_f64()),
+            peak_memory: None,
+        }
+    }
+
     /// The time of something without lines.
     #[must_use]
     pub fn of(seconds: f64) -> Self {
@@ -177,16 +234,13 @@ impl Time {
     }
 }
 
-/// What is known of a stage of lines when it is done.
-pub(crate) struct Facts<'a> {
-    pub(crate) unit: PowerUnit,
+/// What is known of the lines of a stage when it is done.
+#[derive(Clone, Debug)]
+pub(crate) struct Facts {
     pub(crate) balance: Balance,
     pub(crate) counts: Counts,
     pub(crate) batches: u64,
     pub(crate) made_up: Quanta,
-    pub(crate) received: &'a Received,
-    /// The result so far.
-    pub(crate) solution: &'a Solution,
     pub(crate) domain: Option<DomainReport>,
 }
 
@@ -197,8 +251,9 @@ impl DomainReport {
 }
 
 impl LinesReport {
-    pub(crate) fn new(model: &Model, facts: Facts<'_>) -> Self {
-        let Facts { unit, balance, counts, batches, made_up, received, solution, domain } = facts;
+    /// `unit` is that of the power.
+    pub(crate) fn new(facts: Facts, unit: PowerUnit) -> Self {
+        let Facts { balance, counts, batches, made_up, domain } = facts;
         let watts = |quanta: Quanta| unit.watts(quanta).to_array();
         Self {
             lines: counts.lines,
@@ -215,14 +270,19 @@ impl LinesReport {
                 unshot: watts(balance.unshot),
             },
             made_up: watts(made_up),
-            relative_error: relative_error(model, solution),
-            tally_hash: received.hash(),
         }
     }
 }
 
-/// See [`LinesReport::relative_error`].
-fn relative_error(model: &Model, solution: &Solution) -> [f64; 3] {
+impl LightReport {
+    /// `tally_hash` is that of the power of which the solution was made.
+    pub(crate) fn new(model: &Model, solution: &Solution, errors: ErrorsReport, tally_hash: String) -> Self {
+        Self { relative_error: relative_error(model, solution), errors, tally_hash }
+    }
+}
+
+/// See [`LightReport::relative_error`].
+pub(crate) fn relative_error(model: &Model, solution: &Solution) -> [f64; 3] {
     let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
     model.mesh.for_each_side(|triangle, _, _, side| {
         let a = model.mesh.patch_area(triangle);

@@ -24,6 +24,10 @@ pub(crate) struct Head {
     pub(crate) pipeline: PathBuf,
     /// Number of the stage whose state this is. 0, which is no stage with lines, stands for a run that has only begun.
     pub(crate) stage: usize,
+    /// In a `Repeat`: which repeat this is of, from 0,
+    pub(crate) repeat: u64,
+    /// and which of its stages.
+    pub(crate) part: usize,
     /// What the stages before it did.
     pub(crate) report: Report,
 }

@@ -5,27 +5,23 @@ use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sir_geom::Rgb;
-use sir_parallel::{Alone, Checkpoints, Communicator, Crew, RunError, Saved, StageTime, cores};
-use sir_radiosity::{Model, MultipathSettings, Quanta, Shot, Solution};
+use sir_parallel::{Alone, Checkpoints, Communicator, RunError, Saved};
+use sir_radiosity::Model;
 
 use crate::Error;
 use crate::directory::{absolute, check_given, make_given, make_new, run_name};
 use crate::fingerprint::{self, PROGRAM};
 use crate::memory;
-use crate::pipeline::{Action, Output, Pipeline, Transport};
+use crate::pipeline::Pipeline;
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
 use crate::ranks::{agree, same_everywhere};
-use crate::report::{
-    DomainReport, FILE_NAME, Facts, LinesReport, PipelineReport, Report, SceneReport, StageReport, Stopwatch,
-    Time, VERSION,
-};
+use crate::report::{FILE_NAME, PipelineReport, Report, SceneReport, Stopwatch, Time, VERSION};
 use crate::resume::{self, CHECKPOINT, Head};
-use crate::save::save;
 
 /// How to run a pipeline. None of this changes the result, but for the seed.
 #[derive(Clone, Debug)]
@@ -127,9 +123,12 @@ pub fn run_together(
         fingerprint: fingerprint::hex(fingerprint),
         pipeline: absolute(&pipeline.path),
         stage: 0,
+        repeat: 0,
+        part: 0,
         report,
     };
-    Run { pipeline, prepared, directory, options, comm, progress, watch, head }.finish(None)
+    let (pipeline, prepared) = (&pipeline, &prepared);
+    Run { pipeline, prepared, directory, options, comm, progress, watch, earlier: 0.0, head }.finish(None)
 }
 
 /// Goes on with the run in `directory`, which was interrupted. Of the options, those that say where to write, and the
@@ -158,25 +157,27 @@ pub fn resume_together(
     let directory = directory.to_owned();
     // A run that had not begun a stage begins with the first.
     let saved = (head.stage > 0).then_some(saved);
-    Run { pipeline, prepared, directory, options, comm, progress, watch, head }.finish(saved)
+    let (pipeline, prepared, earlier) = (&pipeline, &prepared, head.report.time.seconds);
+    Run { pipeline, prepared, directory, options, comm, progress, watch, earlier, head }.finish(saved)
 }
 
 /// A run that is under way.
-struct Run<'a> {
-    pipeline: Pipeline,
-    prepared: Prepared,
-    directory: PathBuf,
-    options: &'a RunOptions,
-    comm: &'a dyn Communicator,
-    progress: Progress,
-    watch: Stopwatch,
+pub(crate) struct Run<'a> {
+    pub(crate) pipeline: &'a Pipeline,
+    pub(crate) prepared: &'a Prepared,
+    pub(crate) directory: PathBuf,
+    pub(crate) options: &'a RunOptions,
+    pub(crate) comm: &'a dyn Communicator,
+    pub(crate) progress: Progress,
+    pub(crate) watch: Stopwatch,
+    /// Seconds before it was resumed.
+    pub(crate) earlier: f64,
     /// How far it is.
-    head: Head,
+    pub(crate) head: Head,
 }
 
 impl Run<'_> {
     fn finish(mut self, saved: Option<Saved>) -> Result<RunResult, Error> {
-        let earlier = self.head.report.time.seconds;
         let path = self.directory.join(CHECKPOINT);
         let mut checkpoints = Checkpoints::new(path, self.options.checkpoint_every);
         if saved.is_none() {
@@ -186,16 +187,21 @@ impl Run<'_> {
                 checkpoints.save_start(self.comm).map_err(|error| RunError::from(error).into()),
             )?;
         }
-        self.stages(&mut checkpoints, saved, earlier).map_err(|error| self.name_directory(error))?;
-        let Self { directory, comm, mut head, watch, .. } = self;
-        let peak_memory = memory::largest_peak(comm);
-        head.report.time = Time { peak_memory, ..Time::of(earlier + watch.seconds()) };
+        self.stages(&mut checkpoints, saved).map_err(|error| self.name_directory(error))?;
+        let peak_memory = memory::largest_peak(self.comm);
+        self.head.report.time = Time { peak_memory, ..Time::of(self.seconds()) };
+        let Self { directory, comm, head, .. } = self;
         let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
         agree(comm, written)?;
         if comm.is_first() {
             checkpoints.remove();
         }
         Ok(RunResult { directory, report: head.report })
+    }
+
+    /// Seconds so far.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.earlier + self.watch.seconds()
     }
 
     /// Says where an interrupted run can be resumed.
@@ -205,180 +211,6 @@ impl Run<'_> {
                 Error::Interrupted { done, total, directory: self.directory.clone() }
             }
             other => other,
-        }
-    }
-
-    /// Runs all stages, or those from the one that `saved` is of.
-    fn stages(
-        &mut self,
-        checkpoints: &mut Checkpoints,
-        mut saved: Option<Saved>,
-        earlier: f64,
-    ) -> Result<(), Error> {
-        let model = &self.prepared.model;
-        let seed = self.head.report.seed;
-        let threads = self.options.threads.unwrap_or_else(cores);
-        // What the first shot leaves to multipath, and the light so far.
-        let mut shot: Option<Shot> = None;
-        let mut solution: Option<Solution> = None;
-        for (number, stage) in self.pipeline.stages.iter().enumerate().skip(self.head.stage) {
-            let name = stage.action.name();
-            let watch = Stopwatch::start();
-            let mut time = None;
-            let mut lines_report = None;
-            let mut crew = Crew::of(threads);
-            crew.comm = self.comm;
-            if let Action::FirstShot { lines }
-            | Action::SecondShot { lines }
-            | Action::Multipath { lines, .. } = stage.action
-            {
-                crew.observer = Box::new(self.progress.stage(name, lines, &self.options.stop));
-                self.head.stage = number;
-                self.head.report.time.seconds = earlier + self.watch.seconds();
-                checkpoints.set_head(self.head.to_line());
-                crew.checkpoints = Some(&mut *checkpoints);
-            }
-            match &stage.action {
-                Action::Load { .. } => time = Some(Time::of(self.prepared.load_seconds)),
-                Action::Subdivide(_) => time = Some(Time::of(self.prepared.build_seconds)),
-                Action::FirstShot { lines } | Action::SecondShot { lines } => {
-                    let done = if let Action::FirstShot { .. } = stage.action {
-                        sir_parallel::first_shot(model, *lines, seed, &mut crew, saved.take())
-                    } else {
-                        // The decoder lets it follow nothing but a first shot; if that is not in memory, the state of
-                        // this stage was saved. The same holds for multipath.
-                        let shot = shot.take().unwrap_or_else(|| Shot::nothing(model));
-                        drop(solution.take());
-                        sir_parallel::second_shot(model, shot, *lines, seed, &mut crew, saved.take())
-                    };
-                    let done = agree(self.comm, done.map_err(Error::from))?;
-                    drop(crew);
-                    let Shot { unit, balance, counts, ref received, .. } = done.outcome;
-                    let direct = done.outcome.solution(model);
-                    let (batches, made_up) = (done.batches, Quanta::ZERO);
-                    let facts = Facts {
-                        unit,
-                        balance,
-                        counts,
-                        batches,
-                        made_up,
-                        received,
-                        solution: &direct,
-                        domain: None,
-                    };
-                    lines_report = Some(LinesReport::new(model, facts));
-                    time = Some(stage_time(done.time, *lines));
-                    shot = Some(done.outcome);
-                    solution = Some(direct);
-                }
-                Action::Multipath { lines, transport, body } => {
-                    let shot = shot.take().unwrap_or_else(|| Shot::nothing(model));
-                    // The direct light has been saved if it was wanted, and takes much memory.
-                    drop(solution.take());
-                    let (lines, saved) = (*lines, saved.take());
-                    let domain = body.around(&model.scene);
-                    let report = DomainReport::of(&domain);
-                    let done = match *transport {
-                        Transport::Batches => {
-                            sir_parallel::batches(model, shot, lines, domain, seed, &mut crew, saved)
-                        }
-                        Transport::Replicas { replicas, tail } => {
-                            let settings = MultipathSettings { lines, tail, replicas, domain };
-                            sir_parallel::multipath(model, shot, settings, seed, &mut crew, saved)
-                        }
-                    };
-                    let done = agree(self.comm, done.map_err(Error::from))?;
-                    drop(crew);
-                    let (batches, done, stage_times) = (done.batches, done.outcome, done.time);
-                    let facts = Facts {
-                        unit: done.unit,
-                        balance: done.balance,
-                        counts: done.counts,
-                        batches,
-                        made_up: done.made_up,
-                        received: &done.received,
-                        solution: &done.solution,
-                        domain: Some(report),
-                    };
-                    let report = LinesReport::new(model, facts);
-                    self.progress.warn(&unshot_warning(&report, *transport));
-                    lines_report = Some(report);
-                    time = Some(stage_time(stage_times, lines));
-                    solution = Some(done.solution);
-                }
-                Action::Save(outputs) => {
-                    drop(crew);
-                    let saved = match &solution {
-                        Some(solution) if self.comm.is_first() => self.save(solution, outputs, threads.get()),
-                        _ => Ok(Vec::new()),
-                    };
-                    self.head.report.outputs.extend(agree(self.comm, saved)?);
-                }
-            }
-            let time = time.unwrap_or_else(|| Time::of(watch.seconds()));
-            self.head.report.stages.push(StageReport { name: name.into(), lines: lines_report, time });
-        }
-        Ok(())
-    }
-
-    /// Writes the outputs of a stage, unless the run is to be stopped.
-    fn save(
-        &self,
-        solution: &Solution,
-        outputs: &[Output],
-        threads: usize,
-    ) -> Result<Vec<crate::report::OutputReport>, Error> {
-        let mut reports = Vec::new();
-        save(&self.prepared, solution, outputs, &self.directory, threads, self.progress, &mut |report| {
-            reports.push(report);
-            !self.options.stop.load(Relaxed)
-        })?;
-        if reports.len() < outputs.len() {
-            return Err(Error::InterruptedSaving { directory: self.directory.clone() });
-        }
-        Ok(reports)
-    }
-}
-
-fn stage_time(time: StageTime, lines: u64) -> Time {
-    let seconds = time.total.as_secs_f64();
-    Time {
-        seconds,
-        lines_per_second: Some(lines as f64 / seconds.max(1e-9)),
-        sequential: Some(time.sequential().as_secs_f64()),
-        communication: Some(time.communication.as_secs_f64()),
-        peak_memory: None,
-    }
-}
-
-/// What to say if so much light was not sent on that the result is visibly wrong.
-fn unshot_warning(lines: &LinesReport, transport: Transport) -> Vec<String> {
-    let balance = &lines.balance;
-    let share = |parts: &[f64; 3]| {
-        let shares = parts.iter().zip(&balance.emitted).filter(|(_, e)| **e > 0.0).map(|(part, e)| part / e);
-        shares.fold(0.0, f64::max)
-    };
-    let unshot = share(&balance.unshot);
-    let made_up =
-        balance.unshot.iter().zip(&lines.made_up).all(|(unshot, more)| *unshot <= 0.0 || *more > 0.0);
-    match transport {
-        Transport::Batches if made_up && unshot > 0.1 => vec![format!(
-            "{:.0} % of the light that surfaces reflect was not sent on; it was made up for as if it spread like the \
-             light before it; give `Multipath` more lines, or make fewer patches",
-            100.0 * unshot
-        )],
-        Transport::Batches if made_up || unshot <= 1e-3 => Vec::new(),
-        Transport::Replicas { .. } if unshot <= 1e-3 => Vec::new(),
-        _ => {
-            let help = match transport {
-                Transport::Batches => "more lines",
-                Transport::Replicas { .. } => "more lines, fewer replicas or a longer `tail`",
-            };
-            vec![format!(
-                "{:.1} % of the light that surfaces reflect was not sent on and is missing from the result; give \
-                 `Multipath` {help}, or make fewer patches",
-                100.0 * unshot
-            )]
         }
     }
 }

@@ -27,10 +27,15 @@ pub(crate) fn save(
     progress: Progress,
     written: &mut dyn FnMut(OutputReport) -> bool,
 ) -> Result<(), Error> {
-    let Model { scene, mesh, .. } = &prepared.model;
+    let Model { scene, mesh, accel } = &prepared.model;
     let seen = outputs.iter().any(|o| o.content != Content::Table);
     let display = seen.then(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
-    let mut studio = display.as_ref().map(|display| Studio { prepared, display, threads, last: None });
+    let errors = outputs
+        .iter()
+        .any(|o| matches!(o.content, Content::Image(_)) && has_extension(&o.path, "exr"))
+        .then(|| DisplayMesh::of_errors(scene, mesh, &solution.error));
+    let mut studio =
+        display.as_ref().map(|display| Studio { prepared, display, threads, last: None, default: None });
     for output in outputs {
         let path = directory.join(&output.path);
         progress.note(&format!("Save: {}", output.path.display()));
@@ -39,11 +44,13 @@ pub(crate) fn save(
         }
         let kind = match (&output.content, &mut studio) {
             (Content::Image(image), Some(studio)) => {
-                let picture = studio.picture(image)?;
-                if has_extension(&path, "exr") {
-                    write_exr(&path, picture, &[])?;
-                } else {
-                    write_png(&path, picture, image.exposure)?;
+                let Taken { camera, settings, picture } = studio.take(image)?;
+                match &errors {
+                    Some(errors) if has_extension(&path, "exr") => {
+                        let errors = render(errors, accel, camera, *settings)?;
+                        write_exr(&path, picture, &[("error", &errors)])?;
+                    }
+                    _ => write_png(&path, picture, image.exposure)?,
                 }
                 "image"
             }
@@ -75,27 +82,34 @@ struct Studio<'a> {
     prepared: &'a Prepared,
     display: &'a DisplayMesh<'a>,
     threads: usize,
-    last: Option<(Option<Camera>, PictureSettings, Picture)>,
+    last: Option<Taken>,
+    default: Option<Camera>,
+}
+
+/// A picture, and how it was taken.
+struct Taken {
+    camera: Camera,
+    settings: PictureSettings,
+    picture: Picture,
 }
 
 impl Studio<'_> {
-    fn picture(&mut self, image: &Image) -> Result<&Picture, Error> {
+    fn take(&mut self, image: &Image) -> Result<&Taken, Error> {
         let Model { scene, accel, .. } = &self.prepared.model;
-        let camera = chosen_camera(&image.camera, scene);
-        let settings = settings(image, camera.as_ref(), self.threads);
-        let picture = match self.last.take() {
-            Some((c, s, picture)) if c == camera && s == settings => picture,
-            _ => match &camera {
-                Some(camera) => render(self.display, accel, camera, settings)?,
-                None => render(
-                    self.display,
-                    accel,
-                    &default_camera(self.display, accel, self.prepared.up),
-                    settings,
-                )?,
-            },
+        let chosen = chosen_camera(&image.camera, scene);
+        let settings = settings(image, chosen.as_ref(), self.threads);
+        let camera = chosen.unwrap_or_else(|| self.default_camera());
+        let taken = match self.last.take() {
+            Some(last) if last.camera == camera && last.settings == settings => last,
+            _ => Taken { picture: render(self.display, accel, &camera, settings)?, camera, settings },
         };
-        Ok(&self.last.insert((camera, settings, picture)).2)
+        Ok(self.last.insert(taken))
+    }
+
+    /// The camera of a scene that has none, which takes a while to find.
+    fn default_camera(&mut self) -> Camera {
+        let Prepared { model, up, .. } = self.prepared;
+        self.default.get_or_insert_with(|| default_camera(self.display, &model.accel, *up)).clone()
     }
 }
 

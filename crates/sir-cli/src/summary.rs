@@ -25,7 +25,15 @@ pub fn summary(result: &RunResult) -> String {
         grouped(report.scene.patches as u64),
         duration(report.time.seconds)
     );
-    for stage in &report.stages {
+    for stage in report.stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.stages)) {
+        if let Some(repeats) = stage.repeats {
+            text += &format!(
+                "{:<10} {} times in {}; of its stages the lines are those of all, the balance is the mean\n",
+                stage.name,
+                grouped(repeats),
+                duration(stage.time.seconds),
+            );
+        }
         if let Some(lines) = &stage.lines {
             let rate = stage.time.lines_per_second.unwrap_or_default();
             let through = lines.domain.as_ref().map_or(String::new(), |domain| {
@@ -61,11 +69,11 @@ fn balance(lines: &LinesReport) -> String {
     )
 }
 
-/// The error of the last stage of lines.
+/// The error of all light.
 fn error(report: &Report) -> String {
-    let last = report.stages.iter().rev().find_map(|s| s.lines.as_ref());
-    last.map_or(String::new(), |lines| {
-        let [r, g, b] = lines.relative_error.map(|e| 100.0 * e);
+    let last = report.stages.iter().rev().find_map(|s| s.light.as_ref());
+    last.map_or(String::new(), |light| {
+        let [r, g, b] = light.relative_error.map(|e| 100.0 * e);
         format!(
             "estimated relative error of a patch's irradiance: {r:.2} % red, {g:.2} % green, {b:.2} % blue\n"
         )

@@ -27,7 +27,7 @@ fn examples() -> Vec<Pipeline> {
 
 #[test]
 fn all_examples_are_valid() {
-    assert_eq!(examples().len(), 3);
+    assert_eq!(examples().len(), 4);
 }
 
 #[test]
@@ -42,8 +42,8 @@ fn the_defaults_are_those_of_the_reference() {
         }
         actions
     };
-    assert_eq!(all[1].seed, all[2].seed);
-    assert_eq!(actions(&all[1]), actions(&all[2]));
+    assert_eq!(all[2].seed, all[3].seed);
+    assert_eq!(actions(&all[2]), actions(&all[3]));
 }
 
 /// The pipelines of the scenes that come with the project.

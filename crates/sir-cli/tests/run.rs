@@ -11,7 +11,7 @@ use sir_cli::check::check;
 use sir_cli::compare::compare;
 use sir_cli::pipeline::Pipeline;
 use sir_cli::progress::Progress;
-use sir_cli::report::{Report, Time};
+use sir_cli::report::{ErrorsFrom, ErrorsReport, Report, Time};
 use sir_cli::run::{RunOptions, read_report, run};
 use sir_cli::summary::summary;
 
@@ -93,6 +93,12 @@ fn the_same_pipeline_gives_the_same_files() {
     let (a, b) = (files(&first.directory), files(&second.directory));
     let names: Vec<&str> = a.keys().map(String::as_str).collect();
     assert_eq!(names, ["direct.npy", "patches.csv", "pictures/view.exr", "pictures/view.png", "result.glb"]);
+    // The names of the channels of errors are in the head of the picture for measuring.
+    for band in ["R", "G", "B"] {
+        let channel = format!("error.{band}\0");
+        let picture = &a["pictures/view.exr"];
+        assert!(picture.windows(channel.len()).any(|bytes| bytes == channel.as_bytes()), "{channel}");
+    }
     assert!(a == b, "two runs of one pipeline differ");
     assert_eq!(read_report(&first.directory).unwrap(), first.report);
     assert_eq!(timeless(first.report.clone()), timeless(second.report));
@@ -132,7 +138,7 @@ fn the_report_tells_what_happened() {
     assert_eq!(outputs.len(), 5);
     for (name, odd) in [("FirstShot", 0), ("Multipath", 0)] {
         let stage = stages.iter().find(|s| s.name == name).unwrap();
-        let lines = stage.lines.as_ref().unwrap();
+        let (lines, light) = (stage.lines.as_ref().unwrap(), stage.light.as_ref().unwrap());
         assert_eq!((lines.lines, lines.odd_lines), (20_000, odd));
         assert!(stage.time.lines_per_second.unwrap() > 0.0);
         let b = &lines.balance;
@@ -140,9 +146,11 @@ fn the_report_tells_what_happened() {
             let sum = b.absorbed[k] + b.blocked[k] + b.escaped[k] + b.unshot[k];
             assert!((sum / b.emitted[k] - 1.0).abs() < 1e-12);
             assert!(b.escaped[k] == 0.0, "the room is closed");
-            assert!(lines.relative_error[k] > 0.01 && lines.relative_error[k] < 0.5);
+            assert!(light.relative_error[k] > 0.01 && light.relative_error[k] < 0.5);
         }
-        assert_eq!(lines.tally_hash.len(), 64);
+        assert_eq!(light.tally_hash.len(), 64);
+        let samples = if name == "FirstShot" { 20_000 } else { 40_000 };
+        assert_eq!(light.errors, ErrorsReport { from: ErrorsFrom::Lines, samples });
     }
 }
 

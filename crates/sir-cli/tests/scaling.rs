@@ -8,7 +8,8 @@ use std::num::NonZeroUsize;
 use sir_cli::Error;
 use sir_cli::progress::Progress;
 use sir_cli::report::{
-    BalanceReport, LinesReport, PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
+    BalanceReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, PipelineReport, Report, SceneReport,
+    StageReport, Time, VERSION,
 };
 use sir_cli::scaling::{Plan, ScalingError, Study, Workers, csv, json, markdown, measure, text, write};
 
@@ -30,9 +31,9 @@ fn stage(name: &str, tracing: f64, sequential: f64, communication: f64) -> Stage
         batches: 1,
         balance,
         made_up: [0.0; 3],
-        relative_error: [0.1; 3],
-        tally_hash: format!("hash of {name}"),
     };
+    let errors = ErrorsReport { from: ErrorsFrom::Lines, samples: 1000 };
+    let light = LightReport { relative_error: [0.1; 3], errors, tally_hash: format!("hash of {name}") };
     let time = Time {
         seconds: tracing + sequential + communication,
         lines_per_second: None,
@@ -40,7 +41,7 @@ fn stage(name: &str, tracing: f64, sequential: f64, communication: f64) -> Stage
         communication: Some(communication),
         peak_memory: None,
     };
-    StageReport { name: name.into(), lines: Some(lines), time }
+    StageReport { lines: Some(lines), light: Some(light), ..StageReport::of(name, time) }
 }
 
 /// A run that obeys Amdahl's law: 20 s of lines, which the workers share, and 2 s of everything else; ranks
@@ -49,10 +50,10 @@ fn report(workers: Workers) -> Report {
     let p = workers.count() as f64;
     let talk = 0.25 * (workers.ranks.get() - 1) as f64;
     let stages = vec![
-        StageReport { name: "Load".into(), lines: None, time: Time::of(0.5) },
+        StageReport::of("Load", Time::of(0.5)),
         stage("FirstShot", 8.0 / p, 0.5, talk),
         stage("Multipath", 12.0 / p, 0.5, talk),
-        StageReport { name: "Save".into(), lines: None, time: Time::of(0.5) },
+        StageReport::of("Save", Time::of(0.5)),
     ];
     let scene = SceneReport {
         path: "room.obj".into(),
@@ -182,7 +183,7 @@ fn results_that_differ_are_an_error() {
         };
         study(&plan(&[1, 2], &[1], 2), changed).unwrap_err()
     };
-    let error = last_differs(|report| report.stages[2].lines.as_mut().unwrap().tally_hash = "other".into());
+    let error = last_differs(|report| report.stages[2].light.as_mut().unwrap().tally_hash = "other".into());
     assert_eq!(error.exit_code(), 1);
     assert_eq!(
         error.chain(),

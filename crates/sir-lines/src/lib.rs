@@ -49,4 +49,4 @@ pub use domain::Domain;
 pub use facets::Facets;
 pub use forecast::Forecast;
 pub use local::{cosine_direction, point_on_triangle, unit_vector};
-pub use stream::{Stage, Stream, Streams};
+pub use stream::{Stage, Stream, Streams, seed_of_repeat};

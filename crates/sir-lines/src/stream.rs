@@ -20,6 +20,8 @@ impl Stage {
     pub const SECOND_SHOT: Self = Self(6);
     /// Lines that are traced to learn about a scene, not to solve it.
     pub const PROBE: Self = Self(5);
+    /// Seeds of repeats.
+    const REPEAT: Self = Self(16);
 }
 
 /// The random streams of all lines of one stage.
@@ -58,6 +60,13 @@ impl Streams {
     }
 }
 
+/// The seed of a repeat of what a run does with `seed`: for repeat 0 that seed itself, for others random ones that differ from
+/// each other.
+#[must_use]
+pub fn seed_of_repeat(seed: u64, repeat: u64) -> u64 {
+    if repeat == 0 { seed } else { Streams::new(seed, Stage::REPEAT).line(repeat).0.next_u64() }
+}
+
 /// A sequence of random numbers.
 #[derive(Clone, Debug)]
 pub struct Stream(SplitMix64);
@@ -80,6 +89,17 @@ mod tests {
         let mut s = Streams::new(1, Stage::GLOBAL).line(0);
         let first: Vec<String> = (0..3).map(|_| format!("{:.15}", s.unit())).collect();
         assert_eq!(first, ["0.155747808824734", "0.782331486519907", "0.072572689650649"]);
+    }
+
+    #[test]
+    fn repeats_have_seeds_of_their_own() {
+        assert_eq!([0, 1, 7].map(|seed| seed_of_repeat(seed, 0)), [0, 1, 7]);
+        let mut seeds: Vec<u64> = (0..3).flat_map(|s| (0..1000).map(move |r| seed_of_repeat(s, r))).collect();
+        seeds.sort_unstable();
+        seeds.dedup();
+        assert_eq!(seeds.len(), 3000);
+        // Part of the contract, as the numbers above.
+        assert_eq!(seed_of_repeat(1, 1), 8_567_385_128_412_321_973);
     }
 
     #[test]

@@ -15,7 +15,7 @@ use sir_radiosity::Visitor;
 use crate::{CheckpointError, Communicator};
 
 /// First line of a checkpoint: what it is, and the version of its layout.
-const MAGIC: &str = "SIR checkpoint 2";
+const MAGIC: &str = "SIR checkpoint 3";
 
 /// Work that is worth a checkpoint at the end of a stage.
 const AT_THE_END: Duration = Duration::from_secs(30);

@@ -26,7 +26,12 @@ pub struct Crew<'a> {
     pub observer: Box<dyn Observer + 'a>,
     /// Where and how often the state is saved, if it is.
     pub checkpoints: Option<&'a mut Checkpoints>,
+    /// Shows what was computed before and is still needed, if anything: it is saved and restored with the state of the stage.
+    pub earlier: Option<Earlier<'a>>,
 }
+
+/// Shows to a visitor what all ranks have alike.
+pub type Earlier<'a> = Box<dyn FnMut(&mut dyn Visitor) + 'a>;
 
 /// Processor cores that this process may use.
 #[must_use]
@@ -45,7 +50,7 @@ impl<'a> Crew<'a> {
     /// Some threads of this process, unwatched.
     #[must_use]
     pub fn of(threads: NonZeroUsize) -> Self {
-        Self { comm: &Alone, threads, observer: Box::new(Silent), checkpoints: None }
+        Self { comm: &Alone, threads, observer: Box::new(Silent), checkpoints: None, earlier: None }
     }
 
     /// The same workers, watched.
@@ -186,7 +191,11 @@ impl<'c, 'a> Shift<'c, 'a> {
         position: &mut Position,
         show: &mut dyn FnMut(&mut dyn Visitor),
     ) -> Result<(), CheckpointError> {
-        saved.restore(self.crew.comm, &self.identity, &mut |visitor| {
+        let Crew { comm, earlier, .. } = &mut *self.crew;
+        saved.restore(*comm, &self.identity, &mut |visitor| {
+            if let Some(earlier) = earlier {
+                earlier(visitor);
+            }
             position.visit(visitor);
             show(visitor);
         })?;
@@ -201,8 +210,12 @@ impl<'c, 'a> Shift<'c, 'a> {
         show: &mut dyn FnMut(&mut dyn Visitor),
     ) -> Result<(), CheckpointError> {
         position.spent = self.time();
-        match &mut self.crew.checkpoints {
-            Some(checkpoints) => checkpoints.save(self.crew.comm, &self.identity, &mut |visitor| {
+        let Crew { comm, checkpoints, earlier, .. } = &mut *self.crew;
+        match checkpoints {
+            Some(checkpoints) => checkpoints.save(*comm, &self.identity, &mut |visitor| {
+                if let Some(earlier) = earlier {
+                    earlier(visitor);
+                }
                 position.visit(visitor);
                 show(visitor);
             }),

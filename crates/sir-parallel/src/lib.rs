@@ -12,7 +12,8 @@
 //!   [`connect`] gives MPI if the crate was built with the feature `mpi`.
 //! * The state of a stage is a sequence of numbers that a [`Visitor`](sir_radiosity::Visitor) sees. One visitor adds them up
 //!   over the ranks, one saves them ([`Checkpoints`]), one puts them back ([`Saved`]). A checkpoint holds sums over all
-//!   workers, so any number of them can go on from it.
+//!   workers, so any number of them can go on from it. What was computed before the stage and is still needed goes with it
+//!   ([`Earlier`]).
 //! * Four times a second all ranks agree on how many lines to trace next, whether to save, and whether to stop. This
 //!   changes nothing in the result.
 //!
@@ -63,7 +64,7 @@ mod stages;
 pub use checkpoint::{Checkpoints, Saved};
 pub use communicator::{Alone, Communicator};
 pub use connect::{ConnectError, HAS_MPI, connect};
-pub use crew::{Crew, StageTime, cores};
+pub use crew::{Crew, Earlier, StageTime, cores};
 pub use error::{CheckpointError, RunError};
 pub use observer::{Observer, Silent};
 pub use stages::{StageRun, batches, first_shot, multipath, second_shot};

@@ -24,18 +24,71 @@ pub struct StageRun<T> {
     pub batches: u64,
 }
 
-struct FirstShotWork<'m> {
-    stage: FirstShot<'m>,
+/// Local lines, and what they bring.
+struct LocalWork<'s, 'm> {
+    lines: &'s FirstShot<'m>,
     tally: FirstShotTally,
+    /// What was brought before.
+    before: Option<&'s mut Shot>,
 }
 
-impl Work for FirstShotWork<'_> {
+impl Work for LocalWork<'_, '_> {
     fn trace(&self, thread: usize, lines: Range<u64>, books: &mut Books) {
-        self.stage.trace(thread, lines, &self.tally, books);
+        self.lines.trace(thread, lines, &self.tally, books);
     }
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
+        if let Some(shot) = &mut self.before {
+            shot.visit(visitor);
+        }
         self.tally.visit(visitor);
+    }
+}
+
+/// What is known of a stage of local lines when it begins or goes on.
+#[derive(Default)]
+struct LocalState {
+    position: Position,
+    tally: Option<FirstShotTally>,
+}
+
+impl LocalState {
+    /// The beginning, or what was saved, with what was brought before.
+    fn restored(
+        model: &Model,
+        mut before: Option<&mut Shot>,
+        shift: &mut Shift<'_, '_>,
+        saved: Option<Saved>,
+    ) -> Result<Self, RunError> {
+        let Some(saved) = saved else { return Ok(Self::default()) };
+        let mut position = Position::default();
+        let mut tally = FirstShotTally::to_restore(model, shift.threads());
+        shift.restore(saved, &mut position, &mut |visitor| {
+            if let Some(shot) = &mut before {
+                shot.visit(visitor);
+            }
+            tally.visit(visitor);
+        })?;
+        Ok(Self { position, tally: Some(tally) })
+    }
+
+    /// Traces all lines; returns what they have brought.
+    fn trace(
+        self,
+        lines: &FirstShot<'_>,
+        before: Option<&mut Shot>,
+        shift: &mut Shift<'_, '_>,
+    ) -> Result<(FirstShotTally, Books), RunError> {
+        let mut position = self.position;
+        let tally = self.tally.unwrap_or_else(|| lines.tally(shift.threads()));
+        let mut work = LocalWork { lines, tally, before };
+        shift.trace(&mut work, &mut position, lines.lines())?;
+        let LocalWork { mut tally, .. } = work;
+        shift.add_up(|visitor| {
+            position.books.visit(visitor);
+            tally.visit(visitor);
+        });
+        Ok((tally, position.books))
     }
 }
 
@@ -52,36 +105,11 @@ pub fn first_shot(
     saved: Option<Saved>,
 ) -> Result<StageRun<Shot>, RunError> {
     let mut shift = Shift::begin(crew, lines, &[1, model.mesh.side_count() as u64, lines, seed]);
+    let state = LocalState::restored(model, None, &mut shift, saved)?;
     let stage = FirstShot::new(model, lines, seed)?;
-    let mut work = FirstShotWork { tally: stage.tally(shift.threads()), stage };
-    let mut position = Position::default();
-    if let Some(saved) = saved {
-        shift.restore(saved, &mut position, &mut |visitor| work.visit(visitor))?;
-    }
-    shift.trace(&mut work, &mut position, lines)?;
-    shift.add_up(|visitor| {
-        position.books.visit(visitor);
-        work.visit(visitor);
-    });
-    let FirstShotWork { stage, tally } = work;
-    let outcome = stage.finish(tally, position.books)?;
+    let (tally, books) = state.trace(&stage, None, &mut shift)?;
+    let outcome = stage.finish(tally, books)?;
     Ok(StageRun { outcome, time: shift.time(), batches: 1 })
-}
-
-struct SecondShotWork<'m> {
-    stage: SecondShot<'m>,
-    tally: FirstShotTally,
-}
-
-impl Work for SecondShotWork<'_> {
-    fn trace(&self, thread: usize, lines: Range<u64>, books: &mut Books) {
-        self.stage.trace(thread, lines, &self.tally, books);
-    }
-
-    fn visit(&mut self, visitor: &mut dyn Visitor) {
-        self.stage.visit(visitor);
-        self.tally.visit(visitor);
-    }
 }
 
 /// Lets the brightest patches send what they reflect of a first shot along `lines` local lines, or goes on with a second shot
@@ -99,34 +127,11 @@ pub fn second_shot(
     saved: Option<Saved>,
 ) -> Result<StageRun<Shot>, RunError> {
     let mut shift = Shift::begin(crew, lines, &[4, model.mesh.side_count() as u64, lines, seed]);
-    let mut position = Position::default();
-    let threads = shift.threads();
-    let work = |shot: Shot| {
-        let stage = SecondShot::new(model, shot, lines, seed);
-        SecondShotWork { tally: stage.tally(threads), stage }
-    };
-    let mut work = match saved {
-        None => work(shot),
-        Some(saved) => {
-            let mut restored = None;
-            shift.restore(saved, &mut position, &mut |visitor| {
-                // Which patches are bright follows from the first shot.
-                shot.visit(visitor);
-                let mut work = work(shot.clone());
-                work.tally.visit(visitor);
-                restored = Some(work);
-            })?;
-            restored.unwrap_or_else(|| work(shot))
-        }
-    };
-    let lines = work.stage.lines();
-    shift.trace(&mut work, &mut position, lines)?;
-    shift.add_up(|visitor| {
-        position.books.visit(visitor);
-        work.visit(visitor);
-    });
-    let SecondShotWork { stage, tally } = work;
-    let outcome = stage.finish(tally, position.books)?;
+    let state = LocalState::restored(model, Some(&mut shot), &mut shift, saved)?;
+    // Which patches are bright follows from the first shot.
+    let stage = SecondShot::new(model, &shot, lines, seed);
+    let (tally, books) = state.trace(stage.lines(), Some(&mut shot), &mut shift)?;
+    let outcome = stage.finish(shot, tally, books)?;
     Ok(StageRun { outcome, time: shift.time(), batches: 1 })
 }
 

@@ -52,6 +52,15 @@ pub struct Books {
     pub counts: Counts,
 }
 
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.lines += other.lines;
+        self.empty += other.empty;
+        self.odd += other.odd;
+        self.crossings += other.crossings;
+    }
+}
+
 impl AddAssign for Books {
     fn add_assign(&mut self, other: Self) {
         let (mine, theirs) = (&mut self.balance, other.balance);
@@ -60,11 +69,7 @@ impl AddAssign for Books {
         mine.blocked += theirs.blocked;
         mine.escaped += theirs.escaped;
         mine.unshot += theirs.unshot;
-        let (mine, theirs) = (&mut self.counts, other.counts);
-        mine.lines += theirs.lines;
-        mine.empty += theirs.empty;
-        mine.odd += theirs.odd;
-        mine.crossings += theirs.crossings;
+        self.counts += other.counts;
     }
 }
 

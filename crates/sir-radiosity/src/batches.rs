@@ -181,7 +181,7 @@ impl<'m> Batches<'m> {
             number: 0,
             parts: parts.clamp(1, MOST_PARTS),
             least: (SMALLEST * once).ceil() as u64,
-            guess: sum(balance.unshot) / sum(balance.emitted).max(1.0),
+            guess: balance.unshot.total() / balance.emitted.total().max(1.0),
             source,
             ceased: Quanta::ZERO,
             totals: Totals { unshot: source, ..Totals::default() },
@@ -380,8 +380,9 @@ impl Plan {
     /// with the reserve, in small batches.
     fn next_lines(&self) -> u64 {
         let (left, least) = (self.lines - self.batch[0], self.least as f64);
-        let (source, held, sent) = (sum(self.source), sum(self.totals.unshot), sum(self.totals.sent));
-        let r = if sent > 0.0 { sum(self.totals.reflected) / sent } else { self.guess };
+        let (source, held, sent) =
+            (self.source.total(), self.totals.unshot.total(), self.totals.sent.total());
+        let r = if sent > 0.0 { self.totals.reflected.total() / sent } else { self.guess };
         let sends = |r: f64| 1.0 / (1.0 - r);
         let r = r.clamp(0.0, 0.999);
 
@@ -469,9 +470,4 @@ impl<'a> Part<'a> {
     fn sides(&self) -> impl Iterator<Item = (TriangleId, Range<u32>)> + use<'a> {
         self.model.mesh.sides_within(self.first..self.first + self.accounts.len() as u32)
     }
-}
-
-/// Sum over bands.
-fn sum(quanta: Quanta) -> f64 {
-    quanta.0.iter().map(|&q| q as f64).sum()
 }

@@ -18,6 +18,9 @@ use crate::{Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Solution
 /// Rays that are made at a time.
 const RAYS: usize = 1024;
 
+/// Copies of the ledger that there is room for, however large it is: later stages need more per side than this one.
+const COPIES: usize = 2;
+
 /// The lines of a first shot: what each one carries, and from where.
 #[derive(Clone, Debug)]
 pub struct FirstShot<'m> {
@@ -150,9 +153,8 @@ impl<'m> FirstShot<'m> {
     pub fn tally(&self, workers: usize) -> FirstShotTally {
         let largest = |band: usize| self.per_line.iter().map(|q| q.0[band] as f64).fold(0.0, f64::max);
         let squares = SquareUnit::new([0, 1, 2].map(largest), self.lines as f64);
-        // There is room for two copies: later stages need more per side than this one.
         let sides = self.model.mesh.side_count();
-        FirstShotTally { ledger: Ledger::new(sides, workers, 2, squares) }
+        FirstShotTally { ledger: Ledger::new(sides, workers, COPIES, squares) }
     }
 
     /// The ray of a line.
@@ -259,8 +261,16 @@ impl<'m> FirstShot<'m> {
 }
 
 impl FirstShotTally {
+    /// A tally to be filled with one that was saved, before it is known what a line carries.
+    #[must_use]
+    pub fn to_restore(model: &Model, workers: usize) -> Self {
+        let any = SquareUnit::new([1.0; 3], 1.0);
+        Self { ledger: Ledger::new(model.mesh.side_count(), workers, COPIES, any) }
+    }
+
     /// Shows the state of the stage to a visitor.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.ledger.visit_unit(visitor);
         self.ledger.visit(Counters::All, visitor);
     }
 }

@@ -11,6 +11,7 @@
 //! * Lines through the whole scene pass the reflected power on, between every pair of surfaces that face each other
 //!   along a line, in both directions. [`Multipath`] sends it on line by line, as published. [`Batches`] freezes
 //!   what surfaces send while the lines of a batch are traced, so that any number of workers can share them.
+//! * [`Repeats`]: the mean of independent runs of these stages, with the errors that their spread shows.
 //! * [`Solution`]: irradiance and its standard error per side of a patch.
 //!
 //! Power is counted in whole [`Quanta`]: integers add up to the same sum in any order, by any number of workers who
@@ -65,6 +66,7 @@ mod model;
 mod multipath;
 mod power;
 mod received;
+mod repeats;
 mod second_shot;
 mod segments;
 mod solution;
@@ -79,6 +81,7 @@ pub use model::Model;
 pub use multipath::{Multipath, MultipathSettings, Replica, Transported, share};
 pub use power::{PowerUnit, Quanta};
 pub use received::Received;
+pub use repeats::{ENOUGH, RepeatedBooks, Repeats};
 pub use second_shot::SecondShot;
 pub use segments::{End, Segment, Segments};
 pub use solution::Solution;

@@ -35,6 +35,12 @@ impl Quanta {
         Self(self.0.map(|q| q.saturating_mul(count)))
     }
 
+    /// Sum over the bands.
+    #[must_use]
+    pub fn total(self) -> f64 {
+        self.0.iter().map(|&q| q as f64).sum()
+    }
+
     #[inline]
     fn zip(self, other: Self, op: impl Fn(i64, i64) -> i64) -> Self {
         Self(std::array::from_fn(|k| op(self.0[k], other.0[k])))

@@ -5,21 +5,17 @@
 //! see it. Local lines carry the same from everywhere. The brightest patches are those whose power is to all the power of the
 //! sources as the lines of this shot are to those of the first: then a line carries as much as a line of the first shot.
 
-use std::ops::Range;
-
 use sir_geom::{Rgb, Side};
 use sir_lines::Stage;
 use sir_mesh::{PatchId, SideId};
 
 use crate::first_shot::{FirstShot, FirstShotTally, Shot};
 use crate::sources::Source;
-use crate::{Books, Model, Quanta, SolveError, Visitor};
+use crate::{Books, Model, Quanta, SolveError};
 
 /// The lines of a second shot.
 #[derive(Clone, Debug)]
 pub struct SecondShot<'m> {
-    /// What the first shot has brought.
-    shot: Shot,
     lines: FirstShot<'m>,
     /// The side that each source of the lines is, or is a part of.
     sides: Vec<SideId>,
@@ -28,9 +24,9 @@ pub struct SecondShot<'m> {
 impl<'m> SecondShot<'m> {
     /// Shares `lines` lines among the brightest patches. If nothing reflects, there are no lines.
     #[must_use]
-    pub fn new(model: &'m Model, shot: Shot, lines: u64, seed: u64) -> Self {
+    pub fn new(model: &'m Model, shot: &Shot, lines: u64, seed: u64) -> Self {
         let unshot = shot.unshot(model);
-        let total = sum(shot.balance.emitted) * lines as f64 / shot.counts.lines.max(1) as f64;
+        let total = shot.balance.emitted.total() * lines as f64 / shot.counts.lines.max(1) as f64;
         let bright = brightest(model, &unshot, total);
         let (mut sources, mut sides) = (Vec::new(), Vec::new());
         for triangle in model.scene.triangle_ids() {
@@ -52,38 +48,23 @@ impl<'m> SecondShot<'m> {
         }
         let lines = if sources.is_empty() { 0 } else { lines };
         let lines = FirstShot::of(model, sources, shot.unit, lines, seed, Stage::SECOND_SHOT);
-        Self { shot, lines, sides }
+        Self { lines, sides }
     }
 
-    /// Number of lines.
+    /// The lines, which are traced as those of a first shot. There are none if nothing reflects.
     #[must_use]
-    pub fn lines(&self) -> u64 {
-        self.lines.lines()
+    pub fn lines(&self) -> &FirstShot<'m> {
+        &self.lines
     }
 
-    /// An empty tally, for this number of workers: how many there are has no effect on the result, but on the time.
-    #[must_use]
-    pub fn tally(&self, workers: usize) -> FirstShotTally {
-        self.lines.tally(workers)
-    }
-
-    /// Traces some of the lines. Each line should be traced once, by whomever; `worker` is the number of who does.
-    pub fn trace(&self, worker: usize, lines: Range<u64>, tally: &FirstShotTally, books: &mut Books) {
-        self.lines.trace(worker, lines, tally, books);
-    }
-
-    /// Shows what the first shot has brought to a visitor.
-    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
-        self.shot.visit(visitor);
-    }
-
-    /// Closes the books once all lines are traced: the light of both shots, and what patches have still to send.
+    /// Closes the books once all lines are traced: the light of both shots, and what patches have still to send. `shot` is the
+    /// first one.
     ///
     /// # Errors
     ///
     /// If a tally overflowed.
-    pub fn finish(self, tally: FirstShotTally, books: Books) -> Result<Shot, SolveError> {
-        let Self { shot: Shot { received, sent, .. }, lines, sides } = self;
+    pub fn finish(self, shot: Shot, tally: FirstShotTally, books: Books) -> Result<Shot, SolveError> {
+        let (Self { lines, sides }, Shot { received, sent, .. }) = (self, shot);
         let shot = lines.add(received, tally, books)?;
         let mut all = sent;
         for (side, power) in sides.into_iter().zip(lines.sent()) {
@@ -100,7 +81,7 @@ impl<'m> SecondShot<'m> {
 fn brightest(model: &Model, unshot: &[Quanta], total: f64) -> Vec<bool> {
     let mut sides = Vec::new();
     model.mesh.for_each_side(|triangle, _, _, side| {
-        let power = sum(unshot[side.index()]);
+        let power = unshot[side.index()].total();
         if power > 0.0 {
             sides.push((power / model.mesh.patch_area(triangle), power, side));
         }
@@ -115,9 +96,4 @@ fn brightest(model: &Model, unshot: &[Quanta], total: f64) -> Vec<bool> {
         bright[side.index()] = true;
     }
     bright
-}
-
-/// Sum over bands.
-fn sum(quanta: Quanta) -> f64 {
-    quanta.0.iter().map(|&q| q as f64).sum()
 }

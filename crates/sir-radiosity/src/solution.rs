@@ -15,8 +15,9 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Irradiance is received power over area.
-    pub(crate) fn new(model: &Model, received: &Received, unit: PowerUnit) -> Self {
+    /// Irradiance is received power over area; `unit` is that of the power.
+    #[must_use]
+    pub fn new(model: &Model, received: &Received, unit: PowerUnit) -> Self {
         let sides = model.mesh.side_count();
         let mut solution = Self { irradiance: Vec::with_capacity(sides), error: Vec::with_capacity(sides) };
         model.mesh.for_each_side(|triangle, _, _, side| {

@@ -6,12 +6,12 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use common::{TRANSPORTS, grey, scene, shoot};
+use common::{TRANSPORTS, grey, scene, shoot, shoot_again};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder, Side, Sides};
 use sir_mesh::Subdivision;
-use sir_radiosity::{Books, Model, Quanta, SecondShot, Shot};
+use sir_radiosity::{Model, Quanta};
 
 /// A room with a lamp close to its ceiling, and a sheet that reflects from both sides.
 fn room(subdivision: Subdivision) -> Model {
@@ -26,13 +26,6 @@ fn room(subdivision: Subdivision) -> Model {
     let corner = |x, z| DVec3::new(x, 1.0 + 0.3 * x, z);
     shapes::quad(&mut b, [corner(0.5, 0.5), corner(0.5, 2.0), corner(1.2, 2.0), corner(1.2, 0.5)], sheet);
     Model::new(scene(b), subdivision).unwrap()
-}
-
-fn shoot_again(model: &Model, shot: &Shot, lines: u64, seed: u64) -> Shot {
-    let stage = SecondShot::new(model, shot.clone(), lines, seed);
-    let (tally, mut books) = (stage.tally(1), Books::default());
-    stage.trace(0, 0..stage.lines(), &tally, &mut books);
-    stage.finish(tally, books).unwrap()
 }
 
 fn mean(values: &[f64]) -> f64 {

@@ -42,6 +42,20 @@ fn uniform(scene: &Scene, camera: &Camera, threads: usize) -> Picture {
     render(&display, &Accel::new(scene), camera, settings(threads)).unwrap()
 }
 
+#[test]
+fn a_picture_of_errors_is_without_what_surfaces_emit() {
+    let mut builder = SceneBuilder::new();
+    let lamp = Material::diffuse("", Rgb::new(0.5, 0.4, 0.3)).emitting(Rgb::splat(70.0));
+    let lamp = builder.add_material(lamp);
+    shapes::cuboid(&mut builder, DVec3::ZERO, SIZE, [lamp; 6], Facing::Inward);
+    let scene = builder.build().unwrap().scene;
+    let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.07)).unwrap();
+    let errors = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
+    let camera = Camera::looking_at(DVec3::new(3.7, 2.0, 0.2), DVec3::ONE, DVec3::Y, 1.2).unwrap();
+    let display = DisplayMesh::of_errors(&scene, &mesh, &errors);
+    assert_even(&render(&display, &Accel::new(&scene), &camera, settings(2)).unwrap());
+}
+
 fn assert_even(picture: &Picture) {
     for (i, pixel) in picture.radiance.iter().enumerate() {
         for (got, expected) in pixel.iter().zip([0.5, 0.4, 0.3]) {

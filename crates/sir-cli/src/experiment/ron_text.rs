@@ -6,7 +6,7 @@ use sir_geom::{Camera, Projection};
 use sir_mesh::Subdivision;
 use sir_view::Exposure;
 
-use crate::pipeline::{Action, CameraChoice, Content, Image, Output, Pipeline, Transport};
+use crate::pipeline::{Action, CameraChoice, Content, Image, Output, Pipeline, Repeat, Transport, Until};
 
 /// The text of a file that says the same as the pipeline, whatever its own text is.
 pub(crate) fn text(pipeline: &Pipeline) -> String {
@@ -37,6 +37,16 @@ fn action(action: &Action) -> Option<String> {
                 }
             };
             format!("Multipath(lines: {lines}, transport: {transport}, domain: {body:?})")
+        }
+        Action::Repeat(Repeat { until, at_most, stages }) => {
+            let until = match until {
+                Until::Times(times) => format!("times: {times}"),
+                Until::RelativeError(error) => format!("until: RelativeError({error:?})"),
+                Until::Seconds(seconds) => format!("until: Seconds({seconds:?})"),
+            };
+            let at_most = at_most.map_or(String::new(), |most| format!(", at_most: {most}"));
+            let stages: Vec<String> = stages.iter().filter_map(|stage| self::action(&stage.action)).collect();
+            format!("Repeat({until}{at_most}, stages: [{}])", stages.join(", "))
         }
         Action::Save(outputs) => {
             let outputs: Vec<String> = outputs.iter().map(output).collect();

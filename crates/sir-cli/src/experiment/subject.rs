@@ -48,11 +48,11 @@ impl Subject {
     /// Reads a pipeline.
     pub(crate) fn read(path: &Path, scale: f64) -> Result<Self, Error> {
         let pipeline = Pipeline::read(path)?;
-        let local = pipeline.stages.iter().find_map(|stage| match stage.action {
+        let local = pipeline.flat_stages().find_map(|stage| match stage.action {
             Action::FirstShot { lines } => Some(lines),
             _ => None,
         });
-        let multipath = pipeline.stages.iter().find_map(|stage| match stage.action {
+        let multipath = pipeline.flat_stages().find_map(|stage| match stage.action {
             Action::Multipath { lines, transport, body } => Some((lines, transport, body)),
             _ => None,
         });
@@ -108,7 +108,7 @@ impl Subject {
                 _ => {}
             }
         }
-        let second_shot = self.pipeline.stages.iter().find_map(|stage| match stage.action {
+        let second_shot = self.pipeline.flat_stages().find_map(|stage| match stage.action {
             // In proportion to the local lines.
             Action::SecondShot { lines } => {
                 let share = changes.lines.local as f64 / self.asked.local as f64;

@@ -29,15 +29,20 @@ fn difference(a: &StageReport, b: &StageReport) -> Option<String> {
     if a.name != b.name {
         return Some(format!("`{}` instead of `{}`", b.name, a.name));
     }
+    let (hash_a, hash_b) = (hash(a), hash(b));
     let what = match (&a.lines, &b.lines) {
-        (Some(a), Some(b)) if a.tally_hash != b.tally_hash => {
-            format!("tally_hash {} instead of {}", b.tally_hash, a.tally_hash)
-        }
+        _ if hash_a != hash_b => format!("tally_hash {hash_b} instead of {hash_a}"),
         (Some(a), Some(b)) if a.balance != b.balance => {
             format!("balance {:?} instead of {:?}", b.balance, a.balance)
         }
-        (a, b) if a != b => "the same tallies and balance, but other counts or errors".into(),
-        _ => return None,
+        (lines_a, lines_b) if (lines_a, &a.light, a.repeats) != (lines_b, &b.light, b.repeats) => {
+            "the same tallies and balance, but other counts or errors".into()
+        }
+        _ => return a.stages.iter().zip(&b.stages).find_map(|(a, b)| difference(a, b)),
     };
     Some(format!("`{}` has {what}", a.name))
+}
+
+fn hash(stage: &StageReport) -> &str {
+    stage.light.as_ref().map_or("", |light| &light.tally_hash)
 }

@@ -29,7 +29,8 @@ impl Timing {
     /// What a report says.
     #[must_use]
     pub fn of(report: &Report) -> Self {
-        let stage = |name| report.stages.iter().find(|s| s.name == name).map(|s| s.time.seconds);
+        let all = report.stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.stages));
+        let stage = |name| all.clone().find(|s| s.name == name).map(|s| s.time.seconds);
         let times = || report.stages.iter().map(|s| s.time);
         Self {
             first_shot: stage("FirstShot"),

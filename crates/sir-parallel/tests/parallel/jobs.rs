@@ -152,10 +152,10 @@ impl Job {
                 return Outcome::of_shot(StageRun { outcome, time: Default::default(), batches: 1 });
             }
             Self::SecondShot => {
-                let stage = SecondShot::new(model, shot, LINES, SEED);
-                let tally = stage.tally(1);
-                stage.trace(0, 0..LINES, &tally, &mut books);
-                let outcome = stage.finish(tally, books).unwrap();
+                let stage = SecondShot::new(model, &shot, LINES, SEED);
+                let tally = stage.lines().tally(1);
+                stage.lines().trace(0, 0..LINES, &tally, &mut books);
+                let outcome = stage.finish(shot, tally, books).unwrap();
                 return Outcome::of_shot(StageRun { outcome, time: Default::default(), batches: 1 });
             }
             Self::Batches => {
@@ -219,5 +219,5 @@ impl Outcome {
 /// A crew of this rank with so many threads.
 pub(crate) fn crew(comm: &dyn Communicator, threads: usize) -> Crew<'_> {
     let threads = NonZeroUsize::new(threads).unwrap();
-    Crew { comm, threads, observer: Box::new(StopAfter::NEVER), checkpoints: None }
+    Crew { comm, threads, observer: Box::new(StopAfter::NEVER), checkpoints: None, earlier: None }
 }

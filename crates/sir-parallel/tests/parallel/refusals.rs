@@ -75,7 +75,7 @@ fn a_checkpoint_with_a_flipped_bit_is_refused() {
     let (_folder, path) = stopped(&ROOM, Job::Batches);
     let whole = fs::read(&path).unwrap();
     // In the head, in the state, and in the hash.
-    let head = "SIR checkpoint 2\n".len();
+    let head = "SIR checkpoint 3\n".len();
     for place in
         [head + 1, whole.len() / 3, whole.len() / 2, whole.len() - 33, whole.len() - 32, whole.len() - 1]
     {
@@ -94,7 +94,7 @@ fn a_file_of_another_kind_is_refused() {
     let picture = [&b"\x89PNG\r\n\x1a\n"[..], &[0xFF; 500]].concat();
     for content in [text, picture, vec![b'S'; 1000], b"SIR".repeat(20), vec![b'\n'; 64]] {
         fs::write(&path, content).unwrap();
-        assert_not_opened(&path, "it does not begin with \"SIR checkpoint 2\"");
+        assert_not_opened(&path, "it does not begin with \"SIR checkpoint 3\"");
     }
 }
 

@@ -11,7 +11,7 @@ use sir_geom::{Material, MaterialId, Rgb, Scene, SceneBuilder, Side};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_radiosity::{
-    Batches, Books, FirstShot, Model, Multipath, MultipathSettings, Shot, Totals, Transported,
+    Batches, Books, FirstShot, Model, Multipath, MultipathSettings, SecondShot, Shot, Totals, Transported,
 };
 
 /// The exact answers: see `tests/reference/README.md`.
@@ -86,6 +86,14 @@ pub(crate) fn shoot(model: &Model, lines: u64, seed: u64) -> Shot {
     shot.trace(0, 0..lines / 2, &tally, &mut books);
     shot.trace(1, lines / 2..lines, &tally, &mut books);
     shot.finish(tally, books).unwrap()
+}
+
+/// A second shot after a first one.
+pub(crate) fn shoot_again(model: &Model, shot: &Shot, lines: u64, seed: u64) -> Shot {
+    let stage = SecondShot::new(model, shot, lines, seed);
+    let (tally, mut books) = (stage.lines().tally(1), Books::default());
+    stage.lines().trace(0, 0..stage.lines().lines(), &tally, &mut books);
+    stage.finish(shot.clone(), tally, books).unwrap()
 }
 
 /// Transports the light of a first shot; takes the number of lines and the seed.

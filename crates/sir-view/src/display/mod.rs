@@ -51,6 +51,8 @@ pub struct DisplayMesh<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) mesh: &'a PatchMesh,
     irradiance: &'a [Rgb],
+    /// Whether what surfaces emit is shown, too.
+    emits: bool,
     positions: Vec<DVec3>,
     vertices: Vec<DisplayVertex>,
     triangles: Vec<[u32; 3]>,
@@ -79,6 +81,7 @@ impl<'a> DisplayMesh<'a> {
             scene,
             mesh,
             irradiance,
+            emits: true,
             positions: Vec::new(),
             vertices: Vec::new(),
             triangles: Vec::with_capacity(mesh.side_count()),
@@ -87,6 +90,20 @@ impl<'a> DisplayMesh<'a> {
         };
         display.emit(&seams, &mut rims);
         display
+    }
+
+    /// The same mesh with the standard error of irradiance \[W/m²\] in its place: radiosity and radiance then are those standard
+    /// errors, and what surfaces emit, which has none, is left out.
+    ///
+    /// Errors are interpolated as the irradiance is. That of an interpolated value is a little less, as far as the noise of the
+    /// patches that it is made of is independent.
+    ///
+    /// # Panics
+    ///
+    /// If `errors` has not one value for every side of `mesh`.
+    #[must_use]
+    pub fn of_errors(scene: &'a Scene, mesh: &'a PatchMesh, errors: &'a [Rgb]) -> Self {
+        Self { emits: false, ..Self::new(scene, mesh, errors) }
     }
 
     /// Positions; vertices with different irradiance may share one.
@@ -154,10 +171,11 @@ impl<'a> DisplayMesh<'a> {
         Some((weighted(0) + weighted(1) + weighted(2)) / (w[0] + w[1] + w[2]))
     }
 
-    /// Radiosity `B = M + ρE` \[W/m²\] of a side of a triangle of the scene on which `irradiance` falls.
+    /// Radiosity `B = M + ρE` \[W/m²\] of a side of a triangle of the scene on which `irradiance` falls; of a mesh of errors `ρE`.
     #[must_use]
     pub fn radiosity(&self, triangle: TriangleId, side: Side, irradiance: Rgb) -> Rgb {
-        self.scene.exitance(triangle, side) + self.scene.material(triangle).reflectance * irradiance
+        let emitted = if self.emits { self.scene.exitance(triangle, side) } else { Rgb::ZERO };
+        emitted + self.scene.material(triangle).reflectance * irradiance
     }
 
     /// Radiosity \[W/m²\] of a piece as it was solved, not interpolated.

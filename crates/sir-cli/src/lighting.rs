@@ -1,0 +1,133 @@
+//! The light of a run, and the stages of lines that add to it.
+
+use sir_lines::Domain;
+use sir_parallel::{Crew, RunError, Saved, StageRun, StageTime};
+use sir_radiosity::{Model, MultipathSettings, PowerUnit, Quanta, Received, Shot, Solution, Transported};
+
+use crate::pipeline::{Action, Body, Transport};
+use crate::report::{DomainReport, ErrorsReport, Facts, LightReport};
+
+/// Runs stages of lines, one after the other, and keeps the light that they have brought so far.
+pub(crate) struct Lighting<'m> {
+    model: &'m Model,
+    light: Light,
+    /// What global lines were last drawn through.
+    domain: Option<(Body, Domain)>,
+}
+
+/// All light so far.
+enum Light {
+    /// None yet, or it has been handed out.
+    None,
+    /// That of the shots, which leave to global lines what is reflected of it.
+    Direct(Shot),
+    /// That of the shots and of global lines.
+    All(Transported),
+}
+
+/// What a stage of lines has done, but for the light.
+pub(crate) struct Done {
+    pub(crate) facts: Facts,
+    /// The size of a quantum.
+    pub(crate) unit: PowerUnit,
+    pub(crate) time: StageTime,
+}
+
+impl<'m> Lighting<'m> {
+    /// Darkness.
+    pub(crate) fn new(model: &'m Model) -> Self {
+        Self { model, light: Light::None, domain: None }
+    }
+
+    /// Runs a stage, or goes on with one that was saved. `None` if it is not a stage of lines.
+    pub(crate) fn run(
+        &mut self,
+        action: &Action,
+        seed: u64,
+        crew: &mut Crew<'_>,
+        saved: Option<Saved>,
+    ) -> Result<Option<Done>, RunError> {
+        let model = self.model;
+        let done = match *action {
+            Action::FirstShot { lines } => {
+                self.light = Light::None;
+                self.shot(sir_parallel::first_shot(model, lines, seed, crew, saved)?)
+            }
+            Action::SecondShot { lines } => {
+                let shot = self.take_shot();
+                self.shot(sir_parallel::second_shot(model, shot, lines, seed, crew, saved)?)
+            }
+            Action::Multipath { lines, transport, body } => {
+                let (shot, domain) = (self.take_shot(), self.domain(body));
+                let report = DomainReport::of(&domain);
+                let run = match transport {
+                    Transport::Batches => {
+                        sir_parallel::batches(model, shot, lines, domain, seed, crew, saved)?
+                    }
+                    Transport::Replicas { replicas, tail } => {
+                        let settings = MultipathSettings { lines, tail, replicas, domain };
+                        sir_parallel::multipath(model, shot, settings, seed, crew, saved)?
+                    }
+                };
+                self.transport(run, report)
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(done))
+    }
+
+    /// What the shots leave to the next stage. The decoder lets it follow nothing else; if they are not in memory, the state of
+    /// that stage was saved, and has them.
+    fn take_shot(&mut self) -> Shot {
+        match std::mem::replace(&mut self.light, Light::None) {
+            Light::Direct(shot) => shot,
+            _ => Shot::nothing(self.model),
+        }
+    }
+
+    fn domain(&mut self, body: Body) -> Domain {
+        let known = self.domain.take().filter(|(of, _)| *of == body);
+        let (_, domain) = self.domain.insert(known.unwrap_or_else(|| (body, body.around(&self.model.scene))));
+        domain.clone()
+    }
+
+    fn shot(&mut self, run: StageRun<Shot>) -> Done {
+        let StageRun { outcome, time, batches } = run;
+        let Shot { balance, counts, unit, .. } = outcome;
+        let facts = Facts { balance, counts, batches, made_up: Quanta::ZERO, domain: None };
+        self.light = Light::Direct(outcome);
+        Done { facts, unit, time }
+    }
+
+    fn transport(&mut self, run: StageRun<Transported>, domain: DomainReport) -> Done {
+        let StageRun { outcome, time, batches } = run;
+        let Transported { balance, counts, made_up, unit, .. } = outcome;
+        let facts = Facts { balance, counts, batches, made_up, domain: Some(domain) };
+        self.light = Light::All(outcome);
+        Done { facts, unit, time }
+    }
+
+    /// Power received so far; `None` if no stage has run.
+    pub(crate) fn received(&self) -> Option<&Received> {
+        match &self.light {
+            Light::None => None,
+            Light::Direct(shot) => Some(&shot.received),
+            Light::All(all) => Some(&all.received),
+        }
+    }
+
+    /// The result so far, and what to report of it. After global lines, which no stage can follow, nothing else is kept.
+    pub(crate) fn result(&mut self, errors: ErrorsReport) -> Option<(LightReport, Solution)> {
+        let hash = self.received()?.hash();
+        let solution = match std::mem::replace(&mut self.light, Light::None) {
+            Light::None => return None,
+            Light::Direct(shot) => {
+                let solution = shot.solution(self.model);
+                self.light = Light::Direct(shot);
+                solution
+            }
+            Light::All(all) => all.solution,
+        };
+        Some((LightReport::new(self.model, &solution, errors, hash), solution))
+    }
+}

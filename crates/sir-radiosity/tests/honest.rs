@@ -1,0 +1,178 @@
+//! Whether the errors that results state are those that they have: over 200 seeds of scenes with an exact answer, the
+//! deviation over the standard error has a root mean square of 1, and a 95 % interval has the answer in 95 % of all cases.
+//!
+//! Lines and patches are chosen such that what is not noise does not matter: some hundred lines meet a patch, since of few lines the
+//! stated error is itself uncertain, and goes with the value.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+
+mod common;
+
+use common::{batches, grey, replicas, scene, shoot, shoot_again};
+use glam::DVec3;
+use sir_geom::shapes::{self, Facing};
+use sir_geom::{Material, Rgb, SceneBuilder};
+use sir_lines::{Domain, seed_of_repeat};
+use sir_mesh::Subdivision;
+use sir_radiosity::{ENOUGH, Model, MultipathSettings, PowerUnit, Received, Repeats, Solution};
+
+const SEEDS: u64 = 200;
+
+/// A deviation that 5 % of all normal deviates exceed, to either side.
+const NORMAL: f64 = 1.959_964;
+
+/// The same of Student's t with seven degrees of freedom, and its root mean square: `√(7/5)`.
+const STUDENT: (f64, f64) = (2.364_624, 1.183_216);
+
+/// A model, and the irradiance of all its patches: by the sources alone, and all of it.
+struct Exact {
+    name: &'static str,
+    model: Model,
+    direct: Rgb,
+    all: Rgb,
+    /// Lines of each stage that meet a patch, on average.
+    per_patch: u64,
+}
+
+/// What a run makes: power with its variance, in units.
+type Outcome = (Received, PowerUnit);
+
+/// A closed cube whose faces all emit 1 W/m². Its irradiance is a geometric series.
+fn furnace() -> Exact {
+    let reflectance = Rgb::new(0.5, 0.8, 0.9);
+    let mut b = SceneBuilder::new();
+    let wall = b.add_material(Material::diffuse("", reflectance).emitting(Rgb::ONE));
+    shapes::cuboid(&mut b, DVec3::ZERO, DVec3::ONE, [wall; 6], Facing::Inward);
+    let model = Model::new(scene(b), Subdivision::Patches(150)).unwrap();
+    Exact {
+        name: "furnace",
+        model,
+        direct: Rgb::ONE,
+        all: Rgb::ONE / (Rgb::ONE - reflectance),
+        per_patch: 100,
+    }
+}
+
+/// The inside of a sphere, a cap of which emits. Light from anywhere falls evenly on all of it: the irradiance is the same
+/// geometric series. The facets of 5° change it by less than a percent, a tenth of the noise.
+fn lamp_in_a_sphere() -> Exact {
+    let reflectance = 0.6;
+    let mut b = SceneBuilder::new();
+    let [wall, lamp] = [0.0, 10.0].map(|exitance| b.add_material(grey(exitance, reflectance)));
+    shapes::sphere(&mut b, DVec3::ZERO, 1.0, 3, Facing::Inward, |to| if to.z > 0.9 { lamp } else { wall });
+    let model = Model::new(scene(b), Subdivision::PerTriangle).unwrap();
+    let power: Rgb = sir_radiosity::sources(&model.scene).iter().map(|source| source.power).sum();
+    let direct = power / model.scene.total_area();
+    Exact { name: "lamp in a sphere", model, direct, all: direct / (1.0 - reflectance), per_patch: 60 }
+}
+
+impl Exact {
+    /// So many lines that each patch is met by this number on average.
+    fn lines(&self, per_patch: u64, ends: u64) -> u64 {
+        per_patch * self.model.mesh.side_count() as u64 / ends
+    }
+
+    fn first_shot(&self, seed: u64) -> Outcome {
+        let shot = shoot(&self.model, self.lines(self.per_patch, 1), seed);
+        (shot.received, shot.unit)
+    }
+
+    fn batches(&self, per_patch: u64, seed: u64) -> Outcome {
+        let first = shoot(&self.model, self.lines(per_patch, 1), seed);
+        let shot = shoot_again(&self.model, &first, self.lines(per_patch / 4, 1), seed);
+        let all = batches(&self.model, shot, self.lines(per_patch, 2), seed);
+        (all.received, all.unit)
+    }
+
+    fn replicas(&self, seed: u64) -> Outcome {
+        let first = shoot(&self.model, self.lines(self.per_patch, 1), seed);
+        let shot = shoot_again(&self.model, &first, self.lines(self.per_patch / 4, 1), seed);
+        let lines = self.lines(2 * self.per_patch, 2);
+        // A tail as long as this lets so little be missing that it does not matter.
+        let settings = MultipathSettings {
+            replicas: 2,
+            tail: lines / 2,
+            ..MultipathSettings::new(lines, Domain::hull(&self.model.scene))
+        };
+        let all = replicas(&self.model, shot, settings, seed);
+        (all.received, all.unit)
+    }
+
+    /// The mean of so many repeats that their spread is just enough.
+    fn repeats(&self, seed: u64) -> Outcome {
+        let mut repeats = Repeats::new(self.model.mesh.side_count());
+        let mut unit = None;
+        for repeat in 0..ENOUGH {
+            let (received, of) = self.batches(24, seed_of_repeat(seed, repeat));
+            repeats.add(&received);
+            unit = Some(of);
+        }
+        assert!(repeats.have_spread());
+        (repeats.mean(), unit.unwrap())
+    }
+
+    /// Checks one way to light the scene: a deviation of `quantile` is exceeded by 5 %, and `rms` is the root mean square, if
+    /// the errors are honest.
+    #[track_caller]
+    fn assert_honest(
+        &self,
+        way: &str,
+        answer: Rgb,
+        (quantile, rms): (f64, f64),
+        run: impl Fn(&Self, u64) -> Outcome,
+    ) {
+        let (mut squares, mut within, mut sum, mut count) = (Rgb::ZERO, Rgb::ZERO, Rgb::ZERO, 0.0);
+        for seed in 1..=SEEDS {
+            let (received, unit) = run(self, seed);
+            let Solution { irradiance, error } = Solution::new(&self.model, &received, unit);
+            for (value, error) in irradiance.into_iter().zip(error) {
+                let z = (value - answer) / error;
+                squares += z * z;
+                within += z.map(|z| f64::from(u8::from(z.abs() <= quantile)));
+                sum += z;
+                count += 1.0;
+            }
+        }
+        let (spread, within, mean) =
+            ((squares / count).map(f64::sqrt) / rms, 100.0 * within / count, sum / count);
+        println!("{}, {way}: rms {spread:.3}, within {within:.1} %, mean {mean:+.3}", self.name);
+        assert!(
+            spread.min_element() >= 0.9 && spread.max_element() <= 1.1,
+            "{}, {way}: rms {spread}",
+            self.name
+        );
+        assert!(
+            within.min_element() >= 93.0 && within.max_element() <= 97.0,
+            "{}, {way}: {within} %",
+            self.name
+        );
+    }
+}
+
+#[test]
+fn errors_of_a_first_shot() {
+    for exact in [furnace(), lamp_in_a_sphere()] {
+        exact.assert_honest("first shot", exact.direct, (NORMAL, 1.0), Exact::first_shot);
+    }
+}
+
+#[test]
+fn errors_of_batches() {
+    for exact in [furnace(), lamp_in_a_sphere()] {
+        exact.assert_honest("batches", exact.all, (NORMAL, 1.0), |exact, seed| {
+            exact.batches(exact.per_patch, seed)
+        });
+    }
+}
+
+#[test]
+fn errors_of_replicas() {
+    let exact = furnace();
+    exact.assert_honest("replicas", exact.all, (NORMAL, 1.0), Exact::replicas);
+}
+
+#[test]
+fn errors_from_the_spread_of_repeats() {
+    let exact = furnace();
+    exact.assert_honest("spread of repeats", exact.all, STUDENT, Exact::repeats);
+}
