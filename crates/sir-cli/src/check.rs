@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use sir_geom::{Rgb, Scene};
 use sir_parallel::cores;
-use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, SecondShot, SolveError};
+use sir_radiosity::{Batches, Books, Emitter, FirstShot, Model, Quanta, SecondShot, SolveError, Source};
 
 use crate::Error;
 use crate::fields::grouped;
@@ -145,8 +145,8 @@ impl fmt::Display for Estimate {
         writeln!(f, "cameras    {}", scene.cameras().len())?;
         writeln!(
             f,
-            "sources    {} triangle sides, {:.6} + {:.6} + {:.6} {} (red, green, blue)",
-            count(sources.len()),
+            "sources    {}, {:.6} + {:.6} + {:.6} {} (red, green, blue)",
+            kinds(sources),
             power.x,
             power.y,
             power.z,
@@ -175,6 +175,23 @@ impl fmt::Display for Estimate {
         }
         Ok(())
     }
+}
+
+/// How many sources there are of which kind.
+fn kinds(sources: &[Source]) -> String {
+    let count = |is: fn(&Emitter) -> bool| sources.iter().filter(|s| is(&s.emitter)).count();
+    let counts = [
+        ("triangle sides", count(|e| matches!(e, Emitter::Surface { .. }))),
+        ("points", count(|e| matches!(e, Emitter::Point { .. }))),
+        ("distant lights", count(|e| matches!(e, Emitter::Distant(_)))),
+        ("sky", count(|e| matches!(e, Emitter::Dome))),
+        ("ground", count(|e| matches!(e, Emitter::Ground))),
+    ];
+    let named = counts.iter().filter(|(_, n)| *n > 0).map(|(name, n)| match *name {
+        "sky" | "ground" => (*name).to_owned(),
+        name => format!("{} {name}", grouped(*n as u64)),
+    });
+    named.collect::<Vec<_>>().join(", ")
 }
 
 fn bytes(n: usize) -> String {

@@ -12,7 +12,7 @@ use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
 use crate::units::Units;
 
-const STAGES: [&str; 6] = ["Load", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Save"];
+const STAGES: [&str; 7] = ["Load", "Light", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Save"];
 
 /// Most replicas: a table of them must fit into memory.
 const MOST_REPLICAS: u64 = 1_000_000;
@@ -127,6 +127,7 @@ impl<'a> Decoder<'a> {
     fn action(&mut self, name: &'static str, node: Node<'a>) -> Option<Action> {
         match name {
             "Load" => self.load(node),
+            "Light" => self.light(node),
             "Subdivide" => self.subdivide(node).map(Action::Subdivide),
             "FirstShot" => self.local_lines(node, name).map(|lines| Action::FirstShot { lines }),
             "SecondShot" => self.local_lines(node, name).map(|lines| Action::SecondShot { lines }),

@@ -17,6 +17,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[(&'static str, &str
             let line = reader.line(first);
             let help = match name {
                 "Load" => "a pipeline has one scene: keep one `Load`",
+                "Light" => "keep one, with all the lights",
                 "Subdivide" => "keep one of the two",
                 _ => "keep one, with all the lines",
             };
@@ -31,6 +32,11 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[(&'static str, &str
         }
         match name {
             "Load" => scene = true,
+            "Light" if first_shot => reader.problem(
+                place,
+                "`Light` after `FirstShot`: light has been sent without it",
+                "move `Light` to before `FirstShot`",
+            ),
             "Subdivide" if first_shot => reader.problem(
                 place,
                 "`Subdivide` after `FirstShot`: light has been computed on the patches as they were",

@@ -10,6 +10,7 @@ use sir_view::Exposure;
 
 use crate::decode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::lights::Lamp;
 use crate::units::Units;
 
 /// A valid pipeline: its stages are in a possible order, its numbers are in range and its inputs exist.
@@ -45,6 +46,13 @@ pub enum Action {
         path: PathBuf,
         /// Which sides of surfaces take part.
         sides: SidesPolicy,
+    },
+    /// Adds lights to the scene.
+    Light {
+        /// The lights.
+        lamps: Vec<Lamp>,
+        /// What the file says of them.
+        text: String,
     },
     /// Cuts the triangles into patches.
     Subdivide(Subdivision),
@@ -117,6 +125,7 @@ impl Action {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Load { .. } => "Load",
+            Self::Light { .. } => "Light",
             Self::Subdivide(_) => "Subdivide",
             Self::FirstShot { .. } => "FirstShot",
             Self::SecondShot { .. } => "SecondShot",

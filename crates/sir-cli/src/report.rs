@@ -64,7 +64,7 @@ pub struct SceneReport {
     pub sides: usize,
     /// Area of all triangles, one side each \[m²\].
     pub area: f64,
-    /// Emitted power per band \[W\].
+    /// Emitted power per band \[W\]; of light from outside, what enters the box around the scene.
     pub power: [f64; 3],
     /// What the reader changed or left out.
     pub warnings: Vec<String>,
@@ -127,7 +127,7 @@ pub struct BalanceReport {
     pub absorbed: [f64; 3],
     /// Absorbed by the backs of one-sided surfaces.
     pub blocked: [f64; 3],
-    /// Left the scene.
+    /// Left the scene, or came from outside and never met it.
     pub escaped: [f64; 3],
     /// Reflected, but not sent out again. After the first shot it is what multipath distributes; after multipath
     /// it is missing from the result, unless something was `made_up` for it.

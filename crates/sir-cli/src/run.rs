@@ -241,6 +241,7 @@ impl Run<'_> {
             }
             match &stage.action {
                 Action::Load { .. } => time = Some(Time::of(self.prepared.load_seconds)),
+                Action::Light { .. } => {}
                 Action::Subdivide(_) => time = Some(Time::of(self.prepared.build_seconds)),
                 Action::FirstShot { lines } | Action::SecondShot { lines } => {
                     let done = if let Action::FirstShot { .. } = stage.action {

@@ -20,6 +20,7 @@ fn action(action: &Action) -> Option<String> {
     Some(match action {
         // The names of these choices in a file are those in the program.
         Action::Load { path, sides } => format!("Load(path: {}, sides: {sides:?})", path_text(path)),
+        Action::Light { text, .. } => text.clone(),
         Action::Subdivide(how) => match how {
             // This is what happens without the stage.
             Subdivision::PerTriangle => return None,
@@ -98,6 +99,7 @@ mod tests {
 
     const ALL: &str = r#"Pipeline(seed: 7, units: Photometric, stages: [
         Load(path: "room \"1\".obj", sides: Both),
+        Light([Point(position: (1, 2, 3), power: 60, spread: Spot(axis: (0, -2, 0), outer: 30)), Sky(horizontal: 1)]), // lamps
         Subdivide(max_area: 1.5e-7),
         FirstShot(lines: 1e6),
         Save([Table(path: "direct.npy")]),

@@ -104,6 +104,7 @@ impl Subject {
                 Action::Load { path, sides } => {
                     actions.push(Action::Load { path: absolute(path), sides: *sides })
                 }
+                light @ Action::Light { .. } => actions.push(light.clone()),
                 Action::Subdivide(how) => actions.push(Action::Subdivide(*how)),
                 _ => {}
             }

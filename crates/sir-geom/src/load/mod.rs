@@ -82,6 +82,19 @@ impl SidesPolicy {
 /// If the file or one that its geometry needs cannot be read, breaks its format, or holds no triangle. Missing
 /// material libraries and textures are warnings.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Built, LoadError> {
+    load_with(path, options, |_| {})
+}
+
+/// As [`load`], with more than the file has: `add` gets the builder when it holds the contents of the file.
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn load_with(
+    path: &Path,
+    options: &LoadOptions,
+    add: impl FnOnce(&mut SceneBuilder),
+) -> Result<Built, LoadError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
     match extension.as_deref() {
@@ -90,6 +103,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Built, LoadError> {
         _ => return Err(LoadError::UnknownFormat { path: path.to_owned(), extension }),
     }
     notes.warn(&mut builder);
+    add(&mut builder);
     let mut built = builder.build().map_err(|source| LoadError::Scene { path: path.to_owned(), source })?;
     notes::shorten(&mut built.warnings);
     Ok(built)
