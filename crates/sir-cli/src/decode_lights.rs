@@ -105,20 +105,19 @@ impl<'a> Decoder<'a> {
                 let outer = self.reader.required(&mut fields, "outer", "30");
                 let outer = outer.and_then(|node| self.reader.number(&node, "outer", "30"));
                 let (axis, inner, outer) = (axis?, inner?, outer?);
-                let [cos_inner, cos_outer] = [inner, outer].map(|angle| libm::cos(angle.to_radians()));
-                if inner < 0.0 || outer > 180.0 || outer < NARROWEST || cos_inner <= cos_outer {
+                let spot = Spread::spot(axis, inner.to_radians(), outer.to_radians());
+                if spot.is_none() {
                     self.reader.problem(
                         text,
                         format!(
                             "a spot cannot be full up to {inner} and end at {outer} degrees from its axis"
                         ),
                         format!(
-                            "choose `inner` from 0, `outer` above it, and from {NARROWEST} to 180 degrees"
+                            "choose `inner` from 0, and `outer` not below it, from {NARROWEST} to 180 degrees"
                         ),
                     );
-                    return None;
                 }
-                Some(Spread::Spot { axis, inner: cos_inner, outer: cos_outer })
+                spot
             }
         }
     }

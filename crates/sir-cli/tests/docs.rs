@@ -27,7 +27,7 @@ fn examples() -> Vec<Pipeline> {
 
 #[test]
 fn all_examples_are_valid() {
-    assert_eq!(examples().len(), 3);
+    assert_eq!(examples().len(), 4);
 }
 
 #[test]
@@ -42,8 +42,10 @@ fn the_defaults_are_those_of_the_reference() {
         }
         actions
     };
-    assert_eq!(all[1].seed, all[2].seed);
-    assert_eq!(actions(&all[1]), actions(&all[2]));
+    // The first two show a whole pipeline and lights.
+    assert_eq!(all[2].seed, all[3].seed);
+    assert_eq!(all[2].units, all[3].units);
+    assert_eq!(actions(&all[2]), actions(&all[3]));
 }
 
 /// The pipelines of the scenes that come with the project.
@@ -63,7 +65,9 @@ fn pipelines_of_the_project_are_valid() {
 #[test]
 fn all_fields_are_documented() {
     let text = reference();
-    let nonsense = "(stages: [Load(zzzzzzzz: 1), Subdivide(zzzzzzzz: 1), FirstShot(zzzzzzzz: 1), SecondShot(zzzzzzzz: 1), Multipath(zzzzzzzz: 1),
+    let nonsense = "(stages: [Load(zzzzzzzz: 1), Subdivide(zzzzzzzz: 1),
+        Light([Point(zzzzzzzz: 1, spread: Spot(zzzzzzzz: 1)), Point(spread: Lambertian(zzzzzzzz: 1)), Distant(zzzzzzzz: 1),
+        Panel(zzzzzzzz: 1), Sky(zzzzzzzz: 1, model: Cie(zzzzzzzz: 1)), Environment(zzzzzzzz: 1)]), FirstShot(zzzzzzzz: 1), SecondShot(zzzzzzzz: 1), Multipath(zzzzzzzz: 1),
         Save([Image(zzzzzzzz: 1, camera: Camera(zzzzzzzz: 1)), Gltf(zzzzzzzz: 1), Table(zzzzzzzz: 1)])], zzzzzzzz: 1)";
     let problems = Pipeline::parse(nonsense, Path::new("x.ron")).unwrap_err();
     let lists: Vec<&str> = problems
@@ -72,11 +76,12 @@ fn all_fields_are_documented() {
         .map(|p| p.help.as_str())
         .filter(|help| help.contains(" has the fields "))
         .collect();
-    assert_eq!(lists.len(), 10);
+    assert_eq!(lists.len(), 18);
     for list in lists {
         let (owner, fields) = list.split_once(" has the fields ").unwrap();
         let section = match owner {
-            "`Camera`" => "| field of `Camera`".to_owned(),
+            "`Camera`" | "`Point`" | "`Lambertian`" | "`Spot`" | "`Distant`" | "`Panel`" | "`Sky`"
+            | "`Cie`" | "`Environment`" => format!("| field of {owner}"),
             _ => format!("# {owner}"),
         };
         let start = text.find(&section).unwrap_or_else(|| panic!("no section {section}"));

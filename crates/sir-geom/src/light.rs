@@ -70,6 +70,21 @@ pub struct Arrival {
 }
 
 impl Spread {
+    /// A spot about an axis of unit length, full up to an angle `inner` from it, with nothing beyond `outer` \[rad\]. Equal angles make an
+    /// edge as sharp as can be. The same bits on all machines.
+    ///
+    /// `None` unless `0 ≤ inner ≤ outer ≤ π`, and `outer` is at least a ten-thousandth.
+    #[must_use]
+    pub fn spot(axis: DVec3, inner: f64, outer: f64) -> Option<Self> {
+        if !(0.0 <= inner && inner <= outer && (1e-4..=PI).contains(&outer)) {
+            return None;
+        }
+        let edge = libm::cos(outer);
+        // A millionth of the light is left to the edge.
+        let sharp = edge + 1e-6 * (1.0 - edge);
+        Some(Self::Spot { axis, inner: libm::cos(inner).max(sharp), outer: edge })
+    }
+
     /// Share of the largest intensity that goes in a direction of unit length, from 0 to 1.
     #[must_use]
     pub fn share(self, direction: DVec3) -> f64 {

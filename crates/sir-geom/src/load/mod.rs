@@ -69,7 +69,8 @@ impl SidesPolicy {
 ///
 /// The default scene, else the first one, else all nodes; triangles in the order of a walk through the nodes,
 /// parents before children. Base colour is the reflectance, also of metals; the emitted colour times its strength
-/// is a radiance `L`, which gives the exitance `π L`. Cameras are taken in. Buffers and images may be embedded
+/// is a radiance `L`, which gives the exitance `π L`. Cameras and punctual lights (`KHR_lights_punctual`) are taken in; the numbers of
+/// the latter, in cd and lx, are taken for W/sr and W/m², their range is ignored. Buffers and images may be embedded
 /// or lie in files in the scene's folder or below it.
 ///
 /// # OBJ
