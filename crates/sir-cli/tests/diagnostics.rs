@@ -15,6 +15,11 @@ Pipeline(
     seed: 7, /* and [ another */
     stages: [
         Load(path: "room.obj", sides: Both),
+        Light([
+            Point(position: (1, 2, 3), power: 60, spread: Spot(axis: (0, -1, 0), inner: 5, outer: 30)),
+            Distant(direction: (1, -2, 0), irradiance: (3, 2, 1)),
+            Panel(corner: (0, 1, 0), edges: ((1, 0, 0), (0, 0, 1)), exitance: 5),
+        ]),
         Subdivide(patches: 20_000),
         FirstShot(lines: 1e6),
         Multipath(lines: 1_300_000, tail: 0, domain: Sphere, replicas: 1),
@@ -52,7 +57,7 @@ fn a_valid_pipeline_is_understood() {
     let pipeline = parse(VALID).unwrap();
     assert_eq!(pipeline.seed, 7);
     let names: Vec<_> = pipeline.stages.iter().map(|s| s.action.name()).collect();
-    assert_eq!(names, ["Load", "Subdivide", "FirstShot", "Multipath", "Save"]);
+    assert_eq!(names, ["Load", "Light", "Subdivide", "FirstShot", "Multipath", "Save"]);
     for stage in &pipeline.stages {
         assert_eq!(&VALID[stage.span.clone()], stage.action.name());
     }
@@ -154,7 +159,7 @@ fn unknown_names_and_fields() {
     x.ron:6:1: error: unknown stage `Render`
     6 | Render,
       | ^^^^^^
-      = help: stages are `Load`, `Subdivide`, `FirstShot`, `SecondShot`, `Multipath` and `Save`
+      = help: stages are `Load`, `Light`, `Subdivide`, `FirstShot`, `SecondShot`, `Multipath` and `Save`
 
     x.ron:7:7: error: unknown output `Picture`
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
