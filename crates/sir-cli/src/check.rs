@@ -5,13 +5,16 @@ use std::time::{Duration, Instant};
 
 use sir_geom::{Rgb, Scene};
 use sir_parallel::cores;
-use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, Repeats, SecondShot, SolveError};
+use sir_radiosity::{
+    Batches, Books, Emitter, FirstShot, Model, Quanta, Repeats, SecondShot, SolveError, Source,
+};
 
 use crate::Error;
 use crate::fields::grouped;
 use crate::pipeline::{Action, Content, Pipeline, Repeat, Until};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
+use crate::units::Units;
 
 /// How long the lines of a stage are tried to learn their rate.
 const PROBE: Duration = Duration::from_millis(300);
@@ -25,6 +28,8 @@ const DISPLAY_BYTES: usize = 200;
 /// What a pipeline will do and cost.
 #[derive(Clone, Debug)]
 pub struct Estimate {
+    /// What power is measured in.
+    pub units: Units,
     /// The scene, ready to be lit.
     pub prepared: Prepared,
     /// Memory per part \[bytes\].
@@ -72,7 +77,7 @@ pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error>
     });
     let stages = probe(pipeline, &prepared.model)?;
     let repeat = repeat.map(|&Repeat { until, at_most, .. }| Repeated { until, at_most });
-    Ok(Estimate { prepared, memory, peak_memory, stages, repeat })
+    Ok(Estimate { units: pipeline.units, prepared, memory, peak_memory, stages, repeat })
 }
 
 fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
@@ -192,11 +197,12 @@ impl fmt::Display for Estimate {
         writeln!(f, "cameras    {}", scene.cameras().len())?;
         writeln!(
             f,
-            "sources    {} triangle sides, {:.6} + {:.6} + {:.6} W (red, green, blue)",
-            count(sources.len()),
+            "sources    {}, {:.6} + {:.6} + {:.6} {} (red, green, blue)",
+            kinds(sources),
             power.x,
             power.y,
-            power.z
+            power.z,
+            self.units.power()
         )?;
         writeln!(f, "memory     {} at most:", bytes(self.peak_memory))?;
         for (part, size) in &self.memory {
@@ -226,6 +232,23 @@ impl fmt::Display for Estimate {
         }
         Ok(())
     }
+}
+
+/// How many sources there are of which kind.
+fn kinds(sources: &[Source]) -> String {
+    let count = |is: fn(&Emitter) -> bool| sources.iter().filter(|s| is(&s.emitter)).count();
+    let counts = [
+        ("triangle sides", count(|e| matches!(e, Emitter::Surface { .. }))),
+        ("points", count(|e| matches!(e, Emitter::Point { .. }))),
+        ("distant lights", count(|e| matches!(e, Emitter::Distant(_)))),
+        ("sky", count(|e| matches!(e, Emitter::Dome))),
+        ("ground", count(|e| matches!(e, Emitter::Ground))),
+    ];
+    let named = counts.iter().filter(|(_, n)| *n > 0).map(|(name, n)| match *name {
+        "sky" | "ground" => (*name).to_owned(),
+        name => format!("{} {name}", grouped(*n as u64)),
+    });
+    named.collect::<Vec<_>>().join(", ")
 }
 
 fn bytes(n: usize) -> String {

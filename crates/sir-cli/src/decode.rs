@@ -10,8 +10,10 @@ use crate::fields::{ABSURD, Reader, did_you_mean, list, resembling};
 use crate::order::{Named, check_order};
 use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
+use crate::units::Units;
 
-const STAGES: [&str; 7] = ["Load", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Repeat", "Save"];
+const STAGES: [&str; 8] =
+    ["Load", "Light", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Repeat", "Save"];
 
 /// Most replicas: a table of them must fit into memory.
 const MOST_REPLICAS: u64 = 1_000_000;
@@ -31,8 +33,8 @@ pub(crate) fn decode(text: &str, path: &Path) -> Result<Pipeline, Diagnostics> {
         }
     };
     match decoded {
-        Some((seed, stages)) if decoder.reader.problems.is_empty() => {
-            Ok(Pipeline { path: path.to_owned(), text: text.to_owned(), seed, stages })
+        Some((seed, units, stages)) if decoder.reader.problems.is_empty() => {
+            Ok(Pipeline { path: path.to_owned(), text: text.to_owned(), seed, units, stages })
         }
         _ => Err(Diagnostics::new(path, text, decoder.reader.problems)),
     }
@@ -47,7 +49,7 @@ pub(crate) struct Decoder<'a> {
 }
 
 impl<'a> Decoder<'a> {
-    fn pipeline(&mut self, root: Node<'a>) -> Option<(u64, Vec<Stage>)> {
+    fn pipeline(&mut self, root: Node<'a>) -> Option<(u64, Units, Vec<Stage>)> {
         if !matches!(root.name(), "" | "Pipeline")
             || !matches!(root.value, Value::Fields(_) | Value::Items(_))
         {
@@ -55,10 +57,17 @@ impl<'a> Decoder<'a> {
             self.reader.problem(root.text, message, "write `Pipeline(stages: […])`");
             return None;
         }
-        let mut fields = self.reader.fields(root, "Pipeline", &["seed", "stages"]);
+        let mut fields = self.reader.fields(root, "Pipeline", &["seed", "units", "stages"]);
         let seed = match fields.take("seed") {
             Some(node) => self.reader.count(&node, "seed", (0, u64::MAX), "1"),
             None => Some(1),
+        };
+        let units = match fields.take("units") {
+            Some(node) => match self.reader.choice(&node, "units", &["Radiometric", "Photometric"]) {
+                Some("Photometric") => Units::Photometric,
+                _ => Units::Radiometric,
+            },
+            None => Units::default(),
         };
         let node = self.reader.required(&mut fields, "stages", "[Load(path: \"scene.gltf\"), …]")?;
         let Value::List(nodes) = node.value else {
@@ -70,7 +79,7 @@ impl<'a> Decoder<'a> {
         if let Some(order) = order {
             check_order(&mut self.reader, &order, node.text);
         }
-        Some((seed?, stages))
+        Some((seed?, units, stages))
     }
 
     /// The stages of a list that may have those in `known`, and their names and places; these only if all are known, or
@@ -130,6 +139,7 @@ impl<'a> Decoder<'a> {
     fn action(&mut self, name: &'static str, node: Node<'a>) -> Option<Action> {
         match name {
             "Load" => self.load(node),
+            "Light" => self.light(node),
             "Subdivide" => self.subdivide(node).map(Action::Subdivide),
             "FirstShot" => self.local_lines(node, name).map(|lines| Action::FirstShot { lines }),
             "SecondShot" => self.local_lines(node, name).map(|lines| Action::SecondShot { lines }),

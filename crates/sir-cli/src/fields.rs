@@ -26,6 +26,11 @@ pub(crate) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
+    /// Whether a problem has been noted that explains why fields are missing.
+    pub(crate) fn is_excused(&self) -> bool {
+        self.excused
+    }
+
     /// Takes out the value of an optional field.
     pub(crate) fn take(&mut self, name: &str) -> Option<Node<'a>> {
         let i = self.fields.iter().position(|(n, _)| *n == name)?;

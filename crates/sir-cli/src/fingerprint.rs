@@ -23,7 +23,7 @@ pub(crate) fn of_run(pipeline: &Pipeline, seed: u64, model: &Model) -> Fingerpri
     hash.finalize().into()
 }
 
-/// Of the surfaces of a scene and their patches.
+/// Of the surfaces of a scene, their patches, and its lights.
 pub(crate) fn of_scene(model: &Model) -> Fingerprint {
     let Model { scene, mesh, .. } = model;
     let mut hash = Sha256::new();
@@ -42,6 +42,8 @@ pub(crate) fn of_scene(model: &Model) -> Fingerprint {
         number(u64::from(material.sides == Sides::Both) + 2 * u64::from(material.back_emits));
     }
     number(mesh.patch_count() as u64);
+    // Every number is written with all of its digits.
+    hash.update(format!("{:?} {:?}", scene.lights(), scene.sky()));
     hash.finalize().into()
 }
 

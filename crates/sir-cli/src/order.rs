@@ -21,6 +21,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
             let line = reader.line(first);
             let help = match name {
                 "Load" => "a pipeline has one scene: keep one `Load`",
+                "Light" => "keep one, with all the lights",
                 "Subdivide" => "keep one of the two",
                 "Repeat" => "keep one, with as many repeats as both together",
                 _ => "keep one, with all the lines",
@@ -41,12 +42,17 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
         }
         match name {
             "Load" => scene = true,
-            "Subdivide" if first_shot => {
+            "Light" | "Subdivide" if first_shot => {
                 let light = if repeat.is_some() { "Repeat" } else { "FirstShot" };
-                let message = format!(
-                    "`Subdivide` after `{light}`: light has been computed on the patches as they were"
+                let why = match name {
+                    "Light" => "light has been sent without it",
+                    _ => "light has been computed on the patches as they were",
+                };
+                reader.problem(
+                    place,
+                    format!("`{name}` after `{light}`: {why}"),
+                    format!("move `{name}` to before `{light}`"),
                 );
-                reader.problem(place, message, format!("move `Subdivide` to before `{light}`"));
             }
             "FirstShot" => first_shot = true,
             "Repeat" => (first_shot, multipath) = (true, true),

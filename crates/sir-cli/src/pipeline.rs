@@ -10,6 +10,8 @@ use sir_view::Exposure;
 
 use crate::decode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::lights::Lamp;
+use crate::units::Units;
 
 /// A valid pipeline: its stages are in a possible order, its numbers are in range and its inputs exist.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +22,8 @@ pub struct Pipeline {
     pub text: String,
     /// Seed of all random numbers. Default 1.
     pub seed: u64,
+    /// What its numbers are measured in. Default radiometric.
+    pub units: Units,
     /// The stages, in the order in which they run.
     pub stages: Vec<Stage>,
 }
@@ -42,6 +46,13 @@ pub enum Action {
         path: PathBuf,
         /// Which sides of surfaces take part.
         sides: SidesPolicy,
+    },
+    /// Adds lights to the scene.
+    Light {
+        /// The lights.
+        lamps: Vec<Lamp>,
+        /// What the file says of them.
+        text: String,
     },
     /// Cuts the triangles into patches.
     Subdivide(Subdivision),
@@ -138,6 +149,7 @@ impl Action {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Load { .. } => "Load",
+            Self::Light { .. } => "Light",
             Self::Subdivide(_) => "Subdivide",
             Self::FirstShot { .. } => "FirstShot",
             Self::SecondShot { .. } => "SecondShot",
@@ -153,7 +165,7 @@ impl Action {
         match self {
             Self::FirstShot { lines } | Self::SecondShot { lines } | Self::Multipath { lines, .. } => *lines,
             Self::Repeat(repeat) => repeat.stages.iter().map(|stage| stage.action.lines()).sum(),
-            Self::Load { .. } | Self::Subdivide(_) | Self::Save(_) => 0,
+            Self::Load { .. } | Self::Light { .. } | Self::Subdivide(_) | Self::Save(_) => 0,
         }
     }
 }

@@ -11,6 +11,7 @@ use sir_view::guess_up;
 use crate::Error;
 use crate::diagnostic::Diagnostic;
 use crate::fields::did_you_mean;
+use crate::lights::Lamp;
 use crate::pipeline::{Action, CameraChoice, Content, Pipeline};
 use crate::progress::Progress;
 use crate::report::Stopwatch;
@@ -40,16 +41,20 @@ pub struct Prepared {
 /// cut as the pipeline says; the latter two are shown with their place in the pipeline.
 pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Error> {
     let mut options = LoadOptions::default();
+    let mut all_lamps: &[Lamp] = &[];
     let mut subdivision = (Subdivision::PerTriangle, 0..0);
     for stage in &pipeline.stages {
         match &stage.action {
             Action::Load { sides, .. } => options.sides = *sides,
+            Action::Light { lamps, .. } => all_lamps = lamps,
             Action::Subdivide(how) => subdivision = (*how, stage.span.clone()),
             _ => {}
         }
     }
     let watch = Stopwatch::start();
-    let built = sir_geom::load(pipeline.scene_path(), &options)?;
+    let built = sir_geom::load_with(pipeline.scene_path(), &options, |builder| {
+        all_lamps.iter().for_each(|lamp| lamp.add_to(builder));
+    })?;
     let load_seconds = watch.seconds();
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
     progress.warn(&warnings);

@@ -11,6 +11,8 @@ use sir_lines::Domain;
 use sir_parallel::StageTime;
 use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Solution};
 
+use crate::units::Units;
+
 /// Version of the layout of `result.json`.
 pub const VERSION: u32 = 2;
 
@@ -28,6 +30,9 @@ pub struct Report {
     pub pipeline: PipelineReport,
     /// Seed of all random numbers, which the command line may have set.
     pub seed: u64,
+    /// What the numbers are. This documentation names radiometric units; of photometric ones, read lm for W and lx for W/m².
+    #[serde(default)]
+    pub units: Units,
     /// What was lit.
     pub scene: SceneReport,
     /// The stages, in order.
@@ -60,7 +65,7 @@ pub struct SceneReport {
     pub sides: usize,
     /// Area of all triangles, one side each \[m²\].
     pub area: f64,
-    /// Emitted power per band \[W\].
+    /// Emitted power per band \[W\]; of light from outside, what enters the box around the scene.
     pub power: [f64; 3],
     /// What the reader changed or left out.
     pub warnings: Vec<String>,
@@ -159,7 +164,7 @@ pub struct BalanceReport {
     pub absorbed: [f64; 3],
     /// Absorbed by the backs of one-sided surfaces.
     pub blocked: [f64; 3],
-    /// Left the scene.
+    /// Left the scene, or came from outside and never met it.
     pub escaped: [f64; 3],
     /// Reflected, but not sent out again. After the first shot it is what multipath distributes; after multipath
     /// it is missing from the result, unless something was `made_up` for it.

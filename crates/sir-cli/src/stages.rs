@@ -27,6 +27,7 @@ impl Run<'_> {
             let (name, watch) = (stage.action.name(), Stopwatch::start());
             let report = match &stage.action {
                 Action::Load { .. } => StageReport::of(name, Time::of(prepared.load_seconds)),
+                Action::Light { .. } => StageReport::of(name, Time::of(0.0)),
                 Action::Subdivide(_) => StageReport::of(name, Time::of(prepared.build_seconds)),
                 Action::Save(outputs) => {
                     self.save(solution.as_ref(), outputs)?;

@@ -8,12 +8,18 @@ use std::path::Path;
 use proptest::prelude::*;
 use sir_cli::diagnostic::Diagnostics;
 use sir_cli::pipeline::{Action, Body, Pipeline, Transport};
+use sir_cli::units::Units;
 
 const VALID: &str = r#"// A comment with ( and "
 Pipeline(
     seed: 7, /* and [ another */
     stages: [
         Load(path: "room.obj", sides: Both),
+        Light([
+            Point(position: (1, 2, 3), power: 60, spread: Spot(axis: (0, -1, 0), inner: 5, outer: 30)),
+            Distant(direction: (1, -2, 0), irradiance: (3, 2, 1)),
+            Panel(corner: (0, 1, 0), edges: ((1, 0, 0), (0, 0, 1)), exitance: 5),
+        ]),
         Subdivide(patches: 20_000),
         FirstShot(lines: 1e6),
         Multipath(lines: 1_300_000, tail: 0, domain: Sphere, replicas: 1),
@@ -51,7 +57,7 @@ fn a_valid_pipeline_is_understood() {
     let pipeline = parse(VALID).unwrap();
     assert_eq!(pipeline.seed, 7);
     let names: Vec<_> = pipeline.stages.iter().map(|s| s.action.name()).collect();
-    assert_eq!(names, ["Load", "Subdivide", "FirstShot", "Multipath", "Save"]);
+    assert_eq!(names, ["Load", "Light", "Subdivide", "FirstShot", "Multipath", "Save"]);
     for stage in &pipeline.stages {
         assert_eq!(&VALID[stage.span.clone()], stage.action.name());
     }
@@ -97,6 +103,20 @@ fn what_is_left_out_has_a_default() {
 }
 
 #[test]
+fn units_are_radiometric_unless_the_file_says_otherwise() {
+    let text = |fields: &str| format!(r#"({fields}stages: [Load(path: "room.obj"), FirstShot(lines: 1)])"#);
+    let units = |fields: &str| parse(&text(fields)).unwrap().units;
+    assert_eq!(units(""), Units::Radiometric);
+    assert_eq!(units("units: Photometric, "), Units::Photometric);
+    insta::assert_snapshot!(problems(&text("units: Photometrik, ")), @"
+    x.ron:1:9: error: `units` must be `Radiometric` or `Photometric`, but it is `Photometrik`
+    1 | (units: Photometrik, stages: [Load(path: \"room.obj\"), FirstShot(lines: 1)])
+      |         ^^^^^^^^^^^
+      = help: did you mean `Photometric`?
+    ");
+}
+
+#[test]
 fn a_comment_may_end_the_file() {
     assert!(parse(r#"(stages: [Load(path: "room.obj"), FirstShot(lines: 10)]) // end"#).is_ok());
 }
@@ -139,7 +159,7 @@ fn unknown_names_and_fields() {
     x.ron:6:1: error: unknown stage `Render`
     6 | Render,
       | ^^^^^^
-      = help: stages are `Load`, `Subdivide`, `FirstShot`, `SecondShot`, `Multipath`, `Repeat` and `Save`
+      = help: stages are `Load`, `Light`, `Subdivide`, `FirstShot`, `SecondShot`, `Multipath`, `Repeat` and `Save`
 
     x.ron:7:7: error: unknown output `Picture`
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),

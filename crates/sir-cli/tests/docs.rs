@@ -27,7 +27,7 @@ fn examples() -> Vec<Pipeline> {
 
 #[test]
 fn all_examples_are_valid() {
-    assert_eq!(examples().len(), 4);
+    assert_eq!(examples().len(), 5);
 }
 
 #[test]
@@ -42,8 +42,11 @@ fn the_defaults_are_those_of_the_reference() {
         }
         actions
     };
-    assert_eq!(all[2].seed, all[3].seed);
-    assert_eq!(actions(&all[2]), actions(&all[3]));
+    // The last two say the same, at length and in short.
+    let [.., long, short] = &all[..] else { panic!("two examples") };
+    assert_eq!(long.seed, short.seed);
+    assert_eq!(long.units, short.units);
+    assert_eq!(actions(long), actions(short));
 }
 
 /// The pipelines of the scenes that come with the project.
@@ -63,7 +66,9 @@ fn pipelines_of_the_project_are_valid() {
 #[test]
 fn all_fields_are_documented() {
     let text = reference();
-    let nonsense = "(stages: [Load(zzzzzzzz: 1), Subdivide(zzzzzzzz: 1), FirstShot(zzzzzzzz: 1), SecondShot(zzzzzzzz: 1), Multipath(zzzzzzzz: 1),
+    let nonsense = "(stages: [Load(zzzzzzzz: 1), Subdivide(zzzzzzzz: 1),
+        Light([Point(zzzzzzzz: 1, spread: Spot(zzzzzzzz: 1)), Point(spread: Lambertian(zzzzzzzz: 1)), Distant(zzzzzzzz: 1),
+        Panel(zzzzzzzz: 1), Sky(zzzzzzzz: 1, model: Cie(zzzzzzzz: 1)), Environment(zzzzzzzz: 1)]), FirstShot(zzzzzzzz: 1), SecondShot(zzzzzzzz: 1), Multipath(zzzzzzzz: 1),
         Save([Image(zzzzzzzz: 1, camera: Camera(zzzzzzzz: 1)), Gltf(zzzzzzzz: 1), Table(zzzzzzzz: 1)])], zzzzzzzz: 1)";
     let problems = Pipeline::parse(nonsense, Path::new("x.ron")).unwrap_err();
     let lists: Vec<&str> = problems
@@ -72,11 +77,12 @@ fn all_fields_are_documented() {
         .map(|p| p.help.as_str())
         .filter(|help| help.contains(" has the fields "))
         .collect();
-    assert_eq!(lists.len(), 10);
+    assert_eq!(lists.len(), 18);
     for list in lists {
         let (owner, fields) = list.split_once(" has the fields ").unwrap();
         let section = match owner {
-            "`Camera`" => "| field of `Camera`".to_owned(),
+            "`Camera`" | "`Point`" | "`Lambertian`" | "`Spot`" | "`Distant`" | "`Panel`" | "`Sky`"
+            | "`Cie`" | "`Environment`" => format!("| field of {owner}"),
             _ => format!("# {owner}"),
         };
         let start = text.find(&section).unwrap_or_else(|| panic!("no section {section}"));

@@ -58,7 +58,7 @@ pub use hull::ConvexHull;
 pub use index::{FaceId, MaterialId, TriangleId, VertexId};
 pub use light::{Arrival, Light, LightKind, Spread};
 pub use line::{Barycentric, Line};
-pub use load::{LoadError, LoadOptions, SidesPolicy, load};
+pub use load::{LoadError, LoadOptions, SidesPolicy, load, load_with};
 pub use material::{MAX_REFLECTANCE, Material, Sides};
 pub use scene::{Scene, Side, Triangle};
 pub use sky::{Sky, SkyModel};

@@ -9,7 +9,8 @@
 //! * Global lines: a [`Domain`] is a convex body around the scene: its convex hull, its box, or a sphere. The uniform
 //!   (isotropic) lines of the body meet a surface of area `A` in proportion to `A`, which integral geometry turns into a
 //!   [`Forecast`] of the number of crossings.
-//! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does.
+//! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does; [`unit_vector`] and
+//!   [`spot_direction`] leave a point. [`ParallelLines`] come from one direction.
 //! * [`Allocation`] shares a number of lines among sources in proportion to their power.
 //!
 //! # Example
@@ -41,6 +42,7 @@ mod domain;
 mod facets;
 mod forecast;
 mod local;
+mod parallel;
 mod stream;
 mod turn;
 
@@ -48,5 +50,6 @@ pub use allocation::Allocation;
 pub use domain::Domain;
 pub use facets::Facets;
 pub use forecast::Forecast;
-pub use local::{cosine_direction, point_on_triangle, unit_vector};
+pub use local::{cosine_direction, point_on_triangle, spot_direction, unit_vector};
+pub use parallel::ParallelLines;
 pub use stream::{Stage, Stream, Streams, seed_of_repeat};

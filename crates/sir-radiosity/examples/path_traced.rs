@@ -15,7 +15,7 @@ use sir_accel::{Hit, Ray, Tracer};
 use sir_geom::{Line, LoadOptions, Rgb, Side, TriangleId, load};
 use sir_lines::{Stage, Stream, Streams, cosine_direction, point_on_triangle};
 use sir_mesh::Subdivision;
-use sir_radiosity::{Model, Source, sources};
+use sir_radiosity::{Emitter, Model, Source, sources};
 
 /// Paths that are traced side by side.
 const WAVE: u64 = 4096;
@@ -29,6 +29,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let wanted: Vec<u32> = arguments.map(|number| number.parse()).collect::<Result<_, _>>()?;
     let model = Model::new(load(Path::new(&path), &LoadOptions::default())?.scene, Subdivision::PerTriangle)?;
     let sources = sources(&model.scene);
+    if sources.iter().any(|source| !matches!(source.emitter, Emitter::Surface { .. })) {
+        return Err("the scene has lights that are no surfaces, which this example does not know".into());
+    }
     let emitters = Emitters::new(&sources);
     let mut tracer = model.accel.tracer();
     println!("triangle,material,area,B_r,B_g,B_b,se_r,se_g,se_b");
@@ -79,9 +82,10 @@ impl<'a> Emitters<'a> {
     fn sample(&self, from: &Vertex, stream: &mut Stream) -> Option<(Ray, &'a Source, Rgb)> {
         let chosen = stream.unit() * self.total;
         let source = self.sources.get(self.up_to.partition_point(|&sum| sum <= chosen))?;
-        let away = point_on_triangle(stream).point(source.corners) - from.point;
+        let Emitter::Surface { corners, normal, .. } = source.emitter else { return None };
+        let away = point_on_triangle(stream).point(corners) - from.point;
         let direction = away.try_normalize()?;
-        let cosines = direction.dot(from.normal).max(0.0) * -direction.dot(source.normal).min(0.0);
+        let cosines = direction.dot(from.normal).max(0.0) * -direction.dot(normal).min(0.0);
         let power = source.power * (self.total / source.power.element_sum());
         let irradiance = power * (cosines / (PI * away.length_squared()));
         (cosines > 0.0).then(|| (from.ray(direction), source, irradiance))
@@ -144,7 +148,8 @@ fn wave(
         }
         tracer.closest_each(&rays, |i, hit| {
             let (number, source, light) = asked[i];
-            if hit.is_some_and(|hit| hit.triangle == source.triangle && hit.side == source.side) {
+            let Emitter::Surface { triangle, side, .. } = source.emitter else { return };
+            if hit.is_some_and(|hit| hit.triangle == triangle && hit.side == side) {
                 irradiance[number] += light;
             }
         });

@@ -61,7 +61,7 @@ mod tests {
     fn an_exr_is_read_back_without_loss() {
         let radiance: Vec<[f32; 3]> =
             (0..15u16).map(|i| [f32::from(i) * 1e3, 1.0 / f32::from(i + 1), 1e-6]).collect();
-        let picture = Picture { width: 5, height: 3, radiance, shown: Vec::new() };
+        let picture = Picture { width: 5, height: 3, radiance, shown: Vec::new(), surface: Vec::new() };
         let error = Picture { radiance: vec![[7.0; 3]; 15], ..picture.clone() };
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a.exr");

@@ -22,6 +22,8 @@ pub struct Picture {
     /// the scene count less. It differs from `radiance` only where lamps are partly seen: a pixel a tenth of which
     /// is lamp would be as white as the lamp, and the edge a staircase.
     pub shown: Vec<[f32; 3]>,
+    /// Share of the rays of each pixel that met a surface: what the others saw is sky.
+    pub surface: Vec<f32>,
 }
 
 /// Size and effort of a picture.
@@ -54,7 +56,7 @@ impl PictureSettings {
 /// Draws what a camera sees.
 ///
 /// Backs of one-sided surfaces are transparent to the camera, though they are opaque to light: one looks into a
-/// closed room from outside as if the walls in front were cut away. Where a ray meets nothing it is black.
+/// closed room from outside as if the walls in front were cut away. Where a ray meets nothing it sees the sky of the scene, or black.
 /// The camera's vertical field of view is kept whatever the shape of the picture.
 ///
 /// # Errors
@@ -93,14 +95,17 @@ pub fn render(
             });
         }
     });
-    let (radiance, shown) = pixels.into_iter().map(|p| (p.radiance, p.shown)).unzip();
-    Ok(Picture { width, height, radiance, shown })
+    let radiance = pixels.iter().map(|p| p.radiance).collect();
+    let shown = pixels.iter().map(|p| p.shown).collect();
+    let surface = pixels.iter().map(|p| p.surface).collect();
+    Ok(Picture { width, height, radiance, shown, surface })
 }
 
 #[derive(Clone, Copy, Default)]
 struct Pixel {
     radiance: [f32; 3],
     shown: [f32; 3],
+    surface: f32,
 }
 
 struct Shader<'a> {
@@ -117,7 +122,7 @@ impl Shader<'_> {
         let index = u64::from(y) * u64::from(width) + u64::from(x);
         let mut stream = Streams::new(0, Stage::PICTURE).line(index);
         let grid = grid.max(1);
-        let (mut sum, mut weighted, mut weights) = (Rgb::ZERO, Rgb::ZERO, 0.0);
+        let (mut sum, mut weighted, mut weights, mut met) = (Rgb::ZERO, Rgb::ZERO, 0.0, 0u16);
         let rays: Vec<Ray> = (0..grid * grid)
             .map(|cell| {
                 let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
@@ -129,7 +134,10 @@ impl Shader<'_> {
         let mut firsts = vec![None; rays.len()];
         tracer.closest_each(&rays, |i, first| firsts[i] = first);
         for (ray, first) in rays.iter().zip(firsts) {
-            let radiance = radiance_along(self.display, tracer, &ray.line, first);
+            let on_surface = radiance_along(self.display, tracer, &ray.line, first);
+            met += u16::from(on_surface.is_some());
+            let sky = || self.display.scene.sky().map_or(Rgb::ZERO, |sky| sky.radiance(ray.line.direction));
+            let radiance = on_surface.unwrap_or_else(sky);
             sum += radiance;
             let weight = 1.0 / (1.0 + luminance(radiance) / self.knee);
             weighted += weight * radiance;
@@ -138,15 +146,21 @@ impl Shader<'_> {
         Pixel {
             radiance: (sum / f64::from(grid * grid)).as_vec3().to_array(),
             shown: (weighted / weights).as_vec3().to_array(),
+            surface: f32::from(met) / (grid * grid) as f32,
         }
     }
 }
 
-/// Radiance `B/π` that comes in along a ray, given its first hit.
-fn radiance_along(display: &DisplayMesh<'_>, tracer: &mut Tracer<'_>, ray: &Line, first: Option<Hit>) -> Rgb {
-    let Some(hit) = first_visible(display.scene, tracer, ray, first) else { return Rgb::ZERO };
-    let Some(e) = display.irradiance_at(hit.triangle, hit.point, hit.side) else { return Rgb::ZERO };
-    display.radiosity(hit.triangle, hit.side, e) / std::f64::consts::PI
+/// Radiance `B/π` that comes in along a ray from a surface, given its first hit; `None` if it sees none.
+fn radiance_along(
+    display: &DisplayMesh<'_>,
+    tracer: &mut Tracer<'_>,
+    ray: &Line,
+    first: Option<Hit>,
+) -> Option<Rgb> {
+    let hit = first_visible(display.scene, tracer, ray, first)?;
+    let Some(e) = display.irradiance_at(hit.triangle, hit.point, hit.side) else { return Some(Rgb::ZERO) };
+    Some(display.radiosity(hit.triangle, hit.side, e) / std::f64::consts::PI)
 }
 
 /// The first side along a ray that is not the back of a one-sided surface, given its first hit.

@@ -48,7 +48,8 @@ mod tests {
     #[test]
     fn a_png_is_read_back_with_the_right_values() {
         let shown = (0..64 * 64).map(|i| [0.1, if i < 2048 { 0.0 } else { 1e6 }, 0.1004]).collect();
-        let picture = Picture { width: 64, height: 64, radiance: vec![[0.0; 3]; 64 * 64], shown };
+        let picture =
+            Picture { width: 64, height: 64, radiance: vec![[0.0; 3]; 64 * 64], shown, surface: Vec::new() };
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a.png");
         write_png(&path, &picture, Exposure::Factor(1.0)).unwrap();

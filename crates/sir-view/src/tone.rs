@@ -19,14 +19,21 @@ pub enum Exposure {
 /// because walls are brighter than that.
 const MIDDLE: f64 = 0.26;
 
+/// How much a pixel that shows only sky counts beside one that shows a surface.
+const SKY_WEIGHT: f64 = 1e-4;
+
 impl Exposure {
     /// The factor for a picture.
     ///
     /// Automatically, it comes from the logarithmic mean of the luminance (as in Reinhard et al. 2002, section 3.1) of
-    /// the pixels that are neither black nor more than ten times as bright as the median, which leaves out lamps.
+    /// the pixels that are neither black nor more than ten times as bright as the median, which leaves out lamps. Sky hardly
+    /// counts, unless there is nothing else.
     #[must_use]
     pub fn factor_for_picture(self, picture: &Picture) -> f64 {
-        self.factor(|| picture.radiance.iter().map(|p| (luminance(rgb(p)), 1.0)).collect())
+        let weighed = picture.radiance.iter().zip(&picture.surface);
+        self.factor(|| {
+            weighed.map(|(p, &surface)| (luminance(rgb(p)), f64::from(surface).max(SKY_WEIGHT))).collect()
+        })
     }
 
     /// The factor for a mesh: likewise, of the radiance at the corners of all triangles by area.
@@ -142,13 +149,19 @@ mod tests {
         let picture = |lamp: usize, black: usize| {
             let rest = 100 - lamp - black;
             let radiance = [vec![[500.0; 3]; lamp], vec![[0.0; 3]; black], vec![[2.0; 3]; rest]].concat();
-            Picture { width: 100, height: 1, shown: radiance.clone(), radiance }
+            Picture { width: 100, height: 1, shown: radiance.clone(), radiance, surface: vec![1.0; 100] }
         };
         let plain = Exposure::Auto.factor_for_picture(&picture(0, 0));
         assert!((plain * 2.0 / MIDDLE - 1.0).abs() < 1e-12);
         let with = Exposure::Auto.factor_for_picture(&picture(20, 30));
         assert!((with / plain - 1.0).abs() < 1e-12);
         assert_eq!(Exposure::Auto.factor_for_picture(&picture(0, 100)), 1.0);
+        let mut sky = picture(60, 0);
+        sky.surface[..60].fill(0.0);
+        let with = Exposure::Auto.factor_for_picture(&sky);
+        assert!((with / plain - 1.0).abs() < 1e-2, "{with}");
+        sky.surface.fill(0.0);
+        assert!(Exposure::Auto.factor_for_picture(&sky) < 0.1 * plain, "nothing but sky");
     }
 
     #[test]

@@ -5,9 +5,9 @@
 use glam::DVec3;
 use sir_accel::Accel;
 use sir_geom::shapes::{self, Facing};
-use sir_geom::{Camera, Material, MaterialId, Projection, Rgb, Scene, SceneBuilder, Sides};
+use sir_geom::{Camera, Material, MaterialId, Projection, Rgb, Scene, SceneBuilder, Sides, Sky, SkyModel};
 use sir_mesh::{PatchMesh, Subdivision};
-use sir_view::{DisplayMesh, Picture, PictureSettings, default_camera, guess_up, render};
+use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, default_camera, guess_up, render};
 
 const SIZE: DVec3 = DVec3::new(4.0, 2.5, 3.0);
 
@@ -79,6 +79,35 @@ fn one_looks_through_the_backs_of_walls() {
     assert_even(&uniform(&scene, &outside, 1));
     let parallel = Camera { projection: Projection::Orthographic { height: 1.5 }, ..outside };
     assert_even(&uniform(&scene, &parallel, 1));
+}
+
+#[test]
+fn where_there_is_no_surface_one_sees_the_sky() {
+    let mut builder = SceneBuilder::new();
+    let floor = builder.add_material(Material::diffuse("floor", Rgb::splat(0.5)));
+    let corner = |x: f64, z: f64| DVec3::new(x, 0.0, z);
+    let corners = [corner(-9.0, -9.0), corner(-9.0, 9.0), corner(9.0, 9.0), corner(9.0, -9.0)];
+    shapes::quad(&mut builder, corners, floor);
+    let sky = Sky::new(DVec3::Y, SkyModel::Overcast, Rgb::new(5.0, 6.0, 9.0), Rgb::splat(0.25)).unwrap();
+    builder.set_sky(sky.clone());
+    let scene = builder.build().unwrap().scene;
+    let camera =
+        Camera::looking_at(DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, 1.0, -1.0), DVec3::Y, 1.0).unwrap();
+    let picture = uniform(&scene, &camera, 2);
+    let at = |x: usize, y: usize| (picture.radiance[160 * y + x], picture.surface[160 * y + x]);
+    // The middle of the uppermost row: half of the opening angle above the horizon, but for half a pixel.
+    let slope = (0.5f64).tan() * (1.0 - 0.5 / 60.0);
+    let expected = sky.radiance(DVec3::new(0.0, slope, -1.0).normalize());
+    let (found, surface) = at(80, 0);
+    assert_eq!(surface, 0.0);
+    assert!((Rgb::from_array(found.map(f64::from)) / expected - 1.0).abs().max_element() < 3e-3, "{found:?}");
+    // Between the edge of the floor and the horizon one sees the ground, and below the floor.
+    assert_eq!(at(80, 61), ([0.25; 3], 0.0));
+    let (floor, surface) = at(80, 119);
+    assert!((floor[0] - 0.5).abs() < 1e-5 && surface == 1.0, "{floor:?}");
+    // The exposure is that for the floor.
+    let factor = Exposure::Auto.factor_for_picture(&picture);
+    assert!((factor * 0.5 / 0.26 - 1.0).abs() < 0.05, "{factor}");
 }
 
 #[test]

@@ -69,7 +69,8 @@ impl SidesPolicy {
 ///
 /// The default scene, else the first one, else all nodes; triangles in the order of a walk through the nodes,
 /// parents before children. Base colour is the reflectance, also of metals; the emitted colour times its strength
-/// is a radiance `L`, which gives the exitance `π L`. Cameras are taken in. Buffers and images may be embedded
+/// is a radiance `L`, which gives the exitance `π L`. Cameras and punctual lights (`KHR_lights_punctual`) are taken in; the numbers of
+/// the latter, in cd and lx, are taken for W/sr and W/m², their range is ignored. Buffers and images may be embedded
 /// or lie in files in the scene's folder or below it.
 ///
 /// # OBJ
@@ -82,6 +83,19 @@ impl SidesPolicy {
 /// If the file or one that its geometry needs cannot be read, breaks its format, or holds no triangle. Missing
 /// material libraries and textures are warnings.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Built, LoadError> {
+    load_with(path, options, |_| {})
+}
+
+/// As [`load`], with more than the file has: `add` gets the builder when it holds the contents of the file.
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn load_with(
+    path: &Path,
+    options: &LoadOptions,
+    add: impl FnOnce(&mut SceneBuilder),
+) -> Result<Built, LoadError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
     match extension.as_deref() {
@@ -90,6 +104,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Built, LoadError> {
         _ => return Err(LoadError::UnknownFormat { path: path.to_owned(), extension }),
     }
     notes.warn(&mut builder);
+    add(&mut builder);
     let mut built = builder.build().map_err(|source| LoadError::Scene { path: path.to_owned(), source })?;
     notes::shorten(&mut built.warnings);
     Ok(built)

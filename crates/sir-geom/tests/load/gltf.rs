@@ -199,8 +199,8 @@ fn cameras_stand_where_their_nodes_are() {
 #[test]
 fn what_is_ignored_is_named_once() {
     let mut gltf = Gltf::triangle();
-    gltf.json["extensionsUsed"] = json!(["KHR_lights_punctual", "KHR_texture_transform", "EXT_mine"]);
-    gltf.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
+    gltf.json["extensionsUsed"] = json!(["KHR_materials_sheen", "KHR_texture_transform", "EXT_mine"]);
+    gltf.json["extensions"] = json!({"EXT_mine": {"lights": [{"type": "point"}]}});
     gltf.json["extras"] = json!(42);
     gltf.json["animations"] = json!([{"channels": [{"target": {"path": "scale"}}]}]);
     gltf.json["skins"] = json!([{}]);
@@ -211,7 +211,7 @@ fn what_is_ignored_is_named_once() {
     assert_eq!(
         warnings(&gltf.load().unwrap()),
         [
-            "2 glTF extensions have no meaning here and were ignored: KHR_lights_punctual, EXT_mine",
+            "2 glTF extensions have no meaning here and were ignored: KHR_materials_sheen, EXT_mine",
             "1 skinned meshes are read in the pose of their nodes",
             "3 mesh primitives have no material, and are made grey",
             "2 mesh primitives have morph targets, and are read in their basic shape",

@@ -5,6 +5,7 @@
 mod broken;
 mod files;
 mod gltf;
+mod gltf_lights;
 mod gltf_materials;
 mod obj;
 mod third_party;

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
-use sir_geom::{Material, Rgb, SceneBuilder, Sides};
+use sir_geom::{Light, LightKind, Material, Rgb, SceneBuilder, Sides, Sky, SkyModel, Spread};
 use sir_lines::Domain;
 use sir_mesh::{SideId, Subdivision};
 use sir_parallel::{
@@ -72,7 +72,8 @@ pub(crate) const JOBS: [Job; 9] = [
 
 impl Room {
     /// A room whose front is open, in about so many patches. With a lamp that does not shine to the back, a
-    /// solid block, and a sheet that reflects from both sides, light ends in all possible ways.
+    /// solid block, and a sheet that reflects from both sides, light ends in all possible ways. It comes from a spot, the
+    /// sun and the sky, too.
     pub(crate) fn new(patches: u64) -> Self {
         let mut b = SceneBuilder::new();
         let add = |r: f64, g: f64, blue: f64| Material::diffuse("", Rgb::new(r, g, blue));
@@ -104,6 +105,15 @@ impl Room {
         shapes::quad(&mut b, slanting, sheet);
         let (min, max) = (DVec3::new(0.2, -0.5, -0.99), DVec3::new(0.7, 0.1, -0.5));
         shapes::cuboid(&mut b, min, max, [green, white, red, white, dark, mirror], Facing::Outward);
+
+        let light = |kind| Light { name: String::new(), kind };
+        let position = DVec3::new(-0.6, -0.3, 0.2);
+        let spread = Spread::Spot { axis: DVec3::X, inner: 0.9, outer: 0.3 };
+        b.add_light(light(LightKind::Point { position, intensity: Rgb::new(1.0, 0.5, 0.2), spread }));
+        let direction = DVec3::new(2.0, 6.0, -3.0) / 7.0;
+        b.add_light(light(LightKind::Distant { direction, irradiance: Rgb::new(0.5, 0.5, 0.7) }));
+        let sun = SkyModel::General { kind: 12, sun: -direction };
+        b.set_sky(Sky::new(DVec3::Z, sun, Rgb::new(0.1, 0.2, 0.4), Rgb::splat(0.05)).unwrap());
 
         let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(patches)).unwrap();
         let shot = first_shot(&model, LINES, SEED, &mut Crew::of(NonZeroUsize::MIN), None).unwrap().outcome;

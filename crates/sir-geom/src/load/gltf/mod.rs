@@ -7,6 +7,7 @@
 mod access;
 mod camera;
 mod container;
+mod light;
 mod material;
 mod primitive;
 mod walk;
@@ -21,8 +22,12 @@ use super::{LoadError, LoadOptions};
 use crate::{MaterialId, Rgb, SceneBuilder};
 
 /// Extensions whose meaning is taken in, or does not change a diffuse scene.
-const KNOWN_EXTENSIONS: [&str; 3] =
-    ["KHR_materials_emissive_strength", "KHR_mesh_quantization", "KHR_texture_transform"];
+const KNOWN_EXTENSIONS: [&str; 4] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
 
 /// Reads a glTF file into a builder.
 pub(super) fn read(

@@ -43,6 +43,7 @@ impl Reader<'_> {
                 None => self.notes.name("cameras show nothing, and were left out", format!("\"{name}\"")),
             }
         }
+        self.light(node, to_world)?;
         if let Some(index) = node.mesh {
             if node.skin.is_some() {
                 self.notes.count("skinned meshes are read in the pose of their nodes", 1);

@@ -1,0 +1,59 @@
+//! Punctual lights (`KHR_lights_punctual`).
+
+use ::gltf::json::extensions::scene::khr_lights_punctual::{Light as Source, Type};
+use ::gltf::json::scene::Node;
+use ::gltf::json::validation::Checked;
+use glam::{DAffine3, DVec3};
+
+use super::{LoadError, Reader, lookup};
+use crate::{Light, LightKind, Rgb, Spread};
+
+impl Reader<'_> {
+    /// Adds the light of a node, if it has one.
+    pub(super) fn light(&mut self, node: &Node, to_world: &DAffine3) -> Result<(), LoadError> {
+        let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) else {
+            return Ok(());
+        };
+        let source = lookup(self.path, self.root, light.light, "a node: light")?;
+        let name = source.name.as_deref().or(node.name.as_deref()).unwrap_or_default();
+        let quoted = format!("\"{name}\"");
+        let Checked::Valid(kind) = source.type_ else {
+            self.notes.name("lights are of an unknown type, and were left out", quoted);
+            return Ok(());
+        };
+        if source.range.is_some() {
+            self.notes.name(
+                "lights have a range, which is ignored: light falls off with the square of the distance alone",
+                quoted.clone(),
+            );
+        }
+        let axis = to_world.transform_vector3(DVec3::NEG_Z).try_normalize();
+        let Some(kind) = convert(source, kind, to_world.translation, axis) else {
+            self.notes.name("lights have no direction or no cone, and were left out", quoted);
+            return Ok(());
+        };
+        if let Err((what, rule)) = kind.check() {
+            let what = format!("light {} ({quoted}) has a bad {what}: {rule}", light.light.value());
+            return Err(self.invalid(what));
+        }
+        self.builder.add_light(Light { name: name.to_owned(), kind });
+        Ok(())
+    }
+}
+
+/// A light in world space: it shines along −z. Its intensity, in cd or lx, is taken for W/sr or W/m² in every band, as emitted
+/// radiance in cd/m² is taken for W/(m² sr).
+///
+/// `None` if it needs a direction and has none, or its cone is none.
+fn convert(source: &Source, kind: Type, position: DVec3, axis: Option<DVec3>) -> Option<LightKind> {
+    let strength = Rgb::from_array(source.color.map(f64::from)) * f64::from(source.intensity);
+    let spread = match kind {
+        Type::Directional => return Some(LightKind::Distant { direction: axis?, irradiance: strength }),
+        Type::Point => Spread::Isotropic,
+        Type::Spot => {
+            let spot = source.spot.as_ref()?;
+            Spread::spot(axis?, f64::from(spot.inner_cone_angle), f64::from(spot.outer_cone_angle))?
+        }
+    };
+    Some(LightKind::Point { position, intensity: strength, spread })
+}
