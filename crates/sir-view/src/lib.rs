@@ -75,6 +75,7 @@ pub use exr::write_exr;
 pub use glb::write_glb;
 pub use picture::{Picture, PictureSettings, render};
 pub use png::write_png;
+pub use sir_geom::luminance;
 pub use table::{BandComparison, COLUMNS, Comparison, Row, Table, WorstRow, compare};
-pub use tone::{Exposure, luminance, srgb, tone_map};
+pub use tone::{Exposure, srgb, tone_map};
 pub use viewpoint::{default_camera, guess_up};
