@@ -40,7 +40,8 @@ mod tests {
     /// Means of a smooth and of a broken function: right on average, with much smaller errors than by independent points.
     #[test]
     fn means_are_right_and_converge_fast() {
-        let functions: [(fn([f64; 2]) -> f64, f64, f64); 2] =
+        type Function = fn([f64; 2]) -> f64;
+        let functions: [(Function, f64, f64); 2] =
             [(|[x, y]| x * y, 0.25, 7.0 / 144.0), (|[x, y]| f64::from(u8::from(x + y < 0.7)), 0.245, 0.185)];
         let streams = Streams::new(3, Stage::SENSORS);
         let (repeats, n) = (400, 1000);
