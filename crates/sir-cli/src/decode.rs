@@ -12,7 +12,7 @@ use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
 use crate::units::Units;
 
-const STAGES: [&str; 6] = ["Load", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Save"];
+const STAGES: [&str; 7] = ["Load", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Sensors", "Save"];
 
 /// Most replicas: a table of them must fit into memory.
 const MOST_REPLICAS: u64 = 1_000_000;
@@ -42,7 +42,7 @@ pub(crate) fn decode(text: &str, path: &Path) -> Result<Pipeline, Diagnostics> {
 pub(crate) struct Decoder<'a> {
     pub(crate) reader: Reader<'a>,
     /// The folder to which input paths are relative.
-    folder: &'a Path,
+    pub(crate) folder: &'a Path,
     /// The output paths so far, in lower case for file systems that do not tell cases apart.
     pub(crate) outputs: Vec<(PathBuf, &'a str)>,
 }
@@ -131,6 +131,7 @@ impl<'a> Decoder<'a> {
             "FirstShot" => self.local_lines(node, name).map(|lines| Action::FirstShot { lines }),
             "SecondShot" => self.local_lines(node, name).map(|lines| Action::SecondShot { lines }),
             "Multipath" => self.multipath(node),
+            "Sensors" => self.sensors(node),
             _ => self.save(node),
         }
     }

@@ -52,6 +52,7 @@ mod ron_tree;
 pub mod run;
 mod save;
 pub mod scaling;
+pub mod sensors;
 pub mod summary;
 pub mod units;
 

@@ -10,6 +10,7 @@ use sir_view::Exposure;
 
 use crate::decode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::sensors::Sensors;
 use crate::units::Units;
 
 /// A valid pipeline: its stages are in a possible order, its numbers are in range and its inputs exist.
@@ -67,6 +68,8 @@ pub enum Action {
         /// What they are drawn through.
         body: Body,
     },
+    /// Measures irradiance at points.
+    Sensors(Sensors),
     /// Writes files.
     Save(Vec<Output>),
 }
@@ -121,6 +124,7 @@ impl Action {
             Self::FirstShot { .. } => "FirstShot",
             Self::SecondShot { .. } => "SecondShot",
             Self::Multipath { .. } => "Multipath",
+            Self::Sensors(_) => "Sensors",
             Self::Save(_) => "Save",
         }
     }

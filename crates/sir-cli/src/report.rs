@@ -10,6 +10,7 @@ use sir_geom::Rgb;
 use sir_lines::Domain;
 use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Received, Solution};
 
+use crate::sensors::SensorsReport;
 use crate::units::Units;
 
 /// Version of the layout of `result.json`.
@@ -78,6 +79,9 @@ pub struct StageReport {
     /// What its lines did, if it has any.
     #[serde(default, flatten, skip_serializing_if = "Option::is_none")]
     pub lines: Option<LinesReport>,
+    /// What its sensors have measured, if it has any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensors: Option<SensorsReport>,
     /// How long it took.
     pub time: Time,
 }
@@ -139,7 +143,7 @@ pub struct BalanceReport {
 pub struct OutputReport {
     /// Its path in the run directory.
     pub path: String,
-    /// `image`, `gltf` or `table`.
+    /// `image`, `gltf`, `table`, `sensors` (a table of them) or `map` (of sensors, in false colours).
     pub kind: String,
     /// Its size.
     pub bytes: u64,

@@ -26,6 +26,7 @@ use crate::report::{
 };
 use crate::resume::{self, CHECKPOINT, Head};
 use crate::save::save;
+use crate::sensors::{self, SensorsReport};
 
 /// How to run a pipeline. None of this changes the result, but for the seed.
 #[derive(Clone, Debug)]
@@ -226,7 +227,7 @@ impl Run<'_> {
             let name = stage.action.name();
             let watch = Stopwatch::start();
             let mut time = None;
-            let mut lines_report = None;
+            let (mut lines_report, mut sensors_report) = (None, None);
             let mut crew = Crew::of(threads);
             crew.comm = self.comm;
             if let Action::FirstShot { lines }
@@ -307,6 +308,35 @@ impl Run<'_> {
                     time = Some(stage_time(stage_times, lines));
                     solution = Some(done.solution);
                 }
+                Action::Sensors(sensors) => {
+                    let (Some(solution), Some(layout)) = (&solution, self.prepared.layouts.get(&number))
+                    else {
+                        continue;
+                    };
+                    let total = sensors.settings.rays * layout.sensors.len() as u64;
+                    crew.observer = Box::new(self.progress.stage(name, total, &self.options.stop));
+                    // Each stage has its own random numbers.
+                    let done = sir_parallel::measure(
+                        model,
+                        solution,
+                        &layout.sensors,
+                        sensors.settings,
+                        seed.wrapping_add((number as u64) << 48),
+                        &mut crew,
+                    );
+                    let done = agree(self.comm, done.map_err(|error| self.interrupted_measuring(error)))?;
+                    drop(crew);
+                    let report = SensorsReport::new(&sensors.name, &done.outcome);
+                    time = Some(stage_time(done.time, report.rays));
+                    sensors_report = Some(report);
+                    let written = if self.comm.is_first() {
+                        let units = self.pipeline.units;
+                        sensors::write(sensors, layout, &done.outcome, units, &self.directory)
+                    } else {
+                        Ok(Vec::new())
+                    };
+                    self.head.report.outputs.extend(agree(self.comm, written)?);
+                }
                 Action::Save(outputs) => {
                     drop(crew);
                     let saved = match &solution {
@@ -317,9 +347,22 @@ impl Run<'_> {
                 }
             }
             let time = time.unwrap_or_else(|| Time::of(watch.seconds()));
-            self.head.report.stages.push(StageReport { name: name.into(), lines: lines_report, time });
+            self.head.report.stages.push(StageReport {
+                name: name.into(),
+                lines: lines_report,
+                sensors: sensors_report,
+                time,
+            });
         }
         Ok(())
+    }
+
+    /// Sensors have no checkpoint of their own.
+    fn interrupted_measuring(&self, error: RunError) -> Error {
+        match error {
+            RunError::Interrupted { .. } => Error::InterruptedMeasuring { directory: self.directory.clone() },
+            other => other.into(),
+        }
     }
 
     /// Writes the outputs of a stage, unless the run is to be stopped.

@@ -40,7 +40,7 @@ fn stage(name: &str, tracing: f64, sequential: f64, communication: f64) -> Stage
         communication: Some(communication),
         peak_memory: None,
     };
-    StageReport { name: name.into(), lines: Some(lines), time }
+    StageReport { name: name.into(), lines: Some(lines), sensors: None, time }
 }
 
 /// A run that obeys Amdahl's law: 20 s of lines, which the workers share, and 2 s of everything else; ranks
@@ -49,10 +49,10 @@ fn report(workers: Workers) -> Report {
     let p = workers.count() as f64;
     let talk = 0.25 * (workers.ranks.get() - 1) as f64;
     let stages = vec![
-        StageReport { name: "Load".into(), lines: None, time: Time::of(0.5) },
+        StageReport { name: "Load".into(), lines: None, sensors: None, time: Time::of(0.5) },
         stage("FirstShot", 8.0 / p, 0.5, talk),
         stage("Multipath", 12.0 / p, 0.5, talk),
-        StageReport { name: "Save".into(), lines: None, time: Time::of(0.5) },
+        StageReport { name: "Save".into(), lines: None, sensors: None, time: Time::of(0.5) },
     ];
     let scene = SceneReport {
         path: "room.obj".into(),

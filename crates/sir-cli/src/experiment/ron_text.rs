@@ -39,6 +39,8 @@ fn action(action: &Action) -> Option<String> {
             };
             format!("Multipath(lines: {lines}, transport: {transport}, domain: {body:?})")
         }
+        // The experiment measures patches.
+        Action::Sensors(_) => return None,
         Action::Save(outputs) => {
             let outputs: Vec<String> = outputs.iter().map(output).collect();
             format!("Save([{}])", outputs.join(", "))

@@ -56,7 +56,8 @@ impl Grid {
         let (columns, rows) = (counts.x as usize, counts.y as usize);
         let (mut sensors, mut of) = (Vec::new(), Vec::new());
         for cell in 0..columns * rows {
-            let [x, y] = [(cell % columns, counts.x), (cell / columns, counts.y)].map(|(i, n)| (i as f64 + 0.5) / n);
+            let [x, y] =
+                [(cell % columns, counts.x), (cell / columns, counts.y)].map(|(i, n)| (i as f64 + 0.5) / n);
             let Some(sensor) = Sensor::new(corner + x * along + y * across, direction) else { continue };
             if wanted(&sensor) {
                 sensors.push(sensor);
@@ -74,7 +75,8 @@ impl Plane {
         let guide = if up.x.abs() < 0.9 { DVec3::X } else { DVec3::Y };
         let along = guide.reject_from_normalized(up).normalize();
         let across = up.cross(along);
-        let [[left, right], [bottom, top], [lowest, _]] = [along, across, up].map(|axis| extent(&model.scene, axis));
+        let [[left, right], [bottom, top], [lowest, _]] =
+            [along, across, up].map(|axis| extent(&model.scene, axis));
         let size = DVec2::new(right - left, top - bottom) - 2.0 * self.border;
         if size.min_element() <= 0.0 {
             let message = format!(
@@ -85,13 +87,15 @@ impl Plane {
             );
             return Err((message, "choose a smaller `border`".into()));
         }
-        let corner = (left + self.border) * along + (bottom + self.border) * across + (lowest + self.height) * up;
+        let corner =
+            (left + self.border) * along + (bottom + self.border) * across + (lowest + self.height) * up;
         let (along, across) = (size.x * along, size.y * across);
         let grid = Grid { corner, along, across, spacing: self.spacing, direction: up };
         let mut tracer = model.accel.tracer();
         let layout = grid.layout(&mut |sensor| is_inside(sensor, model, &mut tracer))?;
         if layout.sensors.is_empty() {
-            let message = format!("no point of the plane at the height {} m lies inside the room", self.height);
+            let message =
+                format!("no point of the plane at the height {} m lies inside the room", self.height);
             let help = "choose another `height`, above the lowest point of the scene, or `up`; where backs of surfaces are \
                         seen is outside";
             return Err((message, help.into()));
@@ -162,14 +166,17 @@ mod tests {
         assert_eq!(count(Plane { height: 1.0, ..plane }), Ok(800));
         // Half a metre from the outline: 3 by 2 m without 2 by 1.5 m, and without the table.
         assert_eq!(count(Plane { border: 0.5, ..plane }), Ok(200));
-        for bad in [Plane { height: 2.5, ..plane }, Plane { border: 1.5, ..plane }, Plane { spacing: 1e-3, ..plane }] {
+        for bad in
+            [Plane { height: 2.5, ..plane }, Plane { border: 1.5, ..plane }, Plane { spacing: 1e-3, ..plane }]
+        {
             assert!(count(bad).is_err(), "{bad:?}");
         }
     }
 
     #[test]
     fn cells_are_numbered_from_the_lower_left_as_seen_from_above() {
-        let layout = Plane { height: 1.0, spacing: 1.0, border: 0.0, up: None }.layout(&room(), DVec3::Y).unwrap();
+        let layout =
+            Plane { height: 1.0, spacing: 1.0, border: 0.0, up: None }.layout(&room(), DVec3::Y).unwrap();
         let cells = layout.cells.unwrap();
         assert_eq!((cells.columns, cells.rows, cells.size), (4, 3, DVec2::new(4.0, 3.0)));
         // −z is at the top.

@@ -2,7 +2,6 @@
 
 mod decode;
 mod layout;
-mod map;
 mod points_file;
 mod write;
 
@@ -13,6 +12,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use sir_radiosity::{Measurement, Sensor, SensorSettings};
 
+use crate::units::Units;
 pub use layout::{Cells, Layout};
 pub(crate) use write::write;
 
@@ -113,6 +113,29 @@ impl SensorsReport {
             uniformity: if mean > 0.0 { minimum / mean } else { 0.0 },
         }
     }
+
+    /// The numbers in a line.
+    pub(crate) fn in_short(&self, units: Units) -> String {
+        let Self { mean, mean_error, minimum, maximum, uniformity, .. } = *self;
+        let decimals = decimals(mean_error);
+        format!(
+            "mean {mean:.decimals$} ± {mean_error:.decimals$} {}, minimum {}, maximum {}, U0 = {uniformity:.2}",
+            units.irradiance(),
+            significant(minimum),
+            significant(maximum),
+        )
+    }
+}
+
+/// Decimals that show two digits of an error.
+fn decimals(error: f64) -> usize {
+    if error > 0.0 { (1.0 - error.log10().floor()).clamp(0.0, 9.0) as usize } else { 3 }
+}
+
+/// A number with four digits.
+fn significant(x: f64) -> String {
+    let before = if x == 0.0 { 0.0 } else { x.abs().log10().floor() };
+    format!("{x:.0$}", (3.0 - before).clamp(0.0, 9.0) as usize)
 }
 
 #[cfg(test)]

@@ -5,10 +5,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use sir_radiosity::{Measurement, Sensor};
-use sir_view::{ViewError, write_atomically};
+use sir_view::{Map, ViewError, write_atomically, write_map};
 
-use super::map::write_map;
-use super::{Layout, Sensors, SensorsReport};
+use super::{Cells, Layout, Sensors, SensorsReport};
 use crate::Error;
 use crate::report::OutputReport;
 use crate::units::Units;
@@ -32,11 +31,11 @@ pub(crate) fn write(
         Ok(path)
     };
     let table = place(&sensors.table)?;
-    write_atomically(&table, |file| write_table(&mut io::BufWriter::new(file), &layout.sensors, measured))?;
+    write_atomically(&table, |file| write_table(file, &layout.sensors, measured))?;
     let mut written = vec![output(directory, &sensors.table, "sensors")?];
     if let (Some(map), Some(cells)) = (&sensors.map, &layout.cells) {
         let report = SensorsReport::new(&sensors.name, measured);
-        write_map(&place(map)?, cells, measured, &report, units)?;
+        write_map(&place(map)?, &map_of(cells, measured, &report, units))?;
         written.push(output(directory, map, "map")?);
     }
     Ok(written)
@@ -58,5 +57,21 @@ fn write_table(out: &mut impl Write, sensors: &[Sensor], measured: &[Measurement
             places.into_iter().flatten().chain(light).chain(errors).map(|x| format!("{x:?}")).collect();
         writeln!(out, "{}", numbers.join(","))?;
     }
-    out.flush()
+    Ok(())
+}
+
+fn map_of(cells: &Cells, measured: &[Measurement], report: &SensorsReport, units: Units) -> Map {
+    let mut values = vec![None; cells.columns * cells.rows];
+    for (&cell, measurement) in cells.of.iter().zip(measured) {
+        values[cell] = Some(measurement.luminance());
+    }
+    let SensorsReport { name, .. } = report;
+    Map {
+        title: format!("{name}: {}", units.irradiance_name()),
+        subtitle: report.in_short(units),
+        unit: units.irradiance().into(),
+        columns: cells.columns,
+        size: cells.size.to_array(),
+        values,
+    }
 }
