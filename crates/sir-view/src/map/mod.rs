@@ -35,7 +35,7 @@ const LARGEST: [f64; 2] = [960.0, 720.0];
 /// What they have at least, however narrow a grid is.
 const LEAST: f64 = 40.0;
 /// Room on the left, above, on the right and below.
-const MARGIN: [u32; 4] = [64, 84, 140, 60];
+const MARGIN: [u32; 4] = [64, 104, 140, 60];
 /// Width of a whole picture, for its title, at least.
 const WIDTH: u32 = 620;
 const SCALE: u32 = 22;
@@ -94,7 +94,7 @@ fn draw(map: &Map) -> Result<Canvas, ab_glyph::InvalidFont> {
         canvas.fill(bar + SCALE..bar + SCALE + 6, y as u32..y as u32 + 1, canvas::INK);
         canvas.write(&number(value, step), ((bar + SCALE + 11) as f32, y), Anchor::Start, TEXT);
     }
-    canvas.write(&map.unit, (bar as f32, above as f32 - 16.0), Anchor::Start, TEXT);
+    canvas.write(&map.unit, (bar as f32, above as f32 - 18.0), Anchor::Start, TEXT);
     Ok(canvas)
 }
 
