@@ -164,8 +164,8 @@ mod tests {
         assert_eq!(count(plane), Ok(700));
         assert_eq!(count(Plane { height: 0.7, ..plane }), Ok(800));
         assert_eq!(count(Plane { height: 1.0, ..plane }), Ok(800));
-        // Half a metre from the outline: 3 by 2 m without 2 by 1.5 m, and without the table.
-        assert_eq!(count(Plane { border: 0.5, ..plane }), Ok(200));
+        // Half a metre from the outline: 1.5 by 2 m and 1.5 by 0.5 m, without the table.
+        assert_eq!(count(Plane { border: 0.5, ..plane }), Ok(275));
         for bad in
             [Plane { height: 2.5, ..plane }, Plane { border: 1.5, ..plane }, Plane { spacing: 1e-3, ..plane }]
         {
