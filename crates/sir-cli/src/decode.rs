@@ -12,8 +12,8 @@ use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
 use crate::units::Units;
 
-const STAGES: [&str; 8] =
-    ["Load", "Light", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Repeat", "Save"];
+const STAGES: [&str; 9] =
+    ["Load", "Light", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Repeat", "Sensors", "Save"];
 
 /// Most replicas: a table of them must fit into memory.
 const MOST_REPLICAS: u64 = 1_000_000;
@@ -43,7 +43,7 @@ pub(crate) fn decode(text: &str, path: &Path) -> Result<Pipeline, Diagnostics> {
 pub(crate) struct Decoder<'a> {
     pub(crate) reader: Reader<'a>,
     /// The folder to which input paths are relative.
-    folder: &'a Path,
+    pub(crate) folder: &'a Path,
     /// The output paths so far, in lower case for file systems that do not tell cases apart.
     pub(crate) outputs: Vec<(PathBuf, &'a str)>,
 }
@@ -145,6 +145,7 @@ impl<'a> Decoder<'a> {
             "SecondShot" => self.local_lines(node, name).map(|lines| Action::SecondShot { lines }),
             "Multipath" => self.multipath(node),
             "Repeat" => self.repeat(node).map(Action::Repeat),
+            "Sensors" => self.sensors(node),
             _ => self.save(node),
         }
     }

@@ -59,7 +59,18 @@ impl<'a> Decoder<'a> {
     fn output_path(&mut self, node: &Node<'a>, extensions: &[&str]) -> Option<PathBuf> {
         let example = format!("\"result.{}\"", extensions[0]);
         let text = self.reader.text(node, "path", &example)?;
-        let given = Path::new(&text);
+        if !extensions.contains(&extension(Path::new(&text)).as_str()) {
+            let known: Vec<String> = extensions.iter().map(|e| format!(".{e}")).collect();
+            let message = format!("the name of the output \"{text}\" does not end in {}", known.join(" or "));
+            self.reader.problem(node.text, message, format!("write for instance `path: {example}`"));
+            return None;
+        }
+        self.claim(node, &text)
+    }
+
+    /// Takes a path inside the run directory, which `node` asks for and nothing else may.
+    pub(crate) fn claim(&mut self, node: &Node<'a>, text: &str) -> Option<PathBuf> {
+        let given = Path::new(text);
         if !given.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir))
             || text.contains('\\')
         {
@@ -72,12 +83,6 @@ impl<'a> Decoder<'a> {
             return None;
         }
         let path: PathBuf = given.components().filter(|c| matches!(c, Component::Normal(_))).collect();
-        if !extensions.contains(&extension(&path).as_str()) {
-            let known: Vec<String> = extensions.iter().map(|e| format!(".{e}")).collect();
-            let message = format!("the name of the output \"{text}\" does not end in {}", known.join(" or "));
-            self.reader.problem(node.text, message, format!("write for instance `path: {example}`"));
-            return None;
-        }
         let key = PathBuf::from(path.to_string_lossy().to_lowercase());
         let clash =
             self.outputs.iter().find(|(p, _)| p.starts_with(&key) || key.starts_with(p)).map(|(_, t)| *t);

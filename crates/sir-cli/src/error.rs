@@ -80,6 +80,12 @@ pub enum Error {
         /// The run directory.
         directory: PathBuf,
     },
+    /// The run was stopped while it measured at sensors, and can go on.
+    #[error("interrupted at the sensors; `sir resume {}` goes on from the last checkpoint", directory.display())]
+    InterruptedMeasuring {
+        /// The run directory.
+        directory: PathBuf,
+    },
     /// A run cannot go on.
     #[error("the run in {} cannot be resumed: {why}", directory.display())]
     CannotResume {
@@ -151,7 +157,9 @@ impl Error {
             Self::Pipeline(_) | Self::ReadPipeline { .. } | Self::NotText { .. } => 2,
             Self::Exists { .. } | Self::ExistsInterrupted { .. } => 2,
             Self::CannotResume { .. } => 2,
-            Self::Interrupted { .. } | Self::InterruptedSaving { .. } => 130,
+            Self::Interrupted { .. } | Self::InterruptedSaving { .. } | Self::InterruptedMeasuring { .. } => {
+                130
+            }
             Self::Run(RunError::Interrupted { .. }) => 130,
             Self::Elsewhere { code, .. } => *code,
             Self::Scaling(error) => error.exit_code(),

@@ -4,7 +4,8 @@ use sha2::{Digest, Sha256};
 use sir_geom::Sides;
 use sir_radiosity::Model;
 
-use crate::pipeline::Pipeline;
+use crate::pipeline::{Action, Pipeline};
+use crate::sensors::{Place, Sensors};
 
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("sir ", env!("CARGO_PKG_VERSION"));
@@ -19,6 +20,14 @@ pub(crate) fn of_run(pipeline: &Pipeline, seed: u64, model: &Model) -> Fingerpri
     hash.update(seed.to_le_bytes());
     hash.update((pipeline.text.len() as u64).to_le_bytes());
     hash.update(&pipeline.text);
+    // The text only names files of points.
+    for stage in &pipeline.stages {
+        if let Action::Sensors(Sensors { at: Place::Points(sensors), .. }) = &stage.action {
+            let numbers =
+                sensors.iter().flat_map(|s| [s.position(), s.direction()]).flat_map(|v| v.to_array());
+            numbers.for_each(|x| hash.update(x.to_bits().to_le_bytes()));
+        }
+    }
     hash.update(of_scene(model));
     hash.finalize().into()
 }

@@ -57,6 +57,7 @@ mod ron_tree;
 pub mod run;
 mod save;
 pub mod scaling;
+pub mod sensors;
 mod stages;
 pub mod summary;
 pub mod units;

@@ -15,7 +15,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
     let (mut scene, mut first_shot, mut multipath) = (false, false, false);
     let repeat = stages.iter().find(|(name, _)| *name == "Repeat");
     for (i, &(name, place)) in stages.iter().enumerate() {
-        if name != "Save"
+        if !["Save", "Sensors"].contains(&name)
             && let Some((_, first)) = stages[..i].iter().find(|(n, _)| *n == name)
         {
             let line = reader.line(first);
@@ -61,9 +61,9 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
                 "`SecondShot` after `Multipath`: all light has been distributed",
                 "move `SecondShot` to before `Multipath`",
             ),
-            "SecondShot" | "Multipath" | "Save" if !first_shot => {
+            "SecondShot" | "Multipath" | "Save" | "Sensors" if !first_shot => {
                 let why = match name {
-                    "Save" => "there is no result yet",
+                    "Save" | "Sensors" => "there is no result yet",
                     _ => "there is no light to distribute yet",
                 };
                 let help = format!("put `FirstShot(lines: 1_000_000)` before `{name}`");

@@ -11,6 +11,7 @@ use sir_view::Exposure;
 use crate::decode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::lights::Lamp;
+use crate::sensors::Sensors;
 use crate::units::Units;
 
 /// A valid pipeline: its stages are in a possible order, its numbers are in range and its inputs exist.
@@ -77,6 +78,8 @@ pub enum Action {
     },
     /// Runs stages of lines again and again, for the mean of independent results.
     Repeat(Repeat),
+    /// Measures irradiance at points.
+    Sensors(Sensors),
     /// Writes files.
     Save(Vec<Output>),
 }
@@ -155,6 +158,7 @@ impl Action {
             Self::SecondShot { .. } => "SecondShot",
             Self::Multipath { .. } => "Multipath",
             Self::Repeat(_) => "Repeat",
+            Self::Sensors(_) => "Sensors",
             Self::Save(_) => "Save",
         }
     }
@@ -165,7 +169,11 @@ impl Action {
         match self {
             Self::FirstShot { lines } | Self::SecondShot { lines } | Self::Multipath { lines, .. } => *lines,
             Self::Repeat(repeat) => repeat.stages.iter().map(|stage| stage.action.lines()).sum(),
-            Self::Load { .. } | Self::Light { .. } | Self::Subdivide(_) | Self::Save(_) => 0,
+            Self::Load { .. }
+            | Self::Light { .. }
+            | Self::Subdivide(_)
+            | Self::Sensors(_)
+            | Self::Save(_) => 0,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Everything that must work before the first line is traced.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::DVec3;
@@ -15,6 +16,7 @@ use crate::lights::Lamp;
 use crate::pipeline::{Action, CameraChoice, Content, Pipeline};
 use crate::progress::Progress;
 use crate::report::Stopwatch;
+use crate::sensors::Layout;
 
 /// A pipeline's scene, ready for lines.
 #[derive(Clone, Debug)]
@@ -27,6 +29,8 @@ pub struct Prepared {
     pub warnings: Vec<String>,
     /// The light sources: at least one.
     pub sources: Vec<Source>,
+    /// Where the sensors of each stage `Sensors` are, by the number of the stage.
+    pub layouts: BTreeMap<usize, Layout>,
     /// Seconds to read the scene.
     pub load_seconds: f64,
     /// Seconds to make patches and the acceleration structure.
@@ -37,8 +41,8 @@ pub struct Prepared {
 ///
 /// # Errors
 ///
-/// If the scene cannot be read, emits no light, has none of the cameras that pictures ask for, or cannot be
-/// cut as the pipeline says; the latter two are shown with their place in the pipeline.
+/// If the scene cannot be read, emits no light, has none of the cameras that pictures ask for, has no room for sensors, or cannot be
+/// cut as the pipeline says; the latter three are shown with their place in the pipeline.
 pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Error> {
     let mut options = LoadOptions::default();
     let mut all_lamps: &[Lamp] = &[];
@@ -70,13 +74,31 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
         Ok(model) if problems.is_empty() => {
             let build_seconds = watch.seconds();
             let up = up(pipeline.scene_path(), &model.scene);
-            Ok(Prepared { model, up, warnings, sources, load_seconds, build_seconds })
+            let layouts = layouts(pipeline, &model, up).map_err(|problems| pipeline.diagnostics(problems))?;
+            Ok(Prepared { model, up, warnings, sources, layouts, load_seconds, build_seconds })
         }
         outcome => {
             problems.extend(outcome.err().map(|error| mesh_problem(error, span)));
             Err(pipeline.diagnostics(problems).into())
         }
     }
+}
+
+/// Where all sensors are, or why they cannot be where they should.
+fn layouts(
+    pipeline: &Pipeline,
+    model: &Model,
+    up: DVec3,
+) -> Result<BTreeMap<usize, Layout>, Vec<Diagnostic>> {
+    let (mut layouts, mut problems) = (BTreeMap::new(), Vec::new());
+    for (number, stage) in pipeline.stages.iter().enumerate() {
+        let Action::Sensors(sensors) = &stage.action else { continue };
+        match Layout::new(&sensors.at, model, up) {
+            Ok(layout) => drop(layouts.insert(number, layout)),
+            Err((message, help)) => problems.push(Diagnostic { span: sensors.span.clone(), message, help }),
+        }
+    }
+    if problems.is_empty() { Ok(layouts) } else { Err(problems) }
 }
 
 fn up(path: &Path, scene: &Scene) -> DVec3 {

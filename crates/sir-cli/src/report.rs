@@ -11,6 +11,7 @@ use sir_lines::Domain;
 use sir_parallel::StageTime;
 use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Solution};
 
+use crate::sensors::SensorsReport;
 use crate::units::Units;
 
 /// Version of the layout of `result.json`.
@@ -89,6 +90,9 @@ pub struct StageReport {
     /// The stages of a `Repeat`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<Self>,
+    /// What its sensors have measured, if it has any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensors: Option<SensorsReport>,
     /// How long it took.
     pub time: Time,
 }
@@ -176,7 +180,7 @@ pub struct BalanceReport {
 pub struct OutputReport {
     /// Its path in the run directory.
     pub path: String,
-    /// `image`, `gltf` or `table`.
+    /// `image`, `gltf`, `table`, `sensors` (a table of them) or `map` (of sensors, in false colours).
     pub kind: String,
     /// Its size.
     pub bytes: u64,
@@ -215,7 +219,15 @@ impl StageReport {
     /// A stage that took so long, of which there is nothing else to say.
     #[must_use]
     pub fn of(name: &str, time: Time) -> Self {
-        Self { name: name.into(), lines: None, light: None, repeats: None, stages: Vec::new(), time }
+        Self {
+            name: name.into(),
+            lines: None,
+            light: None,
+            repeats: None,
+            stages: Vec::new(),
+            sensors: None,
+            time,
+        }
     }
 }
 

@@ -100,7 +100,12 @@ pub(crate) fn check_fingerprint(directory: &Path, head: &Head, now: Fingerprint)
         return Ok(());
     }
     let scene = &head.report.scene.path;
-    Err(refuse(directory, format!("the scene {scene} has changed; put it back, or begin anew")))
+    Err(refuse(
+        directory,
+        format!(
+            "the scene {scene} has changed; put it back, or begin anew (a file of points counts as part of it)"
+        ),
+    ))
 }
 
 /// Removes what was half written when the run was killed.

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering::Relaxed;
 
-use sir_parallel::{Checkpoints, Crew, Saved, cores};
+use sir_parallel::{Checkpoints, Crew, RunError, Saved, cores};
 use sir_radiosity::Solution;
 
 use crate::Error;
@@ -12,6 +12,7 @@ use crate::ranks::agree;
 use crate::report::{ErrorsFrom, ErrorsReport, LinesReport, OutputReport, StageReport, Stopwatch, Time};
 use crate::run::Run;
 use crate::save::save;
+use crate::sensors::{self, Sensors, SensorsReport};
 
 impl Run<'_> {
     /// Runs all stages, or those from the one that `saved` is of.
@@ -29,6 +30,10 @@ impl Run<'_> {
                 Action::Load { .. } => StageReport::of(name, Time::of(prepared.load_seconds)),
                 Action::Light { .. } => StageReport::of(name, Time::of(0.0)),
                 Action::Subdivide(_) => StageReport::of(name, Time::of(prepared.build_seconds)),
+                Action::Sensors(sensors) => match &solution {
+                    Some(solution) => self.measure(number, sensors, solution)?,
+                    None => StageReport::of(name, Time::of(0.0)),
+                },
                 Action::Save(outputs) => {
                     self.save(solution.as_ref(), outputs)?;
                     StageReport::of(name, Time::of(watch.seconds()))
@@ -93,10 +98,57 @@ impl Run<'_> {
     where
         Self: 'c,
     {
-        let mut crew = Crew::of(self.options.threads.unwrap_or_else(cores));
-        crew.comm = self.comm;
+        let mut crew = self.workers();
         crew.checkpoints = Some(checkpoints);
         crew
+    }
+
+    /// The workers of this run.
+    fn workers<'c>(&self) -> Crew<'c>
+    where
+        Self: 'c,
+    {
+        let mut crew = Crew::of(self.options.threads.unwrap_or_else(cores));
+        crew.comm = self.comm;
+        crew
+    }
+
+    /// Measures at sensors, and writes what they have measured.
+    fn measure(
+        &mut self,
+        number: usize,
+        sensors: &Sensors,
+        solution: &Solution,
+    ) -> Result<StageReport, Error> {
+        let mut report = StageReport::of("Sensors", Time::of(0.0));
+        let Some(layout) = self.prepared.layouts.get(&number) else { return Ok(report) };
+        let mut crew = self.workers();
+        let total = sensors.settings.rays * layout.sensors.len() as u64;
+        crew.observer = Box::new(self.progress.stage("Sensors", total, &self.options.stop));
+        // Each stage has its own random numbers.
+        let seed = self.head.report.seed.wrapping_add((number as u64) << 48);
+        let model = &self.prepared.model;
+        let done = sir_parallel::measure(model, solution, &layout.sensors, sensors.settings, seed, &mut crew);
+        drop(crew);
+        let done = agree(self.comm, done.map_err(|error| self.interrupted_measuring(error)))?;
+        let measured = SensorsReport::new(&sensors.name, &done.outcome);
+        report.time = Time::of_lines(done.time, measured.rays);
+        report.sensors = Some(measured);
+        let written = if self.comm.is_first() {
+            sensors::write(sensors, layout, &done.outcome, self.pipeline.units, &self.directory)
+        } else {
+            Ok(Vec::new())
+        };
+        self.head.report.outputs.extend(agree(self.comm, written)?);
+        Ok(report)
+    }
+
+    /// Sensors have no checkpoint of their own.
+    fn interrupted_measuring(&self, error: RunError) -> Error {
+        match error {
+            RunError::Interrupted { .. } => Error::InterruptedMeasuring { directory: self.directory.clone() },
+            other => other.into(),
+        }
     }
 
     /// Writes the outputs of a `Save`: the first rank, if there is any light.

@@ -11,7 +11,7 @@ use crate::units::Units;
 #[must_use]
 pub fn summary(result: &RunResult) -> String {
     let RunResult { directory, report } = result;
-    let mut files: Vec<&str> = ["image", "gltf", "table"]
+    let mut files: Vec<&str> = ["image", "map", "gltf", "table", "sensors"]
         .iter()
         .flat_map(|kind| report.outputs.iter().filter(move |o| o.kind == *kind).map(|o| o.path.as_str()))
         .collect();
@@ -52,6 +52,11 @@ pub fn summary(result: &RunResult) -> String {
             text += &balance(lines, report.units);
         }
     }
+    let sensors = report.stages.iter().filter_map(|stage| stage.sensors.as_ref());
+    text.extend(sensors.map(|sensors| {
+        let points = grouped(sensors.points as u64);
+        format!("{}: {points} points, {}\n", sensors.name, sensors.in_short(report.units))
+    }));
     text + &error(report)
 }
 

@@ -159,7 +159,7 @@ fn unknown_names_and_fields() {
     x.ron:6:1: error: unknown stage `Render`
     6 | Render,
       | ^^^^^^
-      = help: stages are `Load`, `Light`, `Subdivide`, `FirstShot`, `SecondShot`, `Multipath`, `Repeat` and `Save`
+      = help: stages are `Load`, `Light`, `Subdivide`, `FirstShot`, `SecondShot`, `Multipath`, `Repeat`, `Sensors` and `Save`
 
     x.ron:7:7: error: unknown output `Picture`
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),

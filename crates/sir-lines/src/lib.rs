@@ -11,6 +11,7 @@
 //!   [`Forecast`] of the number of crossings.
 //! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does; [`unit_vector`] and
 //!   [`spot_direction`] leave a point. [`ParallelLines`] come from one direction.
+//! * [`EvenPoints`] are random, but not independent: for integrals over few lines, each of which has to count.
 //! * [`Allocation`] shares a number of lines among sources in proportion to their power.
 //!
 //! # Example
@@ -39,6 +40,7 @@
 mod alias;
 mod allocation;
 mod domain;
+mod even;
 mod facets;
 mod forecast;
 mod local;
@@ -48,8 +50,12 @@ mod turn;
 
 pub use allocation::Allocation;
 pub use domain::Domain;
+pub use even::EvenPoints;
 pub use facets::Facets;
 pub use forecast::Forecast;
-pub use local::{cosine_direction, point_on_triangle, spot_direction, unit_vector};
+pub use local::{
+    cosine_direction, cosine_direction_of, point_on_triangle, point_on_triangle_of, spot_direction,
+    unit_vector,
+};
 pub use parallel::ParallelLines;
 pub use stream::{Stage, Stream, Streams, seed_of_repeat};

@@ -17,7 +17,7 @@
 //! * Four times a second all ranks agree on how many lines to trace next, whether to save, and whether to stop. This
 //!   changes nothing in the result.
 //!
-//! [`first_shot`], [`batches`] and [`multipath`] run the stages of the solver. In multipath what a line carries depends on the
+//! [`first_shot`], [`batches`] and [`multipath`] run the stages of the solver, [`measure`] its sensors. In multipath what a line carries depends on the
 //! lines before it; there, threads and ranks share replicas instead of lines.
 //!
 //! # Example
@@ -55,6 +55,7 @@ mod communicator;
 mod connect;
 mod crew;
 mod error;
+mod measure;
 #[cfg(feature = "mpi")]
 mod mpi;
 mod observer;
@@ -66,5 +67,6 @@ pub use communicator::{Alone, Communicator};
 pub use connect::{ConnectError, HAS_MPI, connect};
 pub use crew::{Crew, Earlier, StageTime, cores};
 pub use error::{CheckpointError, RunError};
+pub use measure::measure;
 pub use observer::{Observer, Silent};
 pub use stages::{StageRun, batches, first_shot, multipath, second_shot};

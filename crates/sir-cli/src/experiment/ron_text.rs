@@ -50,6 +50,8 @@ fn action(action: &Action) -> Option<String> {
             let stages: Vec<String> = stages.iter().filter_map(|stage| self::action(&stage.action)).collect();
             format!("Repeat({until}{at_most}, stages: [{}])", stages.join(", "))
         }
+        // The experiment measures patches.
+        Action::Sensors(_) => return None,
         Action::Save(outputs) => {
             let outputs: Vec<String> = outputs.iter().map(output).collect();
             format!("Save([{}])", outputs.join(", "))
