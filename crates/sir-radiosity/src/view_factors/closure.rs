@@ -256,19 +256,18 @@ mod tests {
 
     #[test]
     fn negative_factors_are_kept_out() {
-        // The first and the third row want 1 from each other, and leave nothing for the second one.
-        let factors = counted(&[&[0, 900, 100, 0, 0], &[900, 0, 2, 0, 98], &[990, 2, 8, 0, 0]]);
+        // Far more arrives at the second group than it has room for.
+        let factors = counted(&[&[43, 913, 20, 24, 0], &[161, 653, 98, 68, 20], &[4, 908, 83, 5, 0]]);
         let closed = factors.closed().unwrap();
         for i in 0..3 {
-            let shares: Vec<f64> = (0..3)
-                .map(Receiver::Group)
-                .chain([Receiver::Blocked, Receiver::Escaped])
-                .map(|r| closed.share(i, r).0)
-                .collect();
+            let receivers = (0..3).map(Receiver::Group).chain([Receiver::Blocked, Receiver::Escaped]);
+            let shares: Vec<f64> = receivers.map(|receiver| closed.share(i, receiver).0).collect();
             assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{shares:?}");
-            assert!(shares.iter().all(|&f| f >= 0.0), "{shares:?}");
+            assert!(shares.iter().all(|&share| share >= 0.0), "{shares:?}");
+            assert!((0..3).all(|j| closed.reciprocity(i, j).abs() < 1e-15));
         }
-        assert_eq!(closed.factor(0, 0), 0.0);
+        assert_eq!(closed.share(1, Receiver::Group(1)), (0.0, 0.0));
+        assert!(closed.factor(0, 1) > 0.5);
     }
 
     #[test]
