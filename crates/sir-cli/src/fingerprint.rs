@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 use sir_geom::Sides;
-use sir_radiosity::Model;
+use sir_radiosity::{Grouping, Model, ViewFactorSettings};
 
 use crate::pipeline::Pipeline;
 
@@ -42,6 +42,20 @@ pub(crate) fn of_scene(model: &Model) -> Fingerprint {
         number(u64::from(material.sides == Sides::Both) + 2 * u64::from(material.back_emits));
     }
     number(mesh.patch_count() as u64);
+    hash.finalize().into()
+}
+
+/// Of everything that decides the view factors of a scene.
+pub(crate) fn of_view_factors(
+    model: &Model,
+    grouping: &Grouping,
+    settings: &ViewFactorSettings,
+) -> Fingerprint {
+    let mut hash = Sha256::new();
+    hash.update(PROGRAM);
+    hash.update(format!("{settings:?}{:?}", grouping.names()));
+    model.scene.triangle_ids().for_each(|t| hash.update((grouping.group_of(t) as u64).to_le_bytes()));
+    hash.update(of_scene(model));
     hash.finalize().into()
 }
 

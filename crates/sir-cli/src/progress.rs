@@ -64,6 +64,11 @@ impl Progress {
     /// Begins to watch a stage of `total` lines, which ends early if `stop` becomes true.
     pub(crate) fn stage(self, name: &'static str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
         self.note(&format!("{name}: {} lines", grouped(total)));
+        self.watch(name, total, stop)
+    }
+
+    /// As [`stage`](Self::stage), without a word at the beginning.
+    pub(crate) fn watch(self, name: &'static str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
         let bar = match self {
             Self::Bar => {
                 let bar = ProgressBar::new(total);
@@ -106,6 +111,8 @@ pub(crate) struct StageProgress {
 
 impl Observer for StageProgress {
     fn progress(&mut self, done: u64, total: u64) {
+        // How many lines it takes may be known better in the course of them.
+        self.bar.set_length(total);
         self.bar.set_position(done);
         let first = *self.first.get_or_insert(done);
         if self.done == 0 {

@@ -9,3 +9,4 @@ mod refusals;
 mod resume;
 mod same_bits;
 mod saving;
+mod view_factors;

@@ -72,7 +72,8 @@ impl ViewFactorSettings {
         let done: u64 = lines.iter().sum();
         if done == 0 {
             let end = self.most().min(FIRST * lines.len() as u64);
-            return Next { weights: vec![1.0; lines.len()], end, expected: end, finished: false };
+            let expected = if self.accuracy.is_some() { end } else { self.most() };
+            return Next { weights: vec![1.0; lines.len()], end, expected, finished: false };
         }
         let rows = counts.chunks(counts.len() / lines.len());
         let needed: Vec<f64> = lines.iter().zip(rows).map(|(&n, row)| self.needed(row, n)).collect();
