@@ -221,6 +221,11 @@ fn errors_are_what_they_say() {
     let runs: Vec<_> = (0..40).map(|seed| count(&cube, ViewFactorSettings::of_lines(12_000, seed))).collect();
     let counted = rms_z(&runs, |run, i, j| (run.factor(i, j), run.error(i, j)));
     assert!((0.9..=1.1).contains(&counted), "rms z = {counted}");
+    let pairs = || (0..6).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let residuals = runs.iter().flat_map(|run| pairs().map(|(i, j)| run.reciprocity(i, j).z()));
+    let squares: f64 = residuals.map(|z| z * z).sum();
+    let reciprocity = (squares / (runs.len() as f64 * 15.0)).sqrt();
+    assert!((0.9..=1.1).contains(&reciprocity), "rms z of reciprocity = {reciprocity}");
     // Four times the lines, half the error.
     let more = count(&cube, ViewFactorSettings::of_lines(48_000, 0));
     let ratio = runs[0].error(0, 1) / more.error(0, 1);

@@ -140,11 +140,19 @@ impl ViewFactors {
     }
 
     /// By how much `F_ij` and `F_ji` miss reciprocity, `A_i F_ij = A_j F_ji`: by chance only, since both are counted by themselves.
+    ///
+    /// The standard error is that of two binomial shares of the exchange area that both rows together give, with one line more: few
+    /// lines of a row say too little about their own error.
     #[must_use]
     pub fn reciprocity(&self, i: usize, j: usize) -> Residual {
-        let side = |i: usize, j: usize| (self.areas[i] * self.factor(i, j), self.areas[i] * self.error(i, j));
-        let ((one, one_error), (other, other_error)) = (side(i, j), side(j, i));
-        Residual { value: one - other, error: (one_error * one_error + other_error * other_error).sqrt() }
+        let (one, other) = (self.count(i, Receiver::Group(j)), self.count(j, Receiver::Group(i)));
+        let density = |k: usize| self.lines[k] as f64 / self.areas[k];
+        let exchange = (one + other + 1) as f64 / (density(i) + density(j));
+        let variance = |k: usize| exchange * (1.0 - exchange / self.areas[k]).max(0.0) / density(k);
+        Residual {
+            value: self.areas[i] * self.factor(i, j) - self.areas[j] * self.factor(j, i),
+            error: (variance(i) + variance(j)).sqrt(),
+        }
     }
 
     /// Factors that obey reciprocity and add up to 1, and are as close as they can be to those that were counted.
