@@ -56,15 +56,19 @@ impl ViewFactorSettings {
         FEWEST * groups as u64
     }
 
-    /// How many lines a group needs, of which `counts` arrived at each receiver: in proportion to that where there is no target.
-    fn needed(&self, counts: &[u64], lines: u64) -> f64 {
-        let Accuracy { error, relative } = self.accuracy.unwrap_or(Accuracy { error: 1.0, relative: 0.0 });
-        let needed = counts.iter().map(|&count| {
-            let share = count as f64 / lines.max(1) as f64;
-            let tolerance = error.max(relative * share);
-            variance(count, lines) / (tolerance * tolerance)
+    /// What a group of which `counts` arrived at each receiver demands: the largest variance of a line, where a variance counts less
+    /// as far as its share may have a larger error than the absolute one. With that error, it needs `demand/error²` lines; but
+    /// the sharing does not depend on it, to the last bit, so that a number of lines alone gives the same again.
+    fn demand(&self, counts: &[u64], lines: u64) -> f64 {
+        let loosened = |share: f64| match self.accuracy {
+            Some(Accuracy { error, relative }) => (relative * share / error).max(1.0),
+            None => 1.0,
+        };
+        let demands = counts.iter().map(|&count| {
+            let slack = loosened(count as f64 / lines.max(1) as f64);
+            variance(count, lines) / (slack * slack)
         });
-        needed.fold(0.0, f64::max)
+        demands.fold(0.0, f64::max)
     }
 
     /// What comes next, when each of some groups has had so many lines and so many have arrived at each receiver.
@@ -76,20 +80,26 @@ impl ViewFactorSettings {
             return Next { weights: vec![1.0; lines.len()], end, expected, finished: false };
         }
         let rows = counts.chunks(counts.len() / lines.len());
-        let needed: Vec<f64> = lines.iter().zip(rows).map(|(&n, row)| self.needed(row, n)).collect();
-        let met =
-            self.accuracy.is_some() && lines.iter().zip(&needed).all(|(&n, &needed)| n as f64 >= needed);
+        let demands: Vec<f64> = lines.iter().zip(rows).map(|(&n, row)| self.demand(row, n)).collect();
+        let total: f64 = demands.iter().sum();
         let end = self.most().min(done + (done / 4).max(1));
-        let total: f64 = needed.iter().sum();
-        let fair = |needed: f64| end as f64 * (needed / total);
         // None is nothing, so that rounding cannot leave all with nothing.
-        let weights =
-            lines.iter().zip(&needed).map(|(&n, &needed)| (fair(needed) - n as f64).max(needed / total));
-        let expected = if self.accuracy.is_some() { total as u64 } else { MOST };
+        let weights = lines.iter().zip(&demands).map(|(&n, &demand)| {
+            let share = demand / total;
+            (end as f64 * share - n as f64).max(share)
+        });
+        let (met, needed) = match self.accuracy {
+            Some(Accuracy { error, .. }) => {
+                let needed = |demand: f64| demand / (error * error);
+                let met = lines.iter().zip(&demands).all(|(&n, &demand)| n as f64 >= needed(demand));
+                (met, needed(total) as u64)
+            }
+            None => (false, MOST),
+        };
         Next {
             weights: weights.collect(),
             end,
-            expected: expected.max(end).min(self.most()),
+            expected: needed.max(end).min(self.most()),
             finished: met || done >= self.most(),
         }
     }
