@@ -87,6 +87,24 @@ fn any_number_of_ranks_and_threads_gives_the_same_bits() {
 }
 
 #[test]
+fn any_number_of_ranks_counts_the_same_view_factors() {
+    let folder = folder("");
+    let folder = folder.path();
+    let found = |ranks, threads| {
+        let arguments =
+            ["viewfactors", "room.obj", "--error", "0.01", "--closure", "--json", "--threads", threads];
+        let (code, stdout, stderr) = outcome(mpirun(folder, ranks, &arguments).output().unwrap());
+        assert_eq!(code, Some(0), "{stderr}");
+        serde_json::from_str::<serde_json::Value>(&stdout).unwrap()
+    };
+    let expected = found(1, "1");
+    assert_eq!(expected["groups"].as_array().unwrap().len(), 4);
+    for (ranks, threads) in [(1, "3"), (2, "1"), (3, "2")] {
+        assert_eq!(found(ranks, threads), expected, "{ranks} ranks, {threads} threads");
+    }
+}
+
+#[test]
 fn a_mistake_is_shown_once_and_ends_all_ranks() {
     let folder = folder("(stages: [FirstShot(line: 3)])");
     let folder = folder.path();

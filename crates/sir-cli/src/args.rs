@@ -8,6 +8,7 @@ use clap::{Parser, Subcommand};
 
 use crate::experiment::ExperimentArgs;
 use crate::scaling::ScalingArgs;
+use crate::viewfactors::ViewFactorsArgs;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -17,6 +18,7 @@ Examples:
   sir resume results/cornell-box                 go on where it was stopped, by Ctrl-C or a power cut
   mpirun -n 4 sir run room.ron                   on several machines, if built with --features mpi
   sir scaling room.ron --threads 1,2,4           how much faster are more threads?
+  sir viewfactors room.obj --by group            which share of the flux of a part arrives where?
   sir experiment --scale 0.01                    what does the paper of 2009 claim, and does it hold?
 
 A pipeline is a text file like this one (docs/pipeline.md tells all):
@@ -100,6 +102,13 @@ pub enum Command {
     /// their work is shared, and what the mean of independent replicas loses. The output directory gets report.md with diagrams
     /// and pictures, report.json, and all runs with their pipelines. Takes hours; a small --scale, minutes.
     Experiment(ExperimentArgs),
+    /// Compute the view factors between the materials or named parts of a scene.
+    ///
+    /// F_ij is the share of the diffuse flux leaving group i that arrives directly at group j; what the backs of one-sided surfaces absorb
+    /// is `blocked`, what leaves the scene `escaped`, and each row adds up to 1. Every factor has a standard error. The scene
+    /// needs no light. docs/viewfactors.md has the columns of the files.
+    #[command(name = "viewfactors")]
+    ViewFactors(ViewFactorsArgs),
 }
 
 /// How to run a pipeline.
@@ -147,7 +156,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
     number.ok_or_else(|| "write a number of seconds, 0 or more".into())
 }
 
-fn threads(text: &str) -> Result<NonZeroUsize, String> {
+pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let number = text.parse().ok().filter(|&n| n <= 4096).and_then(NonZeroUsize::new);
     number.ok_or_else(|| "write a whole number from 1 to 4096".into())
 }

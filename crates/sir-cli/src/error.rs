@@ -12,6 +12,7 @@ use thiserror::Error;
 use crate::diagnostic::Diagnostics;
 use crate::experiment::ExperimentError;
 use crate::scaling::ScalingError;
+use crate::viewfactors::ViewFactorsError;
 
 /// Why a command fails. Every message ends with what to do, where that is not obvious.
 #[derive(Debug, Error)]
@@ -137,6 +138,9 @@ pub enum Error {
     /// The experiment cannot be done.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
+    /// View factors cannot be computed.
+    #[error(transparent)]
+    ViewFactors(#[from] ViewFactorsError),
 }
 
 impl From<SolveError> for Error {
@@ -164,6 +168,7 @@ impl Error {
             Self::Elsewhere { code, .. } => *code,
             Self::Scaling(error) => error.exit_code(),
             Self::Experiment(error) => error.exit_code(),
+            Self::ViewFactors(error) => error.exit_code(),
             _ => 1,
         }
     }

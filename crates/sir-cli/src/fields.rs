@@ -210,7 +210,7 @@ impl<'a> Reader<'a> {
 }
 
 /// The number that a literal means, if it is whole and not negative: `1_000_000` and `1e6` are the same.
-fn whole_number(literal: &str) -> Option<u64> {
+pub(crate) fn whole_number(literal: &str) -> Option<u64> {
     ron::from_str(literal).ok().or_else(|| {
         // Up to 2⁵³ a float names one whole number.
         float(literal).filter(|x| x.fract() == 0.0 && (0.0..9.0e15).contains(x)).map(|x| x as u64)

@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 use sir_geom::Sides;
-use sir_radiosity::Model;
+use sir_radiosity::{Grouping, Model, ViewFactorSettings};
 
 use crate::pipeline::{Action, Pipeline};
 use crate::sensors::{Place, Sensors};
@@ -53,6 +53,20 @@ pub(crate) fn of_scene(model: &Model) -> Fingerprint {
     number(mesh.patch_count() as u64);
     // Every number is written with all of its digits.
     hash.update(format!("{:?} {:?}", scene.lights(), scene.sky()));
+    hash.finalize().into()
+}
+
+/// Of everything that decides the view factors of a scene.
+pub(crate) fn of_view_factors(
+    model: &Model,
+    grouping: &Grouping,
+    settings: &ViewFactorSettings,
+) -> Fingerprint {
+    let mut hash = Sha256::new();
+    hash.update(PROGRAM);
+    hash.update(format!("{settings:?}{:?}", grouping.names()));
+    model.scene.triangle_ids().for_each(|t| hash.update((grouping.group_of(t) as u64).to_le_bytes()));
+    hash.update(of_scene(model));
     hash.finalize().into()
 }
 

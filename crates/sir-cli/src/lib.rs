@@ -61,6 +61,7 @@ pub mod sensors;
 mod stages;
 pub mod summary;
 pub mod units;
+pub mod viewfactors;
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -93,7 +94,7 @@ pub fn main() -> ExitCode {
 /// Executes a command; returns what it has to say on standard output. Errors have been shown.
 fn execute(command: Command) -> Result<String, ExitCode> {
     match command {
-        Command::Run(_) | Command::Resume { .. } => {
+        Command::Run(_) | Command::Resume { .. } | Command::ViewFactors(_) => {
             // Before anything that takes time: a signal must never find the program unprepared.
             let stop = interrupt::flag();
             let comm = connect().map_err(|error| show(&error.into()))?;
@@ -138,6 +139,7 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
         }
         Command::Scaling(args) => scaling::command(&args),
         Command::Experiment(args) => experiment::command(&args),
+        Command::ViewFactors(args) => viewfactors::command(&args, comm, &stop),
     }
 }
 

@@ -76,7 +76,8 @@ impl Progress {
         watching
     }
 
-    fn watch(self, name: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
+    /// As [`stage`](Self::stage), without a word at the beginning and at the end.
+    pub(crate) fn watch(self, name: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
         let bar = match self {
             Self::Bar => {
                 let bar = ProgressBar::new(total);
@@ -122,6 +123,8 @@ pub(crate) struct StageProgress {
 
 impl Observer for StageProgress {
     fn progress(&mut self, done: u64, total: u64) {
+        // How many lines it takes may be known better in the course of them.
+        self.bar.set_length(total);
         self.bar.set_position(done);
         let first = *self.first.get_or_insert(done);
         if self.done == 0 {

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::{
-    BoundingBox, BoundingSphere, Camera, FaceId, Light, Material, MaterialId, Sides, Sky, TriangleId,
-    VertexId,
+    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Light, Material, MaterialId, Sides, Sky,
+    TriangleId, VertexId,
 };
 
 /// One side of a triangle.
@@ -37,6 +37,8 @@ pub struct Triangle {
     pub material: MaterialId,
     /// The polygon that this triangle is a part of.
     pub face: FaceId,
+    /// The named part of the scene that it belongs to.
+    pub group: GroupId,
     /// Its number, from 0, among all triangles of the file in file order, those that were dropped included.
     pub source: u32,
 }
@@ -54,6 +56,7 @@ pub struct Scene {
     pub(crate) cameras: Vec<Camera>,
     pub(crate) lights: Vec<Light>,
     pub(crate) sky: Option<Sky>,
+    pub(crate) groups: Vec<String>,
     pub(crate) bounding_box: BoundingBox,
     pub(crate) bounding_sphere: BoundingSphere,
 }
@@ -75,6 +78,12 @@ impl Scene {
     #[must_use]
     pub fn materials(&self) -> &[Material] {
         &self.materials
+    }
+
+    /// Names of the parts of the scene, indexed by [`GroupId`]. The first one is empty: it is that of triangles in no part.
+    #[must_use]
+    pub fn groups(&self) -> &[String] {
+        &self.groups
     }
 
     /// Cameras in file order.

@@ -22,6 +22,8 @@ impl Stage {
     pub const SENSORS: Self = Self(9);
     /// Lines that are traced to learn about a scene, not to solve it.
     pub const PROBE: Self = Self(5);
+    /// Local lines that count view factors.
+    pub const VIEW_FACTORS: Self = Self(12);
     /// Seeds of repeats.
     const REPEAT: Self = Self(16);
 }

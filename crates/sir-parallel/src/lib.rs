@@ -18,7 +18,7 @@
 //!   changes nothing in the result.
 //!
 //! [`first_shot`], [`batches`] and [`multipath`] run the stages of the solver, [`measure`] its sensors. In multipath what a line carries depends on the
-//! lines before it; there, threads and ranks share replicas instead of lines.
+//! lines before it; there, threads and ranks share replicas instead of lines. [`view_factors`] stands by itself.
 //!
 //! # Example
 //!
@@ -61,6 +61,7 @@ mod mpi;
 mod observer;
 mod replicas;
 mod stages;
+mod view_factors;
 
 pub use checkpoint::{Checkpoints, Saved};
 pub use communicator::{Alone, Communicator};
@@ -70,3 +71,4 @@ pub use error::{CheckpointError, RunError};
 pub use measure::measure;
 pub use observer::{Observer, Silent};
 pub use stages::{StageRun, batches, first_shot, multipath, second_shot};
+pub use view_factors::view_factors;

@@ -14,6 +14,7 @@
 //!   what surfaces send while the lines of a batch are traced, so that any number of workers can share them.
 //! * [`Repeats`]: the mean of independent runs of these stages, with the errors that their spread shows.
 //! * [`Solution`]: irradiance and its standard error per side of a patch. [`Sensors`] measure it at any other point.
+//! * [`ViewFactorLines`] count which share of the light of one group of surfaces arrives at another.
 //!
 //! Power is counted in whole [`Quanta`]: integers add up to the same sum in any order, by any number of workers who
 //! share a ledger, and the energy [`Balance`] closes exactly, not nearly. Lines become [`Segment`]s, which name the two sides that see each other:
@@ -63,6 +64,7 @@ mod emitter;
 mod error;
 mod first_shot;
 mod global;
+mod grouping;
 mod ledger;
 mod model;
 mod multipath;
@@ -75,12 +77,14 @@ mod sensors;
 mod solution;
 mod sources;
 mod state;
+mod view_factors;
 
 pub use balance::{Balance, Books, Counts};
 pub use batches::{Batches, Part, Totals};
 pub use emitter::Emitter;
 pub use error::SolveError;
 pub use first_shot::{FirstShot, FirstShotTally, Shot};
+pub use grouping::Grouping;
 pub use model::Model;
 pub use multipath::{Multipath, MultipathSettings, Replica, Transported, share};
 pub use power::{PowerUnit, Quanta};
@@ -92,3 +96,7 @@ pub use sensors::{LIFT, Measurement, REPLICATIONS, Sensor, SensorSettings, Senso
 pub use solution::Solution;
 pub use sources::{Source, sources};
 pub use state::Visitor;
+pub use view_factors::{
+    Accuracy, Closed, ClosureError, MAX_GROUPS, Receiver, Residual, Share, ViewFactorLines,
+    ViewFactorSettings, ViewFactors,
+};

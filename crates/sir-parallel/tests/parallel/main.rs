@@ -10,3 +10,4 @@ mod refusals;
 mod resume;
 mod same_bits;
 mod saving;
+mod view_factors;

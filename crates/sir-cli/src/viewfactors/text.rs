@@ -1,0 +1,115 @@
+//! View factors for people.
+
+use std::path::PathBuf;
+
+use super::report::{Matrix, Report};
+use crate::fields::grouped;
+
+/// Most groups whose table is printed.
+const GROUPS: usize = 12;
+
+/// Most characters of a name in a table.
+const NAME: usize = 24;
+
+/// A table, or a list of the groups if there are many, and how good it is.
+pub(super) fn text(report: &Report, paths: &[PathBuf]) -> String {
+    let mut out = if report.groups.len() > GROUPS {
+        format!("{}\n{} groups; --out DIR writes their table\n", list(report), report.groups.len())
+    } else {
+        let mut out = String::from("View factors: from the group of the row, to that of the column\n\n");
+        out += &table(report, &report.counted);
+        if let Some(closed) = &report.closed {
+            out += "\nAdjusted to reciprocity and sums of 1\n\n";
+            out += &table(report, closed);
+        }
+        out
+    };
+    out += &format!(
+        "\n{} lines, seed {}; `<` is a bound with 95 % confidence where no line arrived; ± is the largest standard error of a row\n",
+        grouped(report.lines),
+        report.seed
+    );
+    out += &reciprocity(report);
+    paths.iter().for_each(|path| out += &format!("{}\n", path.display()));
+    out
+}
+
+/// Digits that show an error to at least one place.
+fn digits(error: f64) -> usize {
+    (2..9).find(|&digits| error >= 10f64.powi(-digits)).map_or(9, |digits| digits as usize)
+}
+
+fn row_error(report: &Report, matrix: &Matrix, i: usize) -> f64 {
+    let errors = &matrix.errors[i][..report.groups.len()];
+    errors.iter().copied().fold(matrix.blocked_errors[i].max(matrix.escaped_errors[i]), f64::max)
+}
+
+fn names(report: &Report) -> Vec<String> {
+    let cut = |name: &str| match name.char_indices().nth(NAME) {
+        Some((end, _)) => format!("{}…", &name[..end]),
+        None => name.to_owned(),
+    };
+    report.groups.iter().map(|group| cut(&group.name)).collect()
+}
+
+fn table(report: &Report, matrix: &Matrix) -> String {
+    let names = names(report);
+    let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    let mut out = format!("   {:<wide$} {:>10}", "", "area");
+    (1..=names.len()).for_each(|number| out += &format!(" {number:>9}"));
+    out += &format!(" {:>9} {:>9} {:>9}\n", "blocked", "escaped", "±");
+    for (i, (name, group)) in names.iter().zip(&report.groups).enumerate() {
+        let error = row_error(report, matrix, i);
+        let digits = digits(error);
+        out += &format!("{:>2} {name:<wide$} {:>10.4}", i + 1, group.area);
+        let shares =
+            matrix.factors[i].iter().zip(&report.counts[i]).map(|(&factor, &count)| (factor, count > 0));
+        let rest = [matrix.blocked[i], matrix.escaped[i]].map(|share| (share, share > 0.0));
+        for (share, counted) in shares.chain(rest) {
+            // Adjusted factors may be positive where the one way was not counted, but the other was.
+            out += &match counted || share > 0.0 {
+                true => format!(" {share:>9.digits$}"),
+                false => format!(" {:>9}", format!("<{:.0e}", 3.0 / group.lines as f64)),
+            };
+        }
+        out += &format!(" {error:>9.digits$}\n");
+    }
+    out
+}
+
+/// One line per group.
+fn list(report: &Report) -> String {
+    let names = names(report);
+    let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    let mut out = format!(
+        "{:<wide$} {:>12} {:>14} {:>9} {:>9} {:>9} {:>9}\n",
+        "", "area", "lines", "itself", "blocked", "escaped", "±"
+    );
+    let matrix = report.closed.as_ref().unwrap_or(&report.counted);
+    for (i, (name, group)) in names.iter().zip(&report.groups).enumerate() {
+        let error = row_error(report, matrix, i);
+        let digits = digits(error);
+        let shares = [matrix.factors[i][i], matrix.blocked[i], matrix.escaped[i], error];
+        out += &format!("{name:<wide$} {:>12.4} {:>14}", group.area, grouped(group.lines));
+        shares.iter().for_each(|share| out += &format!(" {share:>9.digits$}"));
+        out.push('\n');
+    }
+    out
+}
+
+/// Whether both estimates of each exchange area agree.
+fn reciprocity(report: &Report) -> String {
+    let pairs = &report.reciprocity;
+    let Some(worst) = pairs.iter().max_by(|a, b| a.z.abs().total_cmp(&b.z.abs())) else {
+        return String::new();
+    };
+    let squares: f64 = pairs.iter().map(|pair| pair.z * pair.z).sum();
+    format!(
+        "reciprocity of {} pairs: RMS of z {:.2}, largest {:+.1} (\"{}\" and \"{}\")\n",
+        pairs.len(),
+        (squares / pairs.len() as f64).sqrt(),
+        worst.z,
+        worst.from,
+        worst.to
+    )
+}
