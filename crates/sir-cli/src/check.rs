@@ -238,15 +238,15 @@ impl fmt::Display for Estimate {
 fn kinds(sources: &[Source]) -> String {
     let count = |is: fn(&Emitter) -> bool| sources.iter().filter(|s| is(&s.emitter)).count();
     let counts = [
-        ("triangle sides", count(|e| matches!(e, Emitter::Surface { .. }))),
-        ("points", count(|e| matches!(e, Emitter::Point { .. }))),
-        ("distant lights", count(|e| matches!(e, Emitter::Distant(_)))),
+        ("triangle side", count(|e| matches!(e, Emitter::Surface { .. }))),
+        ("point", count(|e| matches!(e, Emitter::Point { .. }))),
+        ("distant light", count(|e| matches!(e, Emitter::Distant(_)))),
         ("sky", count(|e| matches!(e, Emitter::Dome))),
         ("ground", count(|e| matches!(e, Emitter::Ground))),
     ];
     let named = counts.iter().filter(|(_, n)| *n > 0).map(|(name, n)| match *name {
         "sky" | "ground" => (*name).to_owned(),
-        name => format!("{} {name}", grouped(*n as u64)),
+        name => format!("{} {name}{}", grouped(*n as u64), if *n == 1 { "" } else { "s" }),
     });
     named.collect::<Vec<_>>().join(", ")
 }
