@@ -103,7 +103,7 @@ fn a_dark_scene_is_lit_by_a_pipeline() {
     with(&text(all), |pipeline| {
         let estimate = check(&pipeline.unwrap(), Progress::Silent).unwrap();
         let shown = estimate.to_string();
-        assert!(shown.contains("2 triangle sides, 1 points, 1 distant lights, sky, ground, "), "{shown}");
+        assert!(shown.contains("2 triangle sides, 1 point, 1 distant light, sky, ground, "), "{shown}");
         assert_eq!(estimate.prepared.model.scene.triangles().len(), 3);
     });
     with(&text("Sky(horizontal: 0)"), |pipeline| {
