@@ -124,13 +124,6 @@ pub(crate) struct FaceAverage {
     pub(crate) cie_published_indirect: Option<f64>,
 }
 
-impl Surface {
-    /// Whether it is a polygon.
-    pub(crate) fn is_flat(&self) -> bool {
-        matches!(self.shape, Shape::Polygon { .. })
-    }
-}
-
 impl Reference {
     /// The answers that the program was built with.
     ///

@@ -5,16 +5,33 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use sir_geom::Rgb;
 
-use crate::ValidateError;
-use crate::data::{Case, Surface};
+use crate::data::{Case, Shape, Surface};
 use crate::light::{Paint, means, per_face, scene, solve};
+use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
+use crate::{Effort, ValidateError};
 
-/// Lines of a run in a scene of flat surfaces.
+/// Lines of a run in a room of flat walls.
 const FLAT_LINES: u64 = 400_000;
 
-/// Lines of a run in a scene of curved surfaces, which have thousands of facets: some dozens meet each.
-const CURVED_LINES: u64 = 2_000_000;
+/// Parts of a circle of a whole sphere, and lines of a run. Where one sphere sees more of itself than the other, the solver only guesses where what
+/// is unshot at the end would go: lines have to be many, so that it is next to nothing, and facets few.
+const SPHERES: (u32, u64) = (48, 600_000);
+
+/// The same for zones of a sphere: all see all alike, so the guess is right, and facets may be many.
+const ZONES: (u32, u64) = (SEGMENTS, 1_000_000);
+
+/// How finely the surfaces of a case are cut, and the lines of a run.
+fn effort(surfaces: &[&Surface]) -> (u32, u64) {
+    let has = |is: fn(&Shape) -> bool| surfaces.iter().any(|surface| is(&surface.shape));
+    if has(|shape| matches!(shape, Shape::SphericalZone { .. })) {
+        ZONES
+    } else if has(|shape| matches!(shape, Shape::Sphere { .. })) {
+        SPHERES
+    } else {
+        (SEGMENTS, FLAT_LINES)
+    }
+}
 
 /// What a surface emits and reflects.
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -95,9 +112,9 @@ pub(crate) fn surfaces(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
         quantities.push(Quantity::new(format!("E {}", surface.name), e));
     }
     quantities.push(Quantity::new("absorbed / emitted", 1.0));
-    let lines = if surfaces.iter().all(|surface| surface.is_flat()) { FLAT_LINES } else { CURVED_LINES };
-    let prepare = move |effort: crate::Effort| -> Result<Sample<'_>, ValidateError> {
-        let model = per_face(scene(&surfaces, |i| paints[i], effort.segments())?)?;
+    let (segments, lines) = effort(&surfaces);
+    let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
+        let model = per_face(scene(&surfaces, |i| paints[i], effort.segments(segments))?)?;
         Ok(Box::new(move |lines, seed, crew| {
             let means = means(&model, &solve(&model, lines, seed, crew)?);
             let (mut values, mut emitted, mut absorbed) = (Vec::new(), 0.0, 0.0);
@@ -143,8 +160,8 @@ pub(crate) fn enclosures(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
             }
             let count = bands.len();
             let walls: Vec<&Surface> = walls.iter().collect();
-            let prepare = move |effort: crate::Effort| -> Result<Sample<'_>, ValidateError> {
-                let model = per_face(scene(&walls, |_| paint, effort.segments())?)?;
+            let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
+                let model = per_face(scene(&walls, |_| paint, effort.segments(SEGMENTS))?)?;
                 Ok(Box::new(move |lines, seed, crew| {
                     let means = means(&model, &solve(&model, lines, seed, crew)?);
                     let of_band = |band: usize| {

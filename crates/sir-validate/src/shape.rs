@@ -1,8 +1,12 @@
 //! From the shapes of the reference to triangles.
 //!
-//! Curved shapes are surfaces of revolution: a profile, turned about an axis in [`SEGMENTS`] steps. The corners of the polygon
-//! that stands for a circle lie a little outside, so that both have the same area; arcs of a profile are cut as finely.
-//! What this changes in an answer falls with the square of the size of the facets: `tests/facets.rs` measures it on large ones.
+//! Curved shapes are surfaces of revolution: a profile, turned about an axis in steps. The corners of the polygon that stands for
+//! a circle lie a little outside, so that both have the same area; arcs of a profile are cut as finely.
+//!
+//! What this changes in an answer falls with the square of the size of the facets, and is measured on large ones
+//! (`radiosity::tests`). A convex body sends all its light to one around it, and gets it back in proportion to the areas, whatever the facets:
+//! concentric spheres may be coarse. Facets of one sphere see a little too much across their edges and nothing of themselves,
+//! which matters where zones that emit differently meet.
 
 use std::f64::consts::PI;
 
@@ -11,8 +15,8 @@ use sir_geom::{MaterialId, SceneBuilder};
 
 use crate::data::{ActiveSide, Shape};
 
-/// Parts of a full circle: facets are a degree and a quarter wide.
-pub const SEGMENTS: u32 = 288;
+/// Parts of a circle where nothing speaks for fewer: a degree and a quarter each.
+pub(crate) const SEGMENTS: u32 = 288;
 
 /// A point of a profile: how far along the axis, and how far from it \[m\].
 type Station = (f64, f64);

@@ -7,7 +7,6 @@ use serde::Serialize;
 use crate::bench::{Bench, Watcher};
 use crate::catalogue::{Plan, plan};
 use crate::data::Case;
-use crate::shape::SEGMENTS;
 use crate::{Check, Reference, ValidateError, Verdict};
 
 /// How precise answers have to be.
@@ -38,11 +37,11 @@ impl Effort {
         }
     }
 
-    /// Parts of a circle. Each facet needs some lines, so there are fewer where lines are few.
-    pub(crate) fn segments(self) -> u32 {
+    /// Parts of a circle that has this many in full. Each facet needs some lines, so there are fewer where lines are few.
+    pub(crate) fn segments(self, full: u32) -> u32 {
         match self {
-            Self::Quick => SEGMENTS / 4,
-            Self::Full => SEGMENTS,
+            Self::Quick => full / 4,
+            Self::Full => full,
         }
     }
 }
