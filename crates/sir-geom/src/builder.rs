@@ -7,8 +7,8 @@ use glam::DVec3;
 use thiserror::Error;
 
 use crate::{
-    BoundingBox, BoundingSphere, Camera, FaceId, MAX_REFLECTANCE, Material, MaterialId, Rgb, Scene, Triangle,
-    VertexId,
+    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, MAX_REFLECTANCE, Material, MaterialId, Rgb, Scene,
+    Triangle, VertexId,
 };
 
 /// Why a scene cannot be built.
@@ -105,6 +105,9 @@ pub struct SceneBuilder {
     cameras: Vec<Camera>,
     triangles: Vec<Triangle>,
     faces: u32,
+    /// Numbers of the groups by name: from 1, since number 0 has no name.
+    groups: HashMap<String, GroupId>,
+    group: u32,
     warnings: Vec<Warning>,
 }
 
@@ -137,6 +140,16 @@ impl SceneBuilder {
         self.warnings.push(warning);
     }
 
+    /// Lets all faces that are added from now on belong to the part of the scene with this name: to none if it is empty, as
+    /// before the first call. Parts of equal names are one.
+    pub fn begin_group(&mut self, name: &str) -> GroupId {
+        let next = GroupId::new(self.groups.len() + 1);
+        let group =
+            if name.is_empty() { GroupId(0) } else { *self.groups.entry(name.to_owned()).or_insert(next) };
+        self.group = group.0;
+        group
+    }
+
     /// Adds a polygon, counter-clockwise seen from its front. It is cut into the fan of triangles
     /// `(0, 1, 2), (0, 2, 3), …`; with fewer than three corners it adds nothing.
     pub fn add_polygon(&mut self, corners: &[VertexId], material: MaterialId) -> FaceId {
@@ -150,7 +163,8 @@ impl SceneBuilder {
         self.faces += 1;
         for &vertices in triangles {
             let source = self.triangles.len() as u32;
-            self.triangles.push(Triangle { vertices, material, face, source });
+            let group = GroupId(self.group);
+            self.triangles.push(Triangle { vertices, material, face, group, source });
         }
         face
     }
@@ -178,7 +192,11 @@ impl SceneBuilder {
         else {
             return Err(SceneError::Empty { dropped: 0 });
         };
+        let mut groups: Vec<_> = self.groups.into_iter().map(|(name, group)| (group, name)).collect();
+        groups.sort_unstable();
+        let named = groups.into_iter().map(|(_, name)| name);
         let scene = Scene {
+            groups: std::iter::once(String::new()).chain(named).collect(),
             vertices: self.vertices,
             triangles: self.triangles,
             materials: self.materials,
@@ -292,6 +310,20 @@ mod tests {
         assert_eq!(built.scene.vertices().len(), 5);
         assert_eq!(built.scene.triangles().iter().map(|t| t.source).collect::<Vec<_>>(), [1, 2]);
         assert_eq!(built.warnings, [Warning::DroppedTriangles { count: 2 }]);
+    }
+
+    #[test]
+    fn parts_of_equal_names_are_one() {
+        let mut b = SceneBuilder::new();
+        let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+        for name in [None, Some("b"), Some("a"), Some("b"), Some("")] {
+            name.map(|name| b.begin_group(name));
+            corner_triangle(&mut b, 1.0, m);
+        }
+        let scene = b.build().unwrap().scene;
+        let names: Vec<&str> = scene.triangles().iter().map(|t| &*scene.groups()[t.group.index()]).collect();
+        assert_eq!(names, ["", "b", "a", "b", ""]);
+        assert_eq!(scene.groups(), ["", "b", "a"]);
     }
 
     #[test]

@@ -49,6 +49,10 @@ typed_index!(
     MaterialId
 );
 typed_index!(
+    /// A named part of a [`Scene`](crate::Scene); number 0 has no name.
+    GroupId
+);
+typed_index!(
     /// A polygon or a piece of curved surface as its author drew it: the triangles it was cut into share this number.
     FaceId
 );

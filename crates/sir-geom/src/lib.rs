@@ -53,7 +53,7 @@ pub use bounds::{BoundingBox, BoundingSphere};
 pub use builder::{Built, SceneBuilder, SceneError, Warning};
 pub use camera::{Camera, Projection};
 pub use hull::ConvexHull;
-pub use index::{FaceId, MaterialId, TriangleId, VertexId};
+pub use index::{FaceId, GroupId, MaterialId, TriangleId, VertexId};
 pub use line::{Barycentric, Line};
 pub use load::{LoadError, LoadOptions, SidesPolicy, load};
 pub use material::{MAX_REFLECTANCE, Material, Sides};

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use crate::{BoundingBox, BoundingSphere, Camera, FaceId, Material, MaterialId, Sides, TriangleId, VertexId};
+use crate::{
+    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Material, MaterialId, Sides, TriangleId, VertexId,
+};
 
 /// One side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -34,6 +36,8 @@ pub struct Triangle {
     pub material: MaterialId,
     /// The polygon that this triangle is a part of.
     pub face: FaceId,
+    /// The named part of the scene that it belongs to.
+    pub group: GroupId,
     /// Its number, from 0, among all triangles of the file in file order, those that were dropped included.
     pub source: u32,
 }
@@ -48,6 +52,7 @@ pub struct Scene {
     pub(crate) triangles: Vec<Triangle>,
     pub(crate) materials: Vec<Material>,
     pub(crate) cameras: Vec<Camera>,
+    pub(crate) groups: Vec<String>,
     pub(crate) bounding_box: BoundingBox,
     pub(crate) bounding_sphere: BoundingSphere,
 }
@@ -69,6 +74,12 @@ impl Scene {
     #[must_use]
     pub fn materials(&self) -> &[Material] {
         &self.materials
+    }
+
+    /// Names of the parts of the scene, indexed by [`GroupId`]. The first one is empty: it is that of triangles in no part.
+    #[must_use]
+    pub fn groups(&self) -> &[String] {
+        &self.groups
     }
 
     /// Cameras in file order.

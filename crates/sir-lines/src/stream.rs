@@ -20,6 +20,8 @@ impl Stage {
     pub const SECOND_SHOT: Self = Self(6);
     /// Lines that are traced to learn about a scene, not to solve it.
     pub const PROBE: Self = Self(5);
+    /// Local lines that count view factors.
+    pub const VIEW_FACTORS: Self = Self(12);
 }
 
 /// The random streams of all lines of one stage.

@@ -128,6 +128,11 @@ impl<'c, 'a> Shift<'c, 'a> {
         StageTime { total: self.time.total + self.start.elapsed(), ..self.time }
     }
 
+    /// Corrects how many lines there will be.
+    pub(crate) fn expect(&mut self, total: u64) {
+        self.total = total;
+    }
+
     /// Tells the observer how many lines are done.
     pub(crate) fn progress(&mut self, done: u64) {
         self.crew.observer.progress(done, self.total);

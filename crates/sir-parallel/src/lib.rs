@@ -17,7 +17,7 @@
 //!   changes nothing in the result.
 //!
 //! [`first_shot`], [`batches`] and [`multipath`] run the stages of the solver. In multipath what a line carries depends on the
-//! lines before it; there, threads and ranks share replicas instead of lines.
+//! lines before it; there, threads and ranks share replicas instead of lines. [`view_factors`] stands by itself.
 //!
 //! # Example
 //!
@@ -59,6 +59,7 @@ mod mpi;
 mod observer;
 mod replicas;
 mod stages;
+mod view_factors;
 
 pub use checkpoint::{Checkpoints, Saved};
 pub use communicator::{Alone, Communicator};
@@ -67,3 +68,4 @@ pub use crew::{Crew, StageTime, cores};
 pub use error::{CheckpointError, RunError};
 pub use observer::{Observer, Silent};
 pub use stages::{StageRun, batches, first_shot, multipath, second_shot};
+pub use view_factors::view_factors;

@@ -20,4 +20,24 @@ pub enum SolveError {
         /// `first shot` or `multipath`.
         stage: &'static str,
     },
+    /// View factors are asked for between too many groups.
+    #[error(
+        "the scene has {groups} groups, and view factors can be had between {most}; group the surfaces by material, or join some"
+    )]
+    TooManyGroups {
+        /// How many there are.
+        groups: usize,
+        /// The most.
+        most: usize,
+    },
+    /// View factors are asked for with too few lines.
+    #[error("{lines} lines are too few for {groups} groups; ask for at least {fewest}")]
+    TooFewLines {
+        /// Lines asked for.
+        lines: u64,
+        /// Number of groups.
+        groups: usize,
+        /// The fewest lines.
+        fewest: u64,
+    },
 }

@@ -11,6 +11,7 @@
 //! * Lines through the whole scene pass the reflected power on, between every pair of surfaces that face each other
 //!   along a line, in both directions. [`Multipath`] sends it on line by line, as published. [`Batches`] freezes
 //!   what surfaces send while the lines of a batch are traced, so that any number of workers can share them.
+//! * [`ViewFactorLines`] count which share of the light of one group of surfaces arrives at another.
 //! * [`Solution`]: irradiance and its standard error per side of a patch.
 //!
 //! Power is counted in whole [`Quanta`]: integers add up to the same sum in any order, by any number of workers who
@@ -60,6 +61,7 @@ mod batches;
 mod error;
 mod first_shot;
 mod global;
+mod grouping;
 mod ledger;
 mod model;
 mod multipath;
@@ -70,11 +72,13 @@ mod segments;
 mod solution;
 mod sources;
 mod state;
+mod view_factors;
 
 pub use balance::{Balance, Books, Counts};
 pub use batches::{Batches, Part, Totals};
 pub use error::SolveError;
 pub use first_shot::{FirstShot, FirstShotTally, Shot};
+pub use grouping::Grouping;
 pub use model::Model;
 pub use multipath::{Multipath, MultipathSettings, Replica, Transported, share};
 pub use power::{PowerUnit, Quanta};
@@ -84,3 +88,7 @@ pub use segments::{End, Segment, Segments};
 pub use solution::Solution;
 pub use sources::{Source, sources};
 pub use state::Visitor;
+pub use view_factors::{
+    Accuracy, Closed, ClosureError, MAX_GROUPS, Receiver, Residual, Share, ViewFactorLines,
+    ViewFactorSettings, ViewFactors,
+};

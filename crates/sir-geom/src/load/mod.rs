@@ -69,13 +69,14 @@ impl SidesPolicy {
 ///
 /// The default scene, else the first one, else all nodes; triangles in the order of a walk through the nodes,
 /// parents before children. Base colour is the reflectance, also of metals; the emitted colour times its strength
-/// is a radiance `L`, which gives the exitance `π L`. Cameras are taken in. Buffers and images may be embedded
+/// is a radiance `L`, which gives the exitance `π L`. Groups have the names of nodes, or else of meshes. Cameras are taken in. Buffers and images may be embedded
 /// or lie in files in the scene's folder or below it.
 ///
 /// # OBJ
 ///
 /// Triangles in the order of the faces, polygons cut into fans from their first corner. `Kd` times the mean of
-/// `map_Kd` is the reflectance; `Ke` times the mean of `map_Ke` a radiance that gives the exitance `π Ke`.
+/// `map_Kd` is the reflectance; `Ke` times the mean of `map_Ke` a radiance that gives the exitance `π Ke`. Groups have the
+/// names in `o` and `g` statements, of which the last before a face counts.
 ///
 /// # Errors
 ///

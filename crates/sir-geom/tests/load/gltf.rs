@@ -92,6 +92,20 @@ fn transforms_are_composed_down_the_tree() {
 }
 
 #[test]
+fn groups_are_named_by_nodes_or_else_by_meshes() {
+    let mut gltf = Gltf::triangle();
+    gltf.json["nodes"] = json!([{"mesh": 0, "name": "left"}, {"mesh": 0}, {"mesh": 0, "name": "left"}]);
+    gltf.json["scenes"] = json!([{"nodes": [0, 1, 2]}]);
+    let names = |gltf: &Gltf| -> Vec<String> {
+        let scene = gltf.load().unwrap().scene;
+        scene.triangles().iter().map(|t| scene.groups()[t.group.index()].clone()).collect()
+    };
+    assert_eq!(names(&gltf), ["left", "", "left"]);
+    gltf.json["meshes"][0]["name"] = json!("tile");
+    assert_eq!(names(&gltf), ["left", "tile", "left"]);
+}
+
+#[test]
 fn mirror_images_keep_their_fronts() {
     for (scale, expected) in [([1, 1, -1], DVec3::NEG_Z), ([-1, 1, 1], DVec3::Z), ([-1, -1, 1], DVec3::Z)] {
         let mut gltf = Gltf::triangle();

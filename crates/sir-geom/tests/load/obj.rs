@@ -73,6 +73,20 @@ fn triangles_stay_in_file_order_when_groups_and_materials_alternate() {
 }
 
 #[test]
+fn groups_are_named_by_the_last_object_or_group() {
+    let built = read(
+        &format!(
+            "{SQUARE}f 1 2 3\no a chair\nf 2 3 4\nusemtl x\nf 1 2 3\ng legs # four\nf 3 4 1\no a chair\nf 1 2 4\ng\nf 1 2 3\n"
+        ),
+        "",
+    );
+    let scene = built.scene;
+    let names: Vec<&str> = scene.triangles().iter().map(|t| &*scene.groups()[t.group.index()]).collect();
+    assert_eq!(names, ["", "a chair", "a chair", "legs", "a chair", ""]);
+    assert_eq!(scene.groups(), ["", "a chair", "legs"]);
+}
+
+#[test]
 fn materials_have_reflectance_and_emission() {
     let mtl = "# lib\nnewmtl my lamp # its name\n\tKd\t0.1 0.2 0.3 # grey\n\tKe 1 2 3\nKs 1 1 1\nnewmtl flat\nkd 0.4\n";
     let built = read(&format!("mtllib a.mtl\n{SQUARE}usemtl my lamp\nf 1 2 3\nusemtl\tflat\nf 1 3 4\n"), mtl);

@@ -48,6 +48,7 @@ impl Reader<'_> {
                 self.notes.count("skinned meshes are read in the pose of their nodes", 1);
             }
             let mesh = lookup(self.path, self.root, index, "a node: mesh")?;
+            self.builder.begin_group(node.name.as_deref().or(mesh.name.as_deref()).unwrap_or_default());
             let mut shared = Vec::new();
             for (i, primitive) in mesh.primitives.iter().enumerate() {
                 let what = format!("mesh {}, primitive {i}", index.value());

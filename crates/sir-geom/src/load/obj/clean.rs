@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 /// An OBJ file in plain form.
 #[derive(Debug, Default)]
 pub(super) struct Obj {
-    /// Statements `v`, `f` and `usemtl`, without texture coordinates and normals.
+    /// Statements `v`, `f`, `o` and `usemtl`, without texture coordinates and normals.
     pub(super) text: String,
     /// What stands behind each `mtllib`.
     pub(super) libraries: Vec<String>,
@@ -37,6 +37,8 @@ pub(super) fn obj(text: &str) -> Obj {
                 push_words(&mut plain.text, "usemtl", [rest].into_iter());
                 plain.used_materials.insert(rest.to_owned());
             }
+            // Of objects and groups, the last one that is named counts.
+            "o" | "g" => push_words(&mut plain.text, "o", [rest].into_iter()),
             "mtllib" => plain.libraries.push(rest.to_owned()),
             _ => {}
         }
@@ -144,7 +146,7 @@ mod tests {
         let plain = obj(
             "# head\n\nv\t1 2  3 0.1 0.2 0.3 # red\r\nf 1/2/3 \\\n  2//4 -1\nl 1 2 3\nusemtl\ta b#1 # c\n g x\n",
         );
-        assert_eq!(plain.text, "\n\nv 1 2 3\nf 1 2 -1\n\n\nusemtl a b#1\n\n");
+        assert_eq!(plain.text, "\n\nv 1 2 3\nf 1 2 -1\n\n\nusemtl a b#1\no x\n");
         assert_eq!((plain.points_and_lines, plain.used_materials), (1, ["a b#1".to_owned()].into()));
     }
 

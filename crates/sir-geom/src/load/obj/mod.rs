@@ -19,6 +19,9 @@ use crate::{Material, MaterialId, Rgb, SceneBuilder, Sides, VertexId};
 /// A statement that makes `tobj` ask for materials, which all are at hand by then.
 const ALL_LIBRARIES: &str = "mtllib *\n";
 
+/// What `tobj` calls faces in no object.
+const NO_OBJECT: &str = "unnamed_object";
+
 /// Reads an OBJ file into a builder.
 pub(super) fn read(
     path: &Path,
@@ -41,7 +44,7 @@ pub(super) fn read(
     Ok(())
 }
 
-/// Lets `tobj` make meshes of plain OBJ text, one for each run of faces of the same material, in the file's order.
+/// Lets `tobj` make meshes of plain OBJ text, one for each run of faces of the same material and object, in the file's order.
 fn parse(path: &Path, text: &str, library: &mtl::Library<'_>) -> Result<Vec<tobj::Model>, LoadError> {
     let text = format!("{ALL_LIBRARIES}{text}");
     let mut rest = text.as_bytes();
@@ -94,7 +97,8 @@ fn add(
 ) {
     let materials: Vec<MaterialId> = materials.into_iter().map(|m| builder.add_material(m)).collect();
     let mut default = None;
-    for mesh in models.iter().map(|model| &model.mesh).filter(|mesh| !mesh.indices.is_empty()) {
+    for tobj::Model { mesh, name } in models.iter().filter(|model| !model.mesh.indices.is_empty()) {
+        builder.begin_group(if name == NO_OBJECT { "" } else { name });
         let material = mesh.material_id.map(|i| materials[i]).unwrap_or_else(|| {
             let grey = Material::diffuse("", Rgb::splat(DEFAULT_REFLECTANCE)).with_sides(Sides::Both);
             *default.get_or_insert_with(|| builder.add_material(options.sides.apply(grey)))

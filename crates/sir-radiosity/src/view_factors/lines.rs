@@ -1,0 +1,205 @@
+//! The lines that count view factors.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use sir_accel::Ray;
+use sir_geom::{Line, Side, TriangleId};
+use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
+
+use super::ViewFactors;
+use super::effort::{Next, ViewFactorSettings};
+use crate::grouping::active_area;
+use crate::{Books, Grouping, Model, SolveError, Visitor};
+
+/// Most groups: the tables grow with their square.
+pub const MAX_GROUPS: usize = 4096;
+
+/// Rays that are made at a time.
+const RAYS: usize = 1024;
+
+/// The triangles of a group, as a sender of lines.
+#[derive(Clone, Debug, Default)]
+struct Sender {
+    triangles: Vec<TriangleId>,
+    /// Running sums of their active areas.
+    ends: Vec<f64>,
+}
+
+/// A stage of lines that count view factors, in rounds. Any number of workers may trace the lines of a round.
+#[derive(Debug)]
+pub struct ViewFactorLines<'m> {
+    model: &'m Model,
+    grouping: &'m Grouping,
+    settings: ViewFactorSettings,
+    streams: Streams,
+    senders: Vec<Sender>,
+    /// Lines of each group in all rounds before this one, and how many of them arrived at each receiver.
+    lines: Vec<u64>,
+    counts: Vec<u64>,
+    /// What the lines of this round have counted, by whoever has traced them.
+    round: Vec<AtomicU64>,
+    next: Next,
+    allocation: Allocation,
+}
+
+impl<'m> ViewFactorLines<'m> {
+    /// The first round.
+    ///
+    /// # Errors
+    ///
+    /// If there are more than [`MAX_GROUPS`] groups, or too few lines for them.
+    pub fn new(
+        model: &'m Model,
+        grouping: &'m Grouping,
+        settings: ViewFactorSettings,
+    ) -> Result<Self, SolveError> {
+        let groups = grouping.names().len();
+        if groups > MAX_GROUPS {
+            return Err(SolveError::TooManyGroups { groups, most: MAX_GROUPS });
+        }
+        let fewest = ViewFactorSettings::fewest(groups);
+        if settings.lines < fewest {
+            return Err(SolveError::TooFewLines { lines: settings.lines, groups, fewest });
+        }
+        let mut senders = vec![Sender::default(); groups];
+        for triangle in model.scene.triangle_ids() {
+            let Sender { triangles, ends } = &mut senders[grouping.group_of(triangle)];
+            triangles.push(triangle);
+            ends.push(ends.last().unwrap_or(&0.0) + active_area(&model.scene, triangle));
+        }
+        let (lines, counts) = (vec![0; groups], vec![0; groups * (groups + 2)]);
+        let next = settings.next(&lines, &counts);
+        let allocation = Allocation::new(&next.weights, next.end, 0.5);
+        Ok(Self {
+            model,
+            grouping,
+            settings,
+            streams: Streams::new(settings.seed, Stage::VIEW_FACTORS),
+            senders,
+            lines,
+            round: counts.iter().map(|_| AtomicU64::new(0)).collect(),
+            counts,
+            next,
+            allocation,
+        })
+    }
+
+    /// Lines of all rounds before this one.
+    fn done(&self) -> u64 {
+        self.lines.iter().sum()
+    }
+
+    /// The lines of this round.
+    #[must_use]
+    pub fn lines(&self) -> Range<u64> {
+        self.done()..self.next.end
+    }
+
+    /// How many lines will be needed in all, as far as can be told.
+    #[must_use]
+    pub fn expected(&self) -> u64 {
+        self.next.expected
+    }
+
+    /// A ray that leaves a group.
+    fn ray(&self, group: usize, index: u64) -> Ray {
+        let Sender { triangles, ends } = &self.senders[group];
+        let scene = &self.model.scene;
+        let mut stream = self.streams.line(index);
+        let last = triangles.len() - 1;
+        let place = stream.unit() * ends[last];
+        let triangle = triangles[ends.partition_point(|&end| end <= place).min(last)];
+        let back = scene.is_active(triangle, Side::Back) && stream.unit() < 0.5;
+        let normal = if back { -scene.normal(triangle) } else { scene.normal(triangle) };
+        let origin = point_on_triangle(&mut stream).point(scene.corners(triangle));
+        let line = Line { origin, direction: cosine_direction(normal, &mut stream) };
+        Ray { line, leaving: Some(triangle) }
+    }
+
+    /// Traces some lines of this round. Each line should be traced once, by whomever.
+    pub fn trace(&self, lines: Range<u64>, books: &mut Books) {
+        let groups = self.senders.len();
+        let (blocked, escaped, columns) = (groups, groups + 1, groups + 2);
+        let scene = &self.model.scene;
+        let mut tracer = self.model.accel.tracer();
+        let mut rays = Vec::with_capacity(RAYS);
+        let mut senders = Vec::with_capacity(RAYS);
+        let mut receivers = vec![0; RAYS];
+        let mut row = vec![0; columns];
+        let mut first = lines.start;
+        while first < lines.end {
+            let end = lines.end.min(first + RAYS as u64);
+            rays.clear();
+            senders.clear();
+            let owners = self.allocation.owners(first - self.done());
+            for (index, group) in (first..end).zip(owners) {
+                rays.push(self.ray(group, index));
+                senders.push(group);
+            }
+            first = end;
+            tracer.closest_each(&rays, |i, hit| {
+                receivers[i] = match hit {
+                    Some(hit) if scene.is_active(hit.triangle, hit.side) => {
+                        self.grouping.group_of(hit.triangle)
+                    }
+                    Some(_) => blocked,
+                    None => escaped,
+                };
+            });
+            books.counts.lines += rays.len() as u64;
+            // Lines of a group follow each other. Threads meet at a number of the tally seldom, not for every line.
+            let mut receivers = &receivers[..rays.len()];
+            for run in senders.chunk_by(|a, b| a == b) {
+                let (mine, others) = receivers.split_at(run.len());
+                receivers = others;
+                mine.iter().for_each(|&receiver| row[receiver] += 1);
+                for &receiver in mine {
+                    let count = std::mem::take(&mut row[receiver]);
+                    if count > 0 {
+                        self.round[run[0] * columns + receiver].fetch_add(count, Relaxed);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Shows what this round has counted to a visitor.
+    pub fn visit_round(&mut self, visitor: &mut dyn Visitor) {
+        let mut words: Vec<i64> = self.round.iter_mut().map(|count| *count.get_mut() as i64).collect();
+        visitor.sum(&mut words);
+        self.round.iter_mut().zip(words).for_each(|(count, word)| *count.get_mut() = word as u64);
+    }
+
+    /// Shows the state of the stage to a visitor.
+    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+        for numbers in [&mut self.lines, &mut self.counts] {
+            let mut words: Vec<i64> = numbers.iter().map(|&n| n as i64).collect();
+            visitor.same(&mut words);
+            *numbers = words.into_iter().map(|word| word as u64).collect();
+        }
+        self.visit_round(visitor);
+    }
+
+    /// Closes a round, of which all lines are traced and added up; whether there is another one.
+    pub fn advance(&mut self) -> bool {
+        for (sum, count) in self.counts.iter_mut().zip(&mut self.round) {
+            *sum += std::mem::take(count.get_mut());
+        }
+        (0..self.lines.len()).for_each(|i| self.lines[i] += self.allocation.count(i));
+        self.next = self.settings.next(&self.lines, &self.counts);
+        self.allocation = Allocation::new(&self.next.weights, self.next.end - self.done(), 0.5);
+        !self.next.finished
+    }
+
+    /// The factors, as all rounds before this one have counted them.
+    #[must_use]
+    pub fn finish(self) -> ViewFactors {
+        ViewFactors {
+            names: self.grouping.names().to_vec(),
+            areas: self.grouping.areas(&self.model.scene),
+            lines: self.lines,
+            counts: self.counts,
+        }
+    }
+}
