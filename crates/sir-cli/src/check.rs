@@ -12,6 +12,7 @@ use crate::fields::grouped;
 use crate::pipeline::{Action, Content, Pipeline};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
+use crate::units::Units;
 
 /// How long the lines of a stage are tried to learn their rate.
 const PROBE: Duration = Duration::from_millis(300);
@@ -25,6 +26,8 @@ const DISPLAY_BYTES: usize = 200;
 /// What a pipeline will do and cost.
 #[derive(Clone, Debug)]
 pub struct Estimate {
+    /// What power is measured in.
+    pub units: Units,
     /// The scene, ready to be lit.
     pub prepared: Prepared,
     /// Memory per part \[bytes\].
@@ -56,7 +59,7 @@ pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error>
     let prepared = prepare(pipeline, progress)?;
     let (memory, peak_memory) = memory(&prepared.model, pipeline);
     let stages = probe(pipeline, &prepared.model)?;
-    Ok(Estimate { prepared, memory, peak_memory, stages })
+    Ok(Estimate { units: pipeline.units, prepared, memory, peak_memory, stages })
 }
 
 fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
@@ -142,11 +145,12 @@ impl fmt::Display for Estimate {
         writeln!(f, "cameras    {}", scene.cameras().len())?;
         writeln!(
             f,
-            "sources    {} triangle sides, {:.6} + {:.6} + {:.6} W (red, green, blue)",
+            "sources    {} triangle sides, {:.6} + {:.6} + {:.6} {} (red, green, blue)",
             count(sources.len()),
             power.x,
             power.y,
-            power.z
+            power.z,
+            self.units.power()
         )?;
         writeln!(f, "memory     {} at most:", bytes(self.peak_memory))?;
         for (part, size) in &self.memory {

@@ -10,6 +10,7 @@ use crate::fields::{ABSURD, Reader, did_you_mean, list, resembling};
 use crate::order::check_order;
 use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
+use crate::units::Units;
 
 const STAGES: [&str; 6] = ["Load", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Save"];
 
@@ -31,8 +32,8 @@ pub(crate) fn decode(text: &str, path: &Path) -> Result<Pipeline, Diagnostics> {
         }
     };
     match decoded {
-        Some((seed, stages)) if decoder.reader.problems.is_empty() => {
-            Ok(Pipeline { path: path.to_owned(), text: text.to_owned(), seed, stages })
+        Some((seed, units, stages)) if decoder.reader.problems.is_empty() => {
+            Ok(Pipeline { path: path.to_owned(), text: text.to_owned(), seed, units, stages })
         }
         _ => Err(Diagnostics::new(path, text, decoder.reader.problems)),
     }
@@ -47,7 +48,7 @@ pub(crate) struct Decoder<'a> {
 }
 
 impl<'a> Decoder<'a> {
-    fn pipeline(&mut self, root: Node<'a>) -> Option<(u64, Vec<Stage>)> {
+    fn pipeline(&mut self, root: Node<'a>) -> Option<(u64, Units, Vec<Stage>)> {
         if !matches!(root.name(), "" | "Pipeline")
             || !matches!(root.value, Value::Fields(_) | Value::Items(_))
         {
@@ -55,10 +56,17 @@ impl<'a> Decoder<'a> {
             self.reader.problem(root.text, message, "write `Pipeline(stages: […])`");
             return None;
         }
-        let mut fields = self.reader.fields(root, "Pipeline", &["seed", "stages"]);
+        let mut fields = self.reader.fields(root, "Pipeline", &["seed", "units", "stages"]);
         let seed = match fields.take("seed") {
             Some(node) => self.reader.count(&node, "seed", (0, u64::MAX), "1"),
             None => Some(1),
+        };
+        let units = match fields.take("units") {
+            Some(node) => match self.reader.choice(&node, "units", &["Radiometric", "Photometric"]) {
+                Some("Photometric") => Units::Photometric,
+                _ => Units::Radiometric,
+            },
+            None => Units::default(),
         };
         let node = self.reader.required(&mut fields, "stages", "[Load(path: \"scene.gltf\"), …]")?;
         let Value::List(nodes) = node.value else {
@@ -88,7 +96,7 @@ impl<'a> Decoder<'a> {
         if all_known {
             check_order(&mut self.reader, &order, node.text);
         }
-        Some((seed?, stages))
+        Some((seed?, units, stages))
     }
 
     /// Which of the `known` things a node `Name(…)` is.

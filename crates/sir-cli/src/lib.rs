@@ -53,6 +53,7 @@ pub mod run;
 mod save;
 pub mod scaling;
 pub mod summary;
+pub mod units;
 
 use std::io::Write as _;
 use std::process::ExitCode;

@@ -10,6 +10,7 @@ use sir_view::Exposure;
 
 use crate::decode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::units::Units;
 
 /// A valid pipeline: its stages are in a possible order, its numbers are in range and its inputs exist.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,8 @@ pub struct Pipeline {
     pub text: String,
     /// Seed of all random numbers. Default 1.
     pub seed: u64,
+    /// What its numbers are measured in. Default radiometric.
+    pub units: Units,
     /// The stages, in the order in which they run.
     pub stages: Vec<Stage>,
 }

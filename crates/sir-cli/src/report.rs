@@ -10,6 +10,8 @@ use sir_geom::Rgb;
 use sir_lines::Domain;
 use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Received, Solution};
 
+use crate::units::Units;
+
 /// Version of the layout of `result.json`.
 pub const VERSION: u32 = 2;
 
@@ -27,6 +29,9 @@ pub struct Report {
     pub pipeline: PipelineReport,
     /// Seed of all random numbers, which the command line may have set.
     pub seed: u64,
+    /// What the numbers are. This documentation names radiometric units; of photometric ones, read lm for W and lx for W/m².
+    #[serde(default)]
+    pub units: Units,
     /// What was lit.
     pub scene: SceneReport,
     /// The stages, in order.

@@ -118,6 +118,7 @@ pub fn run_together(
         program: PROGRAM.into(),
         pipeline: PipelineReport { path: pipeline.path.display().to_string(), text: pipeline.text.clone() },
         seed,
+        units: pipeline.units,
         scene: scene_report(&prepared, pipeline.scene_path()),
         stages: Vec::new(),
         outputs: Vec::new(),

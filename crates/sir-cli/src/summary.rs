@@ -5,6 +5,7 @@ use crate::directory::absolute;
 use crate::fields::grouped;
 use crate::report::{FILE_NAME, LinesReport, Report};
 use crate::run::RunResult;
+use crate::units::Units;
 
 /// The files of a run, pictures first, and a line for each stage of lines.
 #[must_use]
@@ -40,20 +41,21 @@ pub fn summary(result: &RunResult) -> String {
                 100.0 * lines.empty_share,
                 100.0 * lines.odd_lines as f64 / lines.lines.max(1) as f64,
             );
-            text += &balance(lines);
+            text += &balance(lines, report.units);
         }
     }
     text + &error(report)
 }
 
 /// Where the power of a stage went, as shares of the sum over all bands.
-fn balance(lines: &LinesReport) -> String {
+fn balance(lines: &LinesReport, units: Units) -> String {
     let sum = |bands: [f64; 3]| bands.iter().sum::<f64>();
     let b = &lines.balance;
     let emitted = sum(b.emitted);
     let share = |bands| if emitted > 0.0 { 100.0 * sum(bands) / emitted } else { 0.0 };
     format!(
-        "           {emitted:.6} W sent = {:.2} % absorbed + {:.2} % blocked + {:.2} % escaped + {:.2} % unshot\n",
+        "           {emitted:.6} {} sent = {:.2} % absorbed + {:.2} % blocked + {:.2} % escaped + {:.2} % unshot\n",
+        units.power(),
         share(b.absorbed),
         share(b.blocked),
         share(b.escaped),
@@ -67,7 +69,8 @@ fn error(report: &Report) -> String {
     last.map_or(String::new(), |lines| {
         let [r, g, b] = lines.relative_error.map(|e| 100.0 * e);
         format!(
-            "estimated relative error of a patch's irradiance: {r:.2} % red, {g:.2} % green, {b:.2} % blue\n"
+            "estimated relative error of a patch's {}: {r:.2} % red, {g:.2} % green, {b:.2} % blue\n",
+            report.units.irradiance_name()
         )
     })
 }

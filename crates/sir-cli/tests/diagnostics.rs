@@ -8,6 +8,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use sir_cli::diagnostic::Diagnostics;
 use sir_cli::pipeline::{Action, Body, Pipeline, Transport};
+use sir_cli::units::Units;
 
 const VALID: &str = r#"// A comment with ( and "
 Pipeline(
@@ -94,6 +95,20 @@ fn what_is_left_out_has_a_default() {
     assert_eq!(short.seed, long.seed);
     let actions = |p: &Pipeline| format!("{:?}", p.outputs().collect::<Vec<_>>());
     assert_eq!(actions(&short), actions(&long));
+}
+
+#[test]
+fn units_are_radiometric_unless_the_file_says_otherwise() {
+    let text = |fields: &str| format!(r#"({fields}stages: [Load(path: "room.obj"), FirstShot(lines: 1)])"#);
+    let units = |fields: &str| parse(&text(fields)).unwrap().units;
+    assert_eq!(units(""), Units::Radiometric);
+    assert_eq!(units("units: Photometric, "), Units::Photometric);
+    insta::assert_snapshot!(problems(&text("units: Photometrik, ")), @"
+    x.ron:1:9: error: `units` must be `Radiometric` or `Photometric`, but it is `Photometrik`
+    1 | (units: Photometrik, stages: [Load(path: \"room.obj\"), FirstShot(lines: 1)])
+      |         ^^^^^^^^^^^
+      = help: did you mean `Photometric`?
+    ");
 }
 
 #[test]

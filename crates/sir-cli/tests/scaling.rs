@@ -67,6 +67,7 @@ fn report(workers: Workers) -> Report {
         version: VERSION,
         program: "sir".into(),
         pipeline: PipelineReport { path: "room.ron".into(), text: "()".into() },
+        units: sir_cli::units::Units::default(),
         seed: 1,
         scene,
         time: Time::of(stages.iter().map(|s| s.time.seconds).sum()),

@@ -7,8 +7,8 @@ use glam::DVec3;
 use thiserror::Error;
 
 use crate::{
-    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, MAX_REFLECTANCE, Material, MaterialId, Rgb, Scene,
-    Triangle, VertexId,
+    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Light, MAX_REFLECTANCE, Material, MaterialId, Rgb,
+    Scene, Sky, Triangle, VertexId,
 };
 
 /// Why a scene cannot be built.
@@ -103,6 +103,8 @@ pub struct SceneBuilder {
     vertices: Vec<DVec3>,
     materials: Vec<Material>,
     cameras: Vec<Camera>,
+    lights: Vec<Light>,
+    sky: Option<Sky>,
     triangles: Vec<Triangle>,
     faces: u32,
     /// Numbers of the groups by name: from 1, since number 0 has no name.
@@ -133,6 +135,16 @@ impl SceneBuilder {
     /// Adds a camera.
     pub fn add_camera(&mut self, camera: Camera) {
         self.cameras.push(camera);
+    }
+
+    /// Adds a light without a surface.
+    pub fn add_light(&mut self, light: Light) {
+        self.lights.push(light);
+    }
+
+    /// Says what lines meet that leave the scene.
+    pub fn set_sky(&mut self, sky: Sky) {
+        self.sky = Some(sky);
     }
 
     /// Adds a warning that the reader of a file wants to pass on.
@@ -201,6 +213,8 @@ impl SceneBuilder {
             triangles: self.triangles,
             materials: self.materials,
             cameras: self.cameras,
+            lights: self.lights,
+            sky: self.sky,
             bounding_box,
             bounding_sphere,
         };

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use crate::{
-    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Material, MaterialId, Sides, TriangleId, VertexId,
+    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Light, Material, MaterialId, Sides, Sky, TriangleId,
+    VertexId,
 };
 
 /// One side of a triangle.
@@ -42,7 +43,7 @@ pub struct Triangle {
     pub source: u32,
 }
 
-/// Triangles, materials and cameras in world space.
+/// Triangles, materials, lights and cameras in world space.
 ///
 /// Made by a [`SceneBuilder`](crate::SceneBuilder), which guarantees: at least one triangle, finite coordinates,
 /// indices in range, areas above zero, reflectances in `[0, MAX_REFLECTANCE]`, finite non-negative exitances.
@@ -53,6 +54,8 @@ pub struct Scene {
     pub(crate) materials: Vec<Material>,
     pub(crate) cameras: Vec<Camera>,
     pub(crate) groups: Vec<String>,
+    pub(crate) lights: Vec<Light>,
+    pub(crate) sky: Option<Sky>,
     pub(crate) bounding_box: BoundingBox,
     pub(crate) bounding_sphere: BoundingSphere,
 }
@@ -86,6 +89,18 @@ impl Scene {
     #[must_use]
     pub fn cameras(&self) -> &[Camera] {
         &self.cameras
+    }
+
+    /// Lights without a surface, in file order.
+    #[must_use]
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// What lines meet that leave the scene; without a sky, darkness.
+    #[must_use]
+    pub fn sky(&self) -> Option<&Sky> {
+        self.sky.as_ref()
     }
 
     /// All triangle numbers in order.

@@ -10,6 +10,7 @@
 //!   (isotropic) lines of the body meet a surface of area `A` in proportion to `A`, which integral geometry turns into a
 //!   [`Forecast`] of the number of crossings.
 //! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does.
+//! * [`EvenPoints`] are random, but not independent: for integrals over few lines, each of which has to count.
 //! * [`Allocation`] shares a number of lines among sources in proportion to their power.
 //!
 //! # Example
@@ -38,6 +39,7 @@
 mod alias;
 mod allocation;
 mod domain;
+mod even;
 mod facets;
 mod forecast;
 mod local;
@@ -46,7 +48,10 @@ mod turn;
 
 pub use allocation::Allocation;
 pub use domain::Domain;
+pub use even::EvenPoints;
 pub use facets::Facets;
 pub use forecast::Forecast;
-pub use local::{cosine_direction, point_on_triangle, unit_vector};
+pub use local::{
+    cosine_direction, cosine_direction_of, point_on_triangle, point_on_triangle_of, unit_vector,
+};
 pub use stream::{Stage, Stream, Streams};

@@ -18,6 +18,8 @@ impl Stage {
     pub const PICTURE: Self = Self(4);
     /// Local lines of the second shot.
     pub const SECOND_SHOT: Self = Self(6);
+    /// Rays of sensors.
+    pub const SENSORS: Self = Self(9);
     /// Lines that are traced to learn about a scene, not to solve it.
     pub const PROBE: Self = Self(5);
     /// Local lines that count view factors.

@@ -16,8 +16,8 @@
 //! * Four times a second all ranks agree on how many lines to trace next, whether to save, and whether to stop. This
 //!   changes nothing in the result.
 //!
-//! [`first_shot`], [`batches`] and [`multipath`] run the stages of the solver. In multipath what a line carries depends on the
-//! lines before it; there, threads and ranks share replicas instead of lines. [`view_factors`] stands by itself.
+//! [`first_shot`], [`batches`] and [`multipath`] run the stages of the solver, [`measure`] its sensors; [`view_factors`] stands by itself. In multipath
+//! what a line carries depends on the lines before it; there, threads and ranks share replicas instead of lines.
 //!
 //! # Example
 //!
@@ -54,6 +54,7 @@ mod communicator;
 mod connect;
 mod crew;
 mod error;
+mod measure;
 #[cfg(feature = "mpi")]
 mod mpi;
 mod observer;
@@ -66,6 +67,7 @@ pub use communicator::{Alone, Communicator};
 pub use connect::{ConnectError, HAS_MPI, connect};
 pub use crew::{Crew, StageTime, cores};
 pub use error::{CheckpointError, RunError};
+pub use measure::measure;
 pub use observer::{Observer, Silent};
 pub use stages::{StageRun, batches, first_shot, multipath, second_shot};
 pub use view_factors::view_factors;

@@ -12,7 +12,7 @@
 //!   along a line, in both directions. [`Multipath`] sends it on line by line, as published. [`Batches`] freezes
 //!   what surfaces send while the lines of a batch are traced, so that any number of workers can share them.
 //! * [`ViewFactorLines`] count which share of the light of one group of surfaces arrives at another.
-//! * [`Solution`]: irradiance and its standard error per side of a patch.
+//! * [`Solution`]: irradiance and its standard error per side of a patch. [`Sensors`] measure it at any other point.
 //!
 //! Power is counted in whole [`Quanta`]: integers add up to the same sum in any order, by any number of workers who
 //! share a ledger, and the energy [`Balance`] closes exactly, not nearly. Lines become [`Segment`]s, which name the two sides that see each other:
@@ -69,6 +69,7 @@ mod power;
 mod received;
 mod second_shot;
 mod segments;
+mod sensors;
 mod solution;
 mod sources;
 mod state;
@@ -85,6 +86,7 @@ pub use power::{PowerUnit, Quanta};
 pub use received::Received;
 pub use second_shot::SecondShot;
 pub use segments::{End, Segment, Segments};
+pub use sensors::{LIFT, Measurement, REPLICATIONS, Sensor, SensorSettings, Sensors};
 pub use solution::Solution;
 pub use sources::{Source, sources};
 pub use state::Visitor;

@@ -1,6 +1,6 @@
 //! From radiance to what a screen can show.
 
-use sir_geom::Rgb;
+use sir_geom::{Rgb, luminance};
 
 use crate::{DisplayMesh, Picture};
 
@@ -71,12 +71,6 @@ fn typical(mut samples: Vec<(f64, f64)>) -> Option<f64> {
         .take_while(|s| s.0 <= limit)
         .fold((0.0, 0.0), |(sum, weight), s| (sum + s.1 * s.0.ln(), weight + s.1));
     Some((sum / weight).exp())
-}
-
-/// Luminance of linear Rec. 709 red, green and blue.
-#[must_use]
-pub fn luminance(rgb: Rgb) -> f64 {
-    rgb.dot(Rgb::new(0.2126, 0.7152, 0.0722))
 }
 
 /// Where compression begins.

@@ -12,7 +12,8 @@ use crate::pipeline::{Action, CameraChoice, Content, Image, Output, Pipeline, Tr
 pub(crate) fn text(pipeline: &Pipeline) -> String {
     let stages: String =
         pipeline.stages.iter().filter_map(|s| action(&s.action)).map(|s| format!("        {s},\n")).collect();
-    format!("Pipeline(\n    seed: {},\n    stages: [\n{stages}    ],\n)\n", pipeline.seed)
+    let Pipeline { seed, units, .. } = pipeline;
+    format!("Pipeline(\n    seed: {seed},\n    units: {units:?},\n    stages: [\n{stages}    ],\n)\n")
 }
 
 fn action(action: &Action) -> Option<String> {
@@ -93,8 +94,9 @@ fn quoted(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units::Units;
 
-    const ALL: &str = r#"Pipeline(seed: 7, stages: [
+    const ALL: &str = r#"Pipeline(seed: 7, units: Photometric, stages: [
         Load(path: "room \"1\".obj", sides: Both),
         Subdivide(max_area: 1.5e-7),
         FirstShot(lines: 1e6),
@@ -109,7 +111,7 @@ mod tests {
     ])"#;
 
     /// What it does, without places in the text.
-    fn meaning(pipeline: &Pipeline) -> (u64, Vec<Action>) {
+    fn meaning(pipeline: &Pipeline) -> (u64, Units, Vec<Action>) {
         let mut actions: Vec<Action> = pipeline.stages.iter().map(|s| s.action.clone()).collect();
         for action in &mut actions {
             let Action::Save(outputs) = action else { continue };
@@ -121,7 +123,7 @@ mod tests {
                 }
             }
         }
-        (pipeline.seed, actions)
+        (pipeline.seed, pipeline.units, actions)
     }
 
     #[test]

@@ -154,6 +154,7 @@ mod tests {
         let mut report = Report {
             version: VERSION,
             program: PROGRAM.into(),
+            units: crate::units::Units::default(),
             pipeline: PipelineReport { path: String::new(), text: "x".into() },
             seed: 1,
             scene,

@@ -126,7 +126,8 @@ impl Subject {
         let pictures = self.pictures().filter(|_| changes.pictures).cloned();
         actions.push(Action::Save(std::iter::once(table(TABLE)).chain(pictures).collect()));
         let stages = actions.into_iter().map(|action| Stage { action, span: 0..0 }).collect();
-        let derived = Pipeline { path: PathBuf::new(), text: String::new(), seed: changes.seed, stages };
+        let (seed, units) = (changes.seed, self.pipeline.units);
+        let derived = Pipeline { path: PathBuf::new(), text: String::new(), seed, units, stages };
         let Self { name, digest, .. } = self;
         format!(
             "// Derived from the pipeline of {name} by `sir experiment`. SHA-256 of the scene file:\n// \

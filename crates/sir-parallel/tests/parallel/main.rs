@@ -3,6 +3,7 @@
 
 mod balance;
 mod jobs;
+mod measuring;
 mod observers;
 mod ranks;
 mod refusals;

@@ -1,0 +1,136 @@
+//! The stage `Sensors`: irradiance at points and on grids.
+
+mod decode;
+mod layout;
+mod map;
+mod points_file;
+mod write;
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use sir_radiosity::{Measurement, Sensor, SensorSettings};
+
+pub use layout::{Cells, Layout};
+pub(crate) use write::write;
+
+/// Where irradiance is measured, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensors {
+    /// Their table, in the run directory.
+    pub table: PathBuf,
+    /// Their picture in false colours, if they are on a grid.
+    pub map: Option<PathBuf>,
+    /// What they are called.
+    pub name: String,
+    /// Where they are.
+    pub at: Place,
+    /// How carefully is measured. Default: 16,384 rays, whatever the error.
+    pub settings: SensorSettings,
+    /// Bytes of the pipeline's text that say where they are.
+    pub span: Range<usize>,
+}
+
+/// Where sensors are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// At points that the pipeline or a file lists: at least one.
+    Points(Vec<Sensor>),
+    /// In the middle of the cells of a parallelogram.
+    Grid(Grid),
+    /// In the middle of the cells of a horizontal plane through a room.
+    Plane(Plane),
+}
+
+/// A parallelogram, cut into cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// One of its corners.
+    pub corner: DVec3,
+    /// The edge from there that is shown from left to right.
+    pub along: DVec3,
+    /// The edge from there that is shown from the bottom to the top.
+    pub across: DVec3,
+    /// About the distance of neighbouring sensors \[m\]: edges are cut into whole cells.
+    pub spacing: f64,
+    /// Where the sensors look. Default: the normal from which the picture is seen.
+    pub direction: DVec3,
+}
+
+/// The work plane of a room.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Height above the lowest point of the scene \[m\].
+    pub height: f64,
+    /// About the distance of neighbouring sensors \[m\].
+    pub spacing: f64,
+    /// Distance that is kept from the outline of the scene \[m\]. Default 0.
+    pub border: f64,
+    /// Which way is up, where the sensors look. Default: what is up in the scene.
+    pub up: Option<DVec3>,
+}
+
+/// What sensors have measured, in short.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SensorsReport {
+    /// What they are called.
+    pub name: String,
+    /// How many there are.
+    pub points: usize,
+    /// Rays over the hemispheres of all of them. As many have been aimed at emitting surfaces, if there are any.
+    pub rays: u64,
+    /// Mean irradiance, weighted for luminance as all numbers here \[W/m²\].
+    pub mean: f64,
+    /// Standard error of the mean \[W/m²\]: by the choice of rays, independent from sensor to sensor, and by the errors of patches, which
+    /// are taken to be the same for all.
+    pub mean_error: f64,
+    /// The smallest irradiance \[W/m²\].
+    pub minimum: f64,
+    /// The largest irradiance \[W/m²\].
+    pub maximum: f64,
+    /// Smallest over mean irradiance, the *uniformity* of EN 12464-1; zero in the dark.
+    pub uniformity: f64,
+}
+
+impl SensorsReport {
+    pub(crate) fn new(name: &str, measured: &[Measurement]) -> Self {
+        let n = measured.len().max(1) as f64;
+        let values = || measured.iter().map(Measurement::luminance);
+        let mean = values().sum::<f64>() / n;
+        let squares = measured.iter().map(|m| m.sampling_error() * m.sampling_error()).sum::<f64>();
+        let inherited = measured.iter().map(Measurement::inherited_error).sum::<f64>() / n;
+        let minimum = values().fold(f64::INFINITY, f64::min);
+        Self {
+            name: name.into(),
+            points: measured.len(),
+            rays: measured.iter().map(|m| m.rays).sum(),
+            mean,
+            mean_error: (squares / (n * n) + inherited * inherited).sqrt(),
+            minimum,
+            maximum: values().fold(f64::NEG_INFINITY, f64::max),
+            uniformity: if mean > 0.0 { minimum / mean } else { 0.0 },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sir_geom::Rgb;
+
+    #[test]
+    fn a_report_sums_up() {
+        let measured = [1.0, 3.0].map(|e| Measurement {
+            irradiance: Rgb::splat(e),
+            luminance_errors: [0.3, 0.4],
+            rays: 64,
+            ..Measurement::default()
+        });
+        let report = SensorsReport::new("desk", &measured);
+        assert!((report.mean - 2.0).abs() < 1e-12 && (report.uniformity - 0.5).abs() < 1e-12);
+        assert!((report.mean_error - (0.09f64 / 2.0 + 0.16).sqrt()).abs() < 1e-12);
+        assert_eq!((report.points, report.rays), (2, 128));
+    }
+}

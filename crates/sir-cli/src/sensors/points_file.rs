@@ -1,0 +1,60 @@
+//! Files of points: six numbers a line, as `rtrace` of Radiance reads them.
+
+use glam::DVec3;
+use sir_radiosity::Sensor;
+
+/// Reads points, `x y z dx dy dz` in a line each; what follows a `#` is a comment.
+///
+/// The error says which line is wrong, and why.
+pub(super) fn parse(text: &str) -> Result<Vec<Sensor>, (usize, String)> {
+    let mut sensors = Vec::new();
+    for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
+        let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();
+        if words.is_empty() {
+            continue;
+        }
+        let wrong = |why: String| (number, why);
+        let mut numbers = Vec::with_capacity(6);
+        for word in &words {
+            let parsed = word.parse::<f64>().ok().filter(|x| x.is_finite());
+            numbers.push(parsed.ok_or_else(|| wrong(format!("\"{word}\" is not a finite number")))?);
+        }
+        let [x, y, z, dx, dy, dz] = numbers[..] else {
+            return Err(wrong(format!("it has {} numbers, but a point has six", numbers.len())));
+        };
+        let sensor = Sensor::new(DVec3::new(x, y, z), DVec3::new(dx, dy, dz));
+        sensors.push(sensor.ok_or_else(|| wrong("its direction has no length".into()))?);
+    }
+    if sensors.is_empty() {
+        return Err((1, "there are no points in it".into()));
+    }
+    Ok(sensors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_read() {
+        let text = "\u{feff}# a desk\n\n 1 2.5 -3e-1\t0 0 2\r\n4 5 6 0 1 0 # the wall\n";
+        let sensors = parse(text).unwrap();
+        assert_eq!(sensors.len(), 2);
+        assert_eq!(sensors[0].position(), DVec3::new(1.0, 2.5, -0.3));
+        assert_eq!((sensors[0].direction(), sensors[1].direction()), (DVec3::Z, DVec3::Y));
+    }
+
+    #[test]
+    fn wrong_lines_are_named() {
+        for (text, line, why) in [
+            ("1 2 3 0 0 1\n\n1 2 3 0 0\n", 3, "5 numbers"),
+            ("# nothing\n", 1, "no points"),
+            ("1 2 3 0 0 0", 1, "no length"),
+            ("1 2 3 0 0 one", 1, "\"one\""),
+            ("1 2 3 0 0 inf", 1, "\"inf\""),
+        ] {
+            let (number, message) = parse(text).unwrap_err();
+            assert!(number == line && message.contains(why), "{text:?}: {number} {message}");
+        }
+    }
+}

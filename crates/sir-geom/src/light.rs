@@ -1,0 +1,151 @@
+//! Lights without a surface.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use crate::Rgb;
+
+/// A light that is a point, or infinitely far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// The name its author gave it, or an empty string.
+    pub name: String,
+    /// Where its light comes from.
+    pub kind: LightKind,
+}
+
+/// Where the light of a [`Light`] comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightKind {
+    /// A point.
+    Point {
+        /// Where it is.
+        position: DVec3,
+        /// Radiant intensity `I` per band \[W/sr\], in the direction in which it is largest.
+        intensity: Rgb,
+        /// How it depends on the direction.
+        spread: Spread,
+    },
+    /// Parallel light, such as that of the sun.
+    Distant {
+        /// The direction in which the light travels, of unit length.
+        direction: DVec3,
+        /// Irradiance per band \[W/m²\] of a surface that faces it.
+        irradiance: Rgb,
+    },
+}
+
+/// How the intensity of a point light depends on the direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spread {
+    /// Not at all.
+    Isotropic,
+    /// As the cosine of the angle to an axis, nothing behind: a small diffuse surface.
+    Lambertian {
+        /// Unit vector.
+        axis: DVec3,
+    },
+    /// Full inside the inner cone, nothing outside the outer one; between them `t²`, where `t` falls from 1 to 0 linearly with the
+    /// cosine of the angle to the axis, as `KHR_lights_punctual` of glTF recommends.
+    Spot {
+        /// Unit vector.
+        axis: DVec3,
+        /// Cosine of half the opening angle of the inner cone.
+        inner: f64,
+        /// Cosine of half the opening angle of the outer cone, below `inner`.
+        outer: f64,
+    },
+}
+
+/// The light that arrives at a point from a light, if nothing is in between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// Unit vector towards the light.
+    pub towards: DVec3,
+    /// How far it is; infinite for parallel light.
+    pub distance: f64,
+    /// Irradiance per band \[W/m²\] of a surface that faces the light.
+    pub irradiance: Rgb,
+}
+
+impl Spread {
+    /// Share of the largest intensity that goes in a direction of unit length, from 0 to 1.
+    #[must_use]
+    pub fn share(self, direction: DVec3) -> f64 {
+        match self {
+            Self::Isotropic => 1.0,
+            Self::Lambertian { axis } => axis.dot(direction).max(0.0),
+            Self::Spot { axis, inner, outer } => {
+                let t = ((axis.dot(direction) - outer) / (inner - outer)).clamp(0.0, 1.0);
+                t * t
+            }
+        }
+    }
+
+    /// Integral of [`share`](Self::share) over all directions \[sr\]: power over largest intensity.
+    #[must_use]
+    pub fn solid_angle(self) -> f64 {
+        match self {
+            Self::Isotropic => 4.0 * PI,
+            Self::Lambertian { .. } => PI,
+            Self::Spot { inner, outer, .. } => 2.0 * PI * ((1.0 - inner) + (inner - outer) / 3.0),
+        }
+    }
+}
+
+impl LightKind {
+    /// The light that arrives at a point; `None` at the very point of the light, and where it sends nothing.
+    #[must_use]
+    pub fn arrival(&self, point: DVec3) -> Option<Arrival> {
+        let arrival = match *self {
+            Self::Point { position, intensity, spread } => {
+                let distance = position.distance(point);
+                let towards = (position - point).try_normalize()?;
+                let irradiance = intensity * (spread.share(-towards) / (distance * distance));
+                Arrival { towards, distance, irradiance }
+            }
+            Self::Distant { direction, irradiance } => {
+                Arrival { towards: -direction, distance: f64::INFINITY, irradiance }
+            }
+        };
+        (arrival.irradiance != Rgb::ZERO).then_some(arrival)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_add_up_to_the_solid_angle() {
+        let axis = DVec3::new(2.0, -1.0, 2.0) / 3.0;
+        let spreads =
+            [Spread::Isotropic, Spread::Lambertian { axis }, Spread::Spot { axis, inner: 0.9, outer: 0.6 }];
+        let across = axis.any_orthonormal_vector();
+        for spread in spreads {
+            let n = 100_000;
+            let sum: f64 = (0..n)
+                .map(|i| {
+                    let cos = 2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0;
+                    spread.share(axis * cos + across * (1.0 - cos * cos).sqrt())
+                })
+                .sum();
+            let solid_angle = 4.0 * PI * sum / f64::from(n);
+            assert!((solid_angle / spread.solid_angle() - 1.0).abs() < 1e-4, "{spread:?}: {solid_angle}");
+        }
+    }
+
+    #[test]
+    fn light_falls_off_with_the_square_of_the_distance() {
+        let kind = LightKind::Point {
+            position: DVec3::Z * 3.0,
+            intensity: Rgb::splat(1000.0),
+            spread: Spread::Lambertian { axis: -DVec3::Z },
+        };
+        let below = kind.arrival(DVec3::ZERO).unwrap();
+        assert!((below.irradiance.x - 1000.0 / 9.0).abs() < 1e-12 && below.towards == DVec3::Z);
+        assert_eq!(kind.arrival(DVec3::Z * 4.0), None);
+        assert_eq!(kind.arrival(DVec3::Z * 3.0), None);
+    }
+}

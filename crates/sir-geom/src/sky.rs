@@ -1,0 +1,243 @@
+//! The sky: light from all directions of a hemisphere, from infinitely far.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec3;
+
+use crate::Rgb;
+
+/// What lines meet that leave the scene: a dome above, and below it a ground of one radiance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sky {
+    up: DVec3,
+    pattern: Pattern,
+    /// Radiance of the dome over its pattern.
+    scale: Rgb,
+    ground: Rgb,
+    integrals: Integrals,
+}
+
+/// How the radiance of a dome depends on the direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SkyModel {
+    /// The same from everywhere: type 5 of the CIE general sky.
+    Uniform,
+    /// The traditional overcast sky of the CIE, three times as bright in the zenith as at the horizon:
+    /// `L = L_z (1 + 2 sin γ) / 3` (Moon and Spencer 1942; type 16 of CIE S 011).
+    Overcast,
+    /// One of the fifteen types of the CIE general sky (CIE S 011/E:2003, ISO 15469:2004), without the disc of the sun.
+    General {
+        /// From 1, a steep overcast sky, to 15, a white-blue turbid sky with a broad solar corona. 12 is a clear sky.
+        kind: u8,
+        /// Unit vector towards the sun, above the horizon.
+        sun: DVec3,
+    },
+}
+
+/// The coefficients of gradation and indicatrix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Pattern {
+    Overcast,
+    General { coefficients: [f64; 5], sun: DVec3 },
+}
+
+/// Integrals of a pattern over its hemisphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Integrals {
+    /// `∫ dω`.
+    all: f64,
+    /// No direction has more.
+    bound: f64,
+}
+
+/// `a` to `e` of the types 1 to 15 (CIE S 011/E:2003, table 1).
+const TYPES: [[f64; 5]; 15] = [
+    [4.0, -0.70, 0.0, -1.0, 0.0],
+    [4.0, -0.70, 2.0, -1.5, 0.15],
+    [1.1, -0.80, 0.0, -1.0, 0.0],
+    [1.1, -0.80, 2.0, -1.5, 0.15],
+    [0.0, -1.00, 0.0, -1.0, 0.0],
+    [0.0, -1.00, 2.0, -1.5, 0.15],
+    [0.0, -1.00, 5.0, -2.5, 0.30],
+    [0.0, -1.00, 10.0, -3.0, 0.45],
+    [-1.0, -0.55, 2.0, -1.5, 0.15],
+    [-1.0, -0.55, 5.0, -2.5, 0.30],
+    [-1.0, -0.55, 10.0, -3.0, 0.45],
+    [-1.0, -0.32, 10.0, -3.0, 0.45],
+    [-1.0, -0.32, 16.0, -3.0, 0.30],
+    [-1.0, -0.15, 16.0, -3.0, 0.30],
+    [-1.0, -0.15, 24.0, -2.8, 0.15],
+];
+
+/// Steps of the quadrature in height and in longitude.
+const STEPS: [u32; 2] = [512, 512];
+
+impl Pattern {
+    /// Radiance in a direction above the horizon, in a unit of its own. The same bits on all machines.
+    fn at(self, up: DVec3, direction: DVec3) -> f64 {
+        let sine = direction.dot(up);
+        match self {
+            Self::Overcast => (1.0 + 2.0 * sine) / 3.0,
+            Self::General { coefficients: [a, b, c, d, e], sun } => {
+                let gradation = 1.0 + a * libm::exp(b / sine.max(1e-9));
+                let cosine = direction.dot(sun).clamp(-1.0, 1.0);
+                let corona = libm::exp(d * libm::acos(cosine)) - libm::exp(d * FRAC_PI_2);
+                gradation * (1.0 + c * corona + e * cosine * cosine)
+            }
+        }
+    }
+
+    /// Gradation is monotonous, and the indicatrix is largest towards the sun: it falls to its least at a right angle, or thereabouts,
+    /// and rises to less than it was.
+    fn bound(self) -> f64 {
+        match self {
+            Self::Overcast => 1.0,
+            Self::General { coefficients: [a, b, c, d, e], .. } => {
+                let gradation = f64::max(1.0, 1.0 + a * libm::exp(b));
+                gradation * (1.0 + c * (1.0 - libm::exp(d * FRAC_PI_2)) + e)
+            }
+        }
+    }
+}
+
+impl Sky {
+    /// A sky that gives a horizontal surface with nothing around it the irradiance `horizontal` per band \[W/m²\], above a ground with the
+    /// radiance `ground` \[W/(m² sr)\]; `up` is the direction of the zenith.
+    ///
+    /// `None` if `up` or the direction of the sun has no length, the sun is below the horizon, a type is not of 1 to 15, or a
+    /// colour is negative or not finite.
+    #[must_use]
+    pub fn new(up: DVec3, model: SkyModel, horizontal: Rgb, ground: Rgb) -> Option<Self> {
+        let up = up.try_normalize()?;
+        let pattern = match model {
+            SkyModel::Uniform => Pattern::General { coefficients: TYPES[4], sun: up },
+            SkyModel::Overcast => Pattern::Overcast,
+            SkyModel::General { kind, sun } => {
+                let coefficients = *TYPES.get(usize::from(kind).checked_sub(1)?)?;
+                Pattern::General { coefficients, sun: sun.try_normalize().filter(|sun| sun.dot(up) >= 0.0)? }
+            }
+        };
+        let possible = |colour: Rgb| colour.is_finite() && colour.min_element() >= 0.0;
+        if !possible(horizontal) || !possible(ground) {
+            return None;
+        }
+        // By the midpoints of equal steps in height, which are equal solid angles, and in longitude.
+        let across = up.any_orthonormal_vector();
+        let along = up.cross(across);
+        let (mut all, mut projected) = (0.0, 0.0);
+        for i in 0..STEPS[0] {
+            let sine = (f64::from(i) + 0.5) / f64::from(STEPS[0]);
+            let cosine = (1.0 - sine * sine).sqrt();
+            for k in 0..STEPS[1] {
+                let longitude = 2.0 * PI * (f64::from(k) + 0.5) / f64::from(STEPS[1]);
+                let (x, y) = (cosine * libm::cos(longitude), cosine * libm::sin(longitude));
+                let radiance = pattern.at(up, up * sine + across * x + along * y);
+                all += radiance;
+                projected += radiance * sine;
+            }
+        }
+        let cell = 2.0 * PI / (f64::from(STEPS[0]) * f64::from(STEPS[1]));
+        let integrals = Integrals { all: all * cell, bound: pattern.bound() };
+        Some(Self { up, pattern, scale: horizontal / (projected * cell), ground, integrals })
+    }
+
+    /// The same radiance \[W/(m² sr)\] from all directions.
+    ///
+    /// `None` if it is negative or not finite.
+    #[must_use]
+    pub fn everywhere(radiance: Rgb) -> Option<Self> {
+        Self::new(DVec3::Y, SkyModel::Uniform, radiance * PI, radiance)
+    }
+
+    /// Unit vector to the zenith.
+    #[must_use]
+    pub fn up(&self) -> DVec3 {
+        self.up
+    }
+
+    /// Radiance per band \[W/(m² sr)\] that comes from a direction: `towards` is a unit vector that points to the sky.
+    #[must_use]
+    pub fn radiance(&self, towards: DVec3) -> Rgb {
+        if towards.dot(self.up) > 0.0 { self.scale * self.pattern.at(self.up, towards) } else { self.ground }
+    }
+
+    /// Radiance of the ground per band \[W/(m² sr)\].
+    #[must_use]
+    pub fn ground(&self) -> Rgb {
+        self.ground
+    }
+
+    /// Integral of the radiance of the dome over its hemisphere, per band \[W/m²\]: times the area of a disc, the power through a
+    /// sphere of its radius.
+    #[must_use]
+    pub fn dome(&self) -> Rgb {
+        self.scale * self.integrals.all
+    }
+
+    /// Radiance of the dome in a direction over the largest one there may be, from 0 to 1: the probability to keep a uniform
+    /// direction for those that are kept to have the density of the radiance. Nothing from below.
+    #[must_use]
+    pub fn share(&self, towards: DVec3) -> f64 {
+        if towards.dot(self.up) > 0.0 {
+            self.pattern.at(self.up, towards) / self.integrals.bound
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SUN: DVec3 = DVec3::new(0.6, 0.0, 0.8);
+
+    #[test]
+    fn closed_forms_of_the_simple_skies_hold() {
+        let horizontal = Rgb::new(1.0, 2.0, 3.0);
+        let uniform = Sky::new(DVec3::Z, SkyModel::Uniform, horizontal, Rgb::ZERO).unwrap();
+        assert!((uniform.radiance(SUN) * PI).abs_diff_eq(horizontal, 1e-5));
+        assert!(uniform.dome().abs_diff_eq(2.0 * horizontal, 1e-5));
+        assert_eq!(uniform.radiance(-SUN), Rgb::ZERO);
+        // L_z = 9 E / 7π, and 4π/3 L_z in all.
+        let overcast = Sky::new(DVec3::Z, SkyModel::Overcast, horizontal, Rgb::ONE).unwrap();
+        assert!(overcast.radiance(DVec3::Z).abs_diff_eq(horizontal * 9.0 / (7.0 * PI), 1e-5));
+        assert!(overcast.dome().abs_diff_eq(horizontal * 12.0 / 7.0, 1e-5));
+        assert_eq!(overcast.radiance(-DVec3::Z), Rgb::ONE);
+    }
+
+    #[test]
+    fn no_direction_exceeds_the_bound() {
+        for kind in 1..=15 {
+            for sun in [DVec3::Z, SUN, DVec3::X] {
+                let sky = Sky::new(DVec3::Z, SkyModel::General { kind, sun }, Rgb::ONE, Rgb::ZERO).unwrap();
+                for i in 0..2000 {
+                    // A spiral over the hemisphere.
+                    let sine = (f64::from(i) + 0.5) / 2000.0;
+                    let (y, x) = (f64::from(i) * 2.399_963).sin_cos();
+                    let direction = DVec3::new(x, y, 0.0) * (1.0 - sine * sine).sqrt() + DVec3::Z * sine;
+                    let share = sky.share(direction);
+                    assert!((0.0..=1.0).contains(&share), "type {kind}, {direction}: {share}");
+                }
+                assert!(sky.share(sun.lerp(DVec3::Z, 1e-6).normalize()) <= 1.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_clear_sky_is_bright_around_the_sun() {
+        let sky = Sky::new(DVec3::Z, SkyModel::General { kind: 12, sun: SUN }, Rgb::ONE, Rgb::ZERO).unwrap();
+        let opposite = DVec3::new(-0.6, 0.0, 0.8);
+        assert!(sky.radiance(SUN).x > 5.0 * sky.radiance(opposite).x);
+    }
+
+    #[test]
+    fn impossible_skies_are_refused() {
+        let new = |model, colour| Sky::new(DVec3::Z, model, colour, Rgb::ZERO);
+        assert!(new(SkyModel::General { kind: 0, sun: SUN }, Rgb::ONE).is_none());
+        assert!(new(SkyModel::General { kind: 16, sun: SUN }, Rgb::ONE).is_none());
+        assert!(new(SkyModel::General { kind: 1, sun: -SUN }, Rgb::ONE).is_none());
+        assert!(new(SkyModel::Uniform, -Rgb::ONE).is_none());
+        assert!(Sky::new(DVec3::ZERO, SkyModel::Uniform, Rgb::ONE, Rgb::ZERO).is_none());
+    }
+}

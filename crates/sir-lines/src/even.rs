@@ -1,0 +1,61 @@
+//! Points that fill a square more evenly than random ones.
+
+use crate::Stream;
+
+/// The first two powers of the inverse of the plastic number, the real root of `x³ = x + 1`.
+const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+
+/// An endless sequence of points of the unit square, any beginning of which fills it evenly: the additive recurrence R2
+/// (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*), shifted at random (Cranley and Patterson 1976).
+///
+/// Each point by itself is uniform, so that a mean over the points is right on average; it converges faster than with independent
+/// points. How far off it is shows only by comparing sequences with different shifts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EvenPoints {
+    shift: [f64; 2],
+}
+
+impl EvenPoints {
+    /// A sequence with a random shift, which takes two numbers.
+    pub fn new(stream: &mut Stream) -> Self {
+        Self { shift: [stream.unit(), stream.unit()] }
+    }
+
+    /// The point with this number, below 2³²; both coordinates are in `[0, 1)`.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, number: u64) -> [f64; 2] {
+        std::array::from_fn(|k| {
+            let sum = self.shift[k] + number as f64 * STEPS[k];
+            sum - sum.floor()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Stage, Streams};
+
+    /// Means of a smooth and of a broken function: right on average, with much smaller errors than by independent points.
+    #[test]
+    fn means_are_right_and_converge_fast() {
+        type Function = fn([f64; 2]) -> f64;
+        let functions: [(Function, f64, f64); 2] =
+            [(|[x, y]| x * y, 0.25, 7.0 / 144.0), (|[x, y]| f64::from(u8::from(x + y < 0.7)), 0.245, 0.185)];
+        let streams = Streams::new(3, Stage::SENSORS);
+        let (repeats, n) = (400, 1000);
+        for (function, exact, variance) in functions {
+            let errors: Vec<f64> = (0..repeats)
+                .map(|k| {
+                    let points = EvenPoints::new(&mut streams.line(k));
+                    (0..n).map(|i| function(points.at(i))).sum::<f64>() / n as f64 - exact
+                })
+                .collect();
+            let mean = errors.iter().sum::<f64>() / repeats as f64;
+            let square = errors.iter().map(|e| e * e).sum::<f64>() / repeats as f64;
+            assert!(mean.abs() < 4.0 * (square / repeats as f64).sqrt(), "{mean} {square}");
+            assert!(square < 0.1 * variance / n as f64, "{square}, {} if independent", variance / n as f64);
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! What sensors measure does not depend on how many work on it.
+
+use glam::DVec3;
+use sir_parallel::{RunError, measure};
+use sir_radiosity::{Measurement, Sensor, SensorSettings, Sensors};
+
+use crate::jobs::{ROOM, crew};
+use crate::observers::StopAfter;
+use crate::ranks::run_ranks;
+
+const SEED: u64 = 5;
+
+/// With an aim at the error, so that some sensors take more rays than others.
+const SETTINGS: SensorSettings = SensorSettings { rays: 8192, error: 0.02 };
+
+fn sensors() -> Vec<Sensor> {
+    let at = |i: i32| DVec3::new(-0.9 + 0.13 * f64::from(i), 0.5, -0.8);
+    (0..13).map(|i| Sensor::new(at(i), DVec3::new(0.1, -0.3, 1.0)).unwrap()).collect()
+}
+
+#[test]
+fn sensors_measure_the_same_by_any_number_of_workers() {
+    let (sensors, solution) = (sensors(), ROOM.shot.solution(&ROOM.model));
+    let by_hand = Sensors::new(&ROOM.model, &solution, SETTINGS, SEED);
+    let expected: Vec<Measurement> = (0..).zip(&sensors).map(|(i, s)| by_hand.measure(i, s)).collect();
+    assert!(expected.iter().any(|m| m.rays < SETTINGS.rays), "some are done with fewer rays");
+    assert!(expected.iter().all(|m| m.irradiance.min_element() > 0.0 && m.inherited.x > 0.0));
+    for (ranks, threads) in [(1, 1), (1, 3), (2, 1), (3, 2), (4, 1)] {
+        let all = run_ranks(ranks, |comm| {
+            let crew = &mut crew(comm, threads);
+            measure(&ROOM.model, &solution, &sensors, SETTINGS, SEED, crew).unwrap().outcome
+        });
+        for measured in all {
+            assert_eq!(measured, expected, "{ranks} ranks, {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn measuring_can_be_stopped() {
+    let (sensors, solution) = (sensors(), ROOM.shot.solution(&ROOM.model));
+    let outcomes = run_ranks(2, |comm| {
+        let crew = &mut crew(comm, 1).watched_by(StopAfter(1));
+        measure(&ROOM.model, &solution, &sensors, SETTINGS, SEED, crew).map(|run| run.outcome)
+    });
+    for outcome in outcomes {
+        let Err(RunError::Interrupted { done, total }) = outcome else { panic!("{outcome:?}") };
+        assert!(done > 0 && done < total && total == 13 * 8192, "{done} of {total}");
+    }
+}

@@ -1,0 +1,143 @@
+//! Which emitting surfaces a point aims at.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use sir_geom::{Rgb, Scene, Side, TriangleId};
+
+use super::Sensor;
+use crate::sources::{Source, sources};
+
+/// All emitting surfaces of a scene.
+#[derive(Clone, Debug)]
+pub(super) struct Emitters {
+    sources: Vec<Source>,
+    /// Exitance and area of each.
+    lamps: Vec<Lamp>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Lamp {
+    exitance: Rgb,
+    area: f64,
+}
+
+/// The emitting surfaces as a sensor sees them if nothing is in between.
+#[derive(Clone, Debug)]
+pub(super) struct Choice<'e> {
+    emitters: &'e Emitters,
+    origin: DVec3,
+    normal: DVec3,
+    /// Running sums of the probabilities; empty if the sensor sees no emitter.
+    ends: Vec<f64>,
+}
+
+/// A point of an emitting surface that a sensor aims at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Aim {
+    /// Unit vector towards the point.
+    pub(super) direction: DVec3,
+    /// The surface.
+    pub(super) triangle: TriangleId,
+    /// Which side of it.
+    pub(super) side: Side,
+    /// What it brings if it is seen.
+    pub(super) brings: Rgb,
+}
+
+impl Emitters {
+    pub(super) fn of(scene: &Scene) -> Self {
+        let sources = sources(scene);
+        let lamp =
+            |s: &Source| Lamp { exitance: scene.exitance(s.triangle, s.side), area: scene.area(s.triangle) };
+        Self { lamps: sources.iter().map(lamp).collect(), sources }
+    }
+
+    /// How often each is to be aimed at from a point that looks in the direction `normal`: in proportion to an estimate of the
+    /// irradiance that it brings.
+    pub(super) fn from(&self, origin: DVec3, sensor: &Sensor) -> Choice<'_> {
+        let normal = sensor.direction;
+        let weights: Vec<f64> =
+            self.sources.iter().zip(&self.lamps).map(|(s, lamp)| weight(s, lamp, origin, normal)).collect();
+        let total: f64 = weights.iter().sum();
+        let mut sum = 0.0;
+        let mut ends = Vec::new();
+        if total > 0.0 {
+            ends.extend(weights.iter().map(|w| {
+                sum += w / total;
+                sum
+            }));
+        }
+        Choice { emitters: self, origin, normal, ends }
+    }
+}
+
+/// Exitance times an estimate of the share of the hemisphere that a source takes: from the geometry at its corners and its middle,
+/// and never more than all. Zero only where the source is behind the sensor, or the sensor behind the source.
+fn weight(source: &Source, lamp: &Lamp, origin: DVec3, normal: DVec3) -> f64 {
+    let [a, b, c] = source.corners;
+    let height = (origin - a).dot(source.normal);
+    if height <= 0.0 {
+        return 0.0;
+    }
+    let at = |point: DVec3| {
+        let to = point - origin;
+        let square = to.length_squared();
+        // Both cosines lack the distance.
+        to.dot(normal).max(0.0) * height / (square * square).max(f64::MIN_POSITIVE)
+    };
+    let geometry = (at(a) + at(b) + at(c) + at((a + b + c) / 3.0)) / 4.0;
+    let factor = (lamp.area * geometry).min(f64::MAX);
+    lamp.exitance.element_sum() * (factor / (PI + factor))
+}
+
+impl Choice<'_> {
+    /// Whether there is anything to aim at.
+    pub(super) fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    fn probability(&self, k: usize) -> f64 {
+        match (self.ends.get(k), k.checked_sub(1).and_then(|before| self.ends.get(before))) {
+            (Some(end), Some(start)) => end - start,
+            (Some(end), None) => *end,
+            _ => 0.0,
+        }
+    }
+
+    /// What the light of emitter `k` from a direction at a distance brings, shared between the two ways to find it.
+    ///
+    /// Rays of the cosine distribution find a direction with the density `cos θ / π`, aimed ones with `p_k r² / (A_k cos θ′)`. Each
+    /// counts `M/π · cos θ` over the sum of both (the balance heuristic of Veach and Guibas 1995), which is never more than `M`:
+    /// neither an emitter that nearly touches the sensor nor one that is small and bright makes few rays carry much.
+    fn brings(&self, k: usize, direction: DVec3, distance: f64) -> Rgb {
+        let Lamp { exitance, area } = self.emitters.lamps[k];
+        let cosine = direction.dot(self.normal);
+        let its_cosine = -direction.dot(self.emitters.sources[k].normal);
+        if cosine <= 0.0 || its_cosine <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let aimed = PI * self.probability(k) * distance * distance / (area * its_cosine);
+        exitance * (cosine / (aimed + cosine))
+    }
+
+    /// What a ray of the cosine distribution brings that has met this side at this distance.
+    pub(super) fn met(&self, triangle: TriangleId, side: Side, direction: DVec3, distance: f64) -> Rgb {
+        let found = self.emitters.sources.binary_search_by_key(&(triangle, side), |s| (s.triangle, s.side));
+        found.map_or(Rgb::ZERO, |k| self.brings(k, direction, distance))
+    }
+
+    /// Aims at the point that belongs to one of the unit square; `None` if it brings nothing.
+    pub(super) fn aim(&self, [u, v]: [f64; 2]) -> Option<Aim> {
+        // The emitters share the first coordinate; what is left of it is a coordinate on the emitter.
+        let k = self.ends.partition_point(|&end| end <= u).min(self.ends.len().checked_sub(1)?);
+        let probability = self.probability(k);
+        let start = self.ends[k] - probability;
+        let within = ((u - start) / probability).clamp(0.0, 1.0);
+        let Source { triangle, side, corners, .. } = self.emitters.sources[k];
+        let to = sir_lines::point_on_triangle_of([within, v]).point(corners) - self.origin;
+        let (distance, direction) = (to.length(), to.try_normalize()?);
+        let brings = self.brings(k, direction, distance);
+        (brings != Rgb::ZERO).then_some(Aim { direction, triangle, side, brings })
+    }
+}

@@ -1,0 +1,121 @@
+//! What a sensor measures.
+
+use sir_geom::{Rgb, luminance};
+
+use super::replication::{Gathered, Replication};
+
+/// The irradiance at a sensor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measurement {
+    /// Irradiance per band \[W/m²\].
+    pub irradiance: Rgb,
+    /// Its part that comes straight from lights, emitting surfaces and the sky \[W/m²\].
+    pub direct: Rgb,
+    /// Standard error of `irradiance` per band \[W/m²\] by the choice of rays, from the spread of the replications.
+    pub sampling: Rgb,
+    /// Standard error of `irradiance` per band \[W/m²\] by the errors of the patches whose light is gathered, which are taken to be
+    /// independent of each other. Sensors that see the same patches have it in common.
+    pub inherited: Rgb,
+    /// Standard errors of the luminance-weighted irradiance \[W/m²\]: by the choice of rays, and by those of patches.
+    pub luminance_errors: [f64; 2],
+    /// Rays over the hemisphere.
+    pub rays: u64,
+}
+
+impl Measurement {
+    /// From the replications, and the light of lights without a surface.
+    pub(super) fn of(replications: &[Replication], lights: Rgb) -> Self {
+        let n = replications.len() as f64;
+        let mean = |value: &dyn Fn(&Replication) -> Rgb| {
+            replications.iter().fold(Rgb::ZERO, |sum, replication| sum + value(replication)) / n
+        };
+        let all = |replication: &Replication| {
+            let (direct, reflected) = replication.means();
+            direct + reflected
+        };
+        let (direct, reflected) = (mean(&|r| r.means().0), mean(&|r| r.means().1));
+        let total = direct + reflected;
+        let squares = mean(&|r| (all(r) - total) * (all(r) - total));
+        let square = replications.iter().map(|r| luminance(all(r) - total)).map(|y| y * y).sum::<f64>() / n;
+        let root = |variance: f64| (variance / (n - 1.0)).sqrt();
+        Self {
+            irradiance: total + lights,
+            direct: direct + lights,
+            sampling: squares.map(root),
+            luminance_errors: [root(square), 0.0],
+            ..Self::default()
+        }
+    }
+
+    /// Adds the errors of patches, of `rays` rays. All bands of a patch are taken to be off in the same direction, since the same
+    /// lines have brought their light.
+    pub(super) fn inherit(&mut self, gathered: &[Gathered], rays: u64) {
+        let (mut squares, mut square) = (Rgb::ZERO, 0.0);
+        for &(count, error) in gathered {
+            let part = error * (count as f64 / rays as f64);
+            squares += part * part;
+            square += luminance(part) * luminance(part);
+        }
+        self.inherited = squares.map(f64::sqrt);
+        self.luminance_errors[1] = square.sqrt();
+        self.rays = rays;
+    }
+
+    /// Standard error of the irradiance per band \[W/m²\].
+    #[must_use]
+    pub fn error(&self) -> Rgb {
+        (self.sampling * self.sampling + self.inherited * self.inherited).map(f64::sqrt)
+    }
+
+    /// The irradiance weighted as the eye does, `0.2126 R + 0.7152 G + 0.0722 B` \[W/m²\].
+    #[must_use]
+    pub fn luminance(&self) -> f64 {
+        luminance(self.irradiance)
+    }
+
+    /// Standard error of [`luminance`](Self::luminance) by the choice of rays \[W/m²\].
+    #[must_use]
+    pub fn sampling_error(&self) -> f64 {
+        self.luminance_errors[0]
+    }
+
+    /// Standard error of [`luminance`](Self::luminance) by the errors of patches \[W/m²\].
+    #[must_use]
+    pub fn inherited_error(&self) -> f64 {
+        self.luminance_errors[1]
+    }
+
+    /// Standard error of [`luminance`](Self::luminance) \[W/m²\].
+    #[must_use]
+    pub fn luminance_error(&self) -> f64 {
+        let [sampling, inherited] = self.luminance_errors;
+        (sampling * sampling + inherited * inherited).sqrt()
+    }
+
+    /// All numbers as bit patterns; those of the default are zero.
+    #[must_use]
+    pub fn to_bits(&self) -> [u64; 15] {
+        let [a, b, c] = self.irradiance.to_array();
+        let [d, e, f] = self.direct.to_array();
+        let [g, h, i] = self.sampling.to_array();
+        let [k, l, m] = self.inherited.to_array();
+        let [n, o] = self.luminance_errors;
+        let mut bits = [a, b, c, d, e, f, g, h, i, k, l, m, n, o, 0.0].map(f64::to_bits);
+        bits[14] = self.rays;
+        bits
+    }
+
+    /// From what [`to_bits`](Self::to_bits) gave.
+    #[must_use]
+    pub fn from_bits(bits: [u64; 15]) -> Self {
+        let [a, b, c, d, e, f, g, h, i, k, l, m, n, o, _] = bits.map(f64::from_bits);
+        Self {
+            irradiance: Rgb::new(a, b, c),
+            direct: Rgb::new(d, e, f),
+            sampling: Rgb::new(g, h, i),
+            inherited: Rgb::new(k, l, m),
+            luminance_errors: [n, o],
+            rays: bits[14],
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! One set of rays of a sensor.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use sir_accel::{Hit, Ray, Tracer};
+use sir_geom::{Line, Rgb, TriangleId};
+use sir_lines::{EvenPoints, Stream, cosine_direction_of};
+use sir_mesh::SideId;
+
+use super::Sensors;
+use super::emitters::{Aim, Choice};
+use crate::{Model, Solution};
+
+/// Rays that are made at a time.
+const RAYS: u64 = 1024;
+
+/// A set of evenly spread rays, and what they have brought so far.
+#[derive(Clone, Debug)]
+pub(super) struct Replication {
+    hemisphere: EvenPoints,
+    aimed: EvenPoints,
+    rays: u64,
+    /// Sums over the rays, of which each way has the same number.
+    direct: Rgb,
+    reflected: Rgb,
+}
+
+/// The patches that rays have met.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Met(Vec<(SideId, TriangleId)>);
+
+/// What the error of a patch does to that of a sensor: the number of rays that met the patch, and the standard error of the light
+/// that it reflects.
+pub(super) type Gathered = (u64, Rgb);
+
+impl Replication {
+    pub(super) fn new(stream: &mut Stream) -> Self {
+        let (hemisphere, aimed) = (EvenPoints::new(stream), EvenPoints::new(stream));
+        Self { hemisphere, aimed, rays: 0, direct: Rgb::ZERO, reflected: Rgb::ZERO }
+    }
+
+    /// The irradiance by sources with a surface and by the sky, and that by patches.
+    pub(super) fn means(&self) -> (Rgb, Rgb) {
+        let per_ray = 1.0 / self.rays.max(1) as f64;
+        (self.direct * per_ray, self.reflected * per_ray)
+    }
+
+    /// Traces rays until there are `rays` over the hemisphere, and as many that are aimed at emitters.
+    pub(super) fn trace(
+        &mut self,
+        rays: u64,
+        sensors: &Sensors<'_>,
+        (origin, normal): (DVec3, DVec3),
+        choice: &Choice<'_>,
+        tracer: &mut Tracer<'_>,
+        met: &mut Met,
+    ) {
+        while self.rays < rays {
+            let numbers = self.rays..rays.min(self.rays + RAYS);
+            self.rays = numbers.end;
+            let ray = |direction| Ray::from(Line { origin, direction });
+            let mut all: Vec<Ray> =
+                numbers.clone().map(|i| ray(cosine_direction_of(normal, self.hemisphere.at(i)))).collect();
+            let free = all.len();
+            let mut aims = Vec::new();
+            if !choice.is_empty() {
+                aims.extend(numbers.filter_map(|i| choice.aim(self.aimed.at(i))));
+                all.extend(aims.iter().map(|aim| ray(aim.direction)));
+            }
+            // Rays are done in any order, but floats have to be added up in always the same.
+            let mut hits = vec![None; all.len()];
+            tracer.closest_each(&all, |i, hit| hits[i] = hit);
+            for (ray, hit) in all[..free].iter().zip(&hits) {
+                self.gather(sensors, choice, ray.line.direction, hit.as_ref(), met);
+            }
+            for (Aim { triangle, side, brings, .. }, hit) in aims.iter().zip(&hits[free..]) {
+                if hit.is_some_and(|hit| (hit.triangle, hit.side) == (*triangle, *side)) {
+                    self.direct += *brings;
+                }
+            }
+        }
+    }
+
+    /// Adds what a ray over the hemisphere brings: the radiosity of what it has met.
+    fn gather(
+        &mut self,
+        sensors: &Sensors<'_>,
+        choice: &Choice<'_>,
+        direction: DVec3,
+        hit: Option<&Hit>,
+        met: &mut Met,
+    ) {
+        let Model { scene, mesh, .. } = sensors.model;
+        let Some(hit) = hit else {
+            self.direct += scene.sky().map_or(Rgb::ZERO, |sky| PI * sky.radiance(direction));
+            return;
+        };
+        let Some(side) = mesh.side_at(hit.triangle, hit.point, hit.side) else { return };
+        self.direct += choice.met(hit.triangle, hit.side, direction, hit.t);
+        let reflectance = scene.material(hit.triangle).reflectance;
+        if reflectance != Rgb::ZERO {
+            self.reflected += reflectance * sensors.solution.irradiance[side.index()];
+            met.0.push((side, hit.triangle));
+        }
+    }
+}
+
+impl Met {
+    /// For each patch that was met: by how many rays, and the standard error of what it reflects.
+    pub(super) fn errors(&mut self, model: &Model, solution: &Solution) -> Vec<Gathered> {
+        self.0.sort_unstable_by_key(|(side, _)| *side);
+        let patches = self.0.chunk_by(|a, b| a.0 == b.0);
+        let gathered = |rays: &[(SideId, TriangleId)]| {
+            let &(side, triangle) = rays.first()?;
+            Some((rays.len() as u64, solution.standard_error(model, triangle, side)))
+        };
+        patches.filter_map(gathered).collect()
+    }
+}
