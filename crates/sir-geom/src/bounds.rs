@@ -33,6 +33,13 @@ impl BoundingBox {
     pub fn size(&self) -> DVec3 {
         self.max - self.min
     }
+
+    /// Areas of the faces across each axis, one of each pair.
+    #[must_use]
+    pub fn face_areas(&self) -> DVec3 {
+        let size = self.size();
+        DVec3::new(size.y * size.z, size.z * size.x, size.x * size.y)
+    }
 }
 
 /// A sphere.

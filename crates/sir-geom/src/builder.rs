@@ -48,6 +48,18 @@ pub enum SceneError {
         /// The value found.
         value: Rgb,
     },
+    /// A light has a negative, infinite or undefined number.
+    #[error("light {number} (\"{name}\") has a bad {what}: {rule}")]
+    BadLight {
+        /// Its number, from 0, in the order in which lights were added.
+        number: usize,
+        /// Name of the light.
+        name: String,
+        /// `position`, `direction`, `axis`, `cone`, `intensity` or `irradiance`.
+        what: &'static str,
+        /// What it must be.
+        rule: &'static str,
+    },
 }
 
 /// Something that was changed or left out while a scene was read.
@@ -185,11 +197,12 @@ impl SceneBuilder {
     ///
     /// # Errors
     ///
-    /// If nothing is left, an index is out of range, or a material has an impossible colour.
+    /// If nothing is left, an index is out of range, or a material or light has an impossible number.
     pub fn build(mut self) -> Result<Built, SceneError> {
         self.check_sizes()?;
         self.check_indices()?;
         self.check_materials()?;
+        self.check_lights()?;
         self.drop_degenerate_triangles();
         if self.triangles.is_empty() {
             let dropped = self.warnings.iter().map(|w| match w {
@@ -267,6 +280,15 @@ impl SceneBuilder {
         Ok(())
     }
 
+    fn check_lights(&self) -> Result<(), SceneError> {
+        for (number, light) in self.lights.iter().enumerate() {
+            if let Err((what, rule)) = light.kind.check() {
+                return Err(SceneError::BadLight { number, name: light.name.clone(), what, rule });
+            }
+        }
+        Ok(())
+    }
+
     /// Leaves out triangles that are a line or a point to the precision of the coordinates.
     fn drop_degenerate_triangles(&mut self) {
         let before = self.triangles.len();
@@ -306,6 +328,7 @@ impl SceneBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{LightKind, Spread};
 
     fn corner_triangle(builder: &mut SceneBuilder, scale: f64, material: MaterialId) {
         let v = [DVec3::ZERO, DVec3::X * scale, DVec3::Y * scale].map(|p| builder.add_vertex(p));
@@ -361,5 +384,37 @@ mod tests {
         let m = b.add_material(Material::diffuse("m", Rgb::new(f64::NAN, 0.0, 0.0)));
         corner_triangle(&mut b, 1.0, m);
         assert!(matches!(b.build().unwrap_err(), SceneError::BadMaterial { .. }));
+    }
+
+    #[test]
+    fn impossible_lights_are_refused() {
+        let (z, one) = (DVec3::Z, Rgb::ONE);
+        let distant = |direction, irradiance| LightKind::Distant { direction, irradiance };
+        let point = |position, spread| LightKind::Point { position, intensity: one, spread };
+        let spot = |inner, outer| point(z, Spread::Spot { axis: z, inner, outer });
+        for (kind, bad) in [
+            (distant(z, one), None),
+            (distant(z * 1.001, one), Some("direction")),
+            (distant(z, -one), Some("irradiance")),
+            (point(DVec3::NAN, Spread::Isotropic), Some("position")),
+            (point(z, Spread::Lambertian { axis: DVec3::ZERO }), Some("axis")),
+            (spot(0.9, 0.5), None),
+            (spot(0.5, 0.5), Some("cone")),
+            (spot(1.1, 0.5), Some("cone")),
+            (
+                LightKind::Point { position: z, intensity: Rgb::INFINITY, spread: Spread::Isotropic },
+                Some("intensity"),
+            ),
+        ] {
+            let mut b = SceneBuilder::new();
+            let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+            corner_triangle(&mut b, 1.0, m);
+            b.add_light(Light { name: "lamp".into(), kind });
+            match (b.build(), bad) {
+                (Ok(built), None) => assert_eq!(built.scene.lights()[0].kind, kind),
+                (Err(SceneError::BadLight { what, .. }), Some(bad)) => assert_eq!(what, bad),
+                (outcome, _) => panic!("{kind:?}: {outcome:?}"),
+            }
+        }
     }
 }

@@ -95,6 +95,39 @@ impl Spread {
 }
 
 impl LightKind {
+    /// What is wrong with it, if anything: the name of a field and what it must be.
+    pub(crate) fn check(&self) -> Result<(), (&'static str, &'static str)> {
+        let colour = |what, colour: Rgb| {
+            let good = colour.is_finite() && colour.min_element() >= 0.0;
+            good.then_some(()).ok_or((what, "it must be finite and not negative"))
+        };
+        let unit = |what, vector: DVec3| {
+            let good = (vector.length_squared() - 1.0).abs() < 1e-9;
+            good.then_some(()).ok_or((what, "it must be of unit length"))
+        };
+        match *self {
+            Self::Point { position, intensity, spread } => {
+                colour("intensity", intensity)?;
+                if !position.is_finite() {
+                    return Err(("position", "it must be finite"));
+                }
+                match spread {
+                    Spread::Isotropic => Ok(()),
+                    Spread::Lambertian { axis } => unit("axis", axis),
+                    Spread::Spot { axis, inner, outer } => {
+                        let good = -1.0 <= outer && outer < inner && inner <= 1.0;
+                        unit("axis", axis)?;
+                        good.then_some(()).ok_or(("cone", "the inner cone must be inside of the outer one"))
+                    }
+                }
+            }
+            Self::Distant { direction, irradiance } => {
+                unit("direction", direction)?;
+                colour("irradiance", irradiance)
+            }
+        }
+    }
+
     /// The light that arrives at a point; `None` at the very point of the light, and where it sends nothing.
     #[must_use]
     pub fn arrival(&self, point: DVec3) -> Option<Arrival> {

@@ -46,7 +46,8 @@ pub struct Triangle {
 /// Triangles, materials, lights and cameras in world space.
 ///
 /// Made by a [`SceneBuilder`](crate::SceneBuilder), which guarantees: at least one triangle, finite coordinates,
-/// indices in range, areas above zero, reflectances in `[0, MAX_REFLECTANCE]`, finite non-negative exitances.
+/// indices in range, areas above zero, reflectances in `[0, MAX_REFLECTANCE]`, finite non-negative exitances,
+/// lights with finite numbers and vectors of unit length.
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub(crate) vertices: Vec<DVec3>,

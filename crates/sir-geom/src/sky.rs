@@ -44,8 +44,8 @@ enum Pattern {
 /// Integrals of a pattern over its hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Integrals {
-    /// `∫ dω`.
-    all: f64,
+    /// `∫ |ω| dω`, by coordinates.
+    across: DVec3,
     /// No direction has more.
     bound: f64,
 }
@@ -122,22 +122,22 @@ impl Sky {
             return None;
         }
         // By the midpoints of equal steps in height, which are equal solid angles, and in longitude.
-        let across = up.any_orthonormal_vector();
-        let along = up.cross(across);
-        let (mut all, mut projected) = (0.0, 0.0);
+        let (x_axis, y_axis) = up.any_orthonormal_pair();
+        let (mut across, mut projected) = (DVec3::ZERO, 0.0);
         for i in 0..STEPS[0] {
             let sine = (f64::from(i) + 0.5) / f64::from(STEPS[0]);
             let cosine = (1.0 - sine * sine).sqrt();
             for k in 0..STEPS[1] {
                 let longitude = 2.0 * PI * (f64::from(k) + 0.5) / f64::from(STEPS[1]);
                 let (x, y) = (cosine * libm::cos(longitude), cosine * libm::sin(longitude));
-                let radiance = pattern.at(up, up * sine + across * x + along * y);
-                all += radiance;
+                let direction = up * sine + x_axis * x + y_axis * y;
+                let radiance = pattern.at(up, direction);
+                across += radiance * direction.abs();
                 projected += radiance * sine;
             }
         }
         let cell = 2.0 * PI / (f64::from(STEPS[0]) * f64::from(STEPS[1]));
-        let integrals = Integrals { all: all * cell, bound: pattern.bound() };
+        let integrals = Integrals { across: across * cell, bound: pattern.bound() };
         Some(Self { up, pattern, scale: horizontal / (projected * cell), ground, integrals })
     }
 
@@ -167,11 +167,18 @@ impl Sky {
         self.ground
     }
 
-    /// Integral of the radiance of the dome over its hemisphere, per band \[W/m²\]: times the area of a disc, the power through a
-    /// sphere of its radius.
+    /// Power of the dome per band \[W\] that enters a box, parallel to the axes, with faces of these areas across each axis \[m²\].
+    ///
+    /// Its shadow in the direction `ω` is `Σ Aₖ |ωₖ|`.
     #[must_use]
-    pub fn dome(&self) -> Rgb {
-        self.scale * self.integrals.all
+    pub fn dome_through(&self, areas: DVec3) -> Rgb {
+        self.scale * self.integrals.across.dot(areas)
+    }
+
+    /// The same of the ground: `|ωₖ|` has the integral `π` over any hemisphere.
+    #[must_use]
+    pub fn ground_through(&self, areas: DVec3) -> Rgb {
+        self.ground * (PI * areas.element_sum())
     }
 
     /// Radiance of the dome in a direction over the largest one there may be, from 0 to 1: the probability to keep a uniform
@@ -197,12 +204,19 @@ mod tests {
         let horizontal = Rgb::new(1.0, 2.0, 3.0);
         let uniform = Sky::new(DVec3::Z, SkyModel::Uniform, horizontal, Rgb::ZERO).unwrap();
         assert!((uniform.radiance(SUN) * PI).abs_diff_eq(horizontal, 1e-5));
-        assert!(uniform.dome().abs_diff_eq(2.0 * horizontal, 1e-5));
+        // What enters through a face is its irradiance; through both sides of an upright one, half the sky each.
+        for k in [0, 1, 2] {
+            assert!(uniform.dome_through(DVec3::AXES[k]).abs_diff_eq(horizontal, 1e-4), "{k}");
+        }
+        assert_eq!(uniform.ground_through(DVec3::ONE), Rgb::ZERO);
         assert_eq!(uniform.radiance(-SUN), Rgb::ZERO);
-        // L_z = 9 E / 7π, and 4π/3 L_z in all.
+        // L_z = 9 E / 7π; ∫ |x| dω = π, and ∫ sin γ |x| dω = 4/3.
         let overcast = Sky::new(DVec3::Z, SkyModel::Overcast, horizontal, Rgb::ONE).unwrap();
         assert!(overcast.radiance(DVec3::Z).abs_diff_eq(horizontal * 9.0 / (7.0 * PI), 1e-5));
-        assert!(overcast.dome().abs_diff_eq(horizontal * 12.0 / 7.0, 1e-5));
+        assert!(overcast.dome_through(DVec3::Z).abs_diff_eq(horizontal, 1e-4));
+        let upright = 9.0 / (7.0 * PI) * (PI + 8.0 / 3.0) / 3.0;
+        assert!(overcast.dome_through(DVec3::X).abs_diff_eq(horizontal * upright, 1e-4));
+        assert!(overcast.ground_through(DVec3::new(1.0, 2.0, 3.0)).abs_diff_eq(Rgb::splat(6.0 * PI), 1e-12));
         assert_eq!(overcast.radiance(-DVec3::Z), Rgb::ONE);
     }
 

@@ -67,7 +67,7 @@ impl Domain {
     pub fn surface(&self) -> f64 {
         match self {
             Self::Sphere(sphere) => sphere.surface_area(),
-            Self::Box(bounds) => 2.0 * face_areas(bounds).element_sum(),
+            Self::Box(bounds) => 2.0 * bounds.face_areas().element_sum(),
             Self::Hull(facets) => facets.surface(),
         }
     }
@@ -79,14 +79,19 @@ impl Domain {
     }
 }
 
-/// Areas of the faces of a box across each axis.
-fn face_areas(bounds: &BoundingBox) -> DVec3 {
-    let size = bounds.size();
-    DVec3::new(size.y * size.z, size.z * size.x, size.x * size.y)
+/// To which of three areas, one after the other, a place belongs.
+pub(crate) fn axis_of(place: f64, areas: DVec3) -> usize {
+    if place < areas.x {
+        0
+    } else if place < areas.x + areas.y {
+        1
+    } else {
+        2
+    }
 }
 
 fn sample_box(bounds: &BoundingBox, stream: &mut Stream) -> Line {
-    let areas = face_areas(bounds);
+    let areas = bounds.face_areas();
     let half = areas.element_sum();
     // The first half of the surface are the faces at the smallest coordinates.
     let mut place = 2.0 * half * stream.unit();
@@ -94,13 +99,7 @@ fn sample_box(bounds: &BoundingBox, stream: &mut Stream) -> Line {
     if at_max {
         place -= half;
     }
-    let axis = if place < areas.x {
-        0
-    } else if place < areas.x + areas.y {
-        1
-    } else {
-        2
-    };
+    let axis = axis_of(place, areas);
     let mut share = DVec3::new(stream.unit(), stream.unit(), stream.unit());
     share[axis] = if at_max { 1.0 } else { 0.0 };
     let mut inward = DVec3::ZERO;

@@ -9,7 +9,8 @@
 //! * Global lines: a [`Domain`] is a convex body around the scene: its convex hull, its box, or a sphere. The uniform
 //!   (isotropic) lines of the body meet a surface of area `A` in proportion to `A`, which integral geometry turns into a
 //!   [`Forecast`] of the number of crossings.
-//! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does.
+//! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does; [`unit_vector`] and
+//!   [`spot_direction`] leave a point. [`ParallelLines`] come from one direction.
 //! * [`EvenPoints`] are random, but not independent: for integrals over few lines, each of which has to count.
 //! * [`Allocation`] shares a number of lines among sources in proportion to their power.
 //!
@@ -43,6 +44,7 @@ mod even;
 mod facets;
 mod forecast;
 mod local;
+mod parallel;
 mod stream;
 mod turn;
 
@@ -52,6 +54,8 @@ pub use even::EvenPoints;
 pub use facets::Facets;
 pub use forecast::Forecast;
 pub use local::{
-    cosine_direction, cosine_direction_of, point_on_triangle, point_on_triangle_of, unit_vector,
+    cosine_direction, cosine_direction_of, point_on_triangle, point_on_triangle_of, spot_direction,
+    unit_vector,
 };
+pub use parallel::ParallelLines;
 pub use stream::{Stage, Stream, Streams};

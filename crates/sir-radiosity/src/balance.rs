@@ -13,7 +13,7 @@ pub struct Balance {
     pub absorbed: Quanta,
     /// Absorbed by the backs of one-sided surfaces.
     pub blocked: Quanta,
-    /// Left the scene.
+    /// Left the scene, or never met it: light from outside enters the box around it.
     pub escaped: Quanta,
     /// Reflected, but not sent out again.
     pub unshot: Quanta,

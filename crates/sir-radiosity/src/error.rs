@@ -5,10 +5,11 @@ use thiserror::Error;
 /// Why light cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SolveError {
-    /// No surface emits.
+    /// There is no light of any kind.
     #[error(
         "nothing in the scene emits light; give a material an emission \
-         (glTF: emissiveFactor with KHR_materials_emissive_strength, OBJ: Ke in the MTL file)"
+         (glTF: emissiveFactor with KHR_materials_emissive_strength, OBJ: Ke in the MTL file), or add lights in the pipeline, for \
+         instance `Light([Sky(horizontal: 1000)])`"
     )]
     NoLight,
     /// Power was lost or made: a tally overflowed.

@@ -5,8 +5,8 @@
 use std::ops::Range;
 
 use sir_accel::Ray;
-use sir_geom::{Line, Rgb};
-use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
+use sir_geom::Rgb;
+use sir_lines::{Allocation, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global::AHEAD;
@@ -163,11 +163,7 @@ impl<'m> FirstShot<'m> {
 
     /// The ray of a line of a source.
     fn ray_of(&self, source: usize, index: u64) -> Ray {
-        let Source { triangle, corners, normal, .. } = self.sources[source];
-        let mut stream = self.streams.line(index);
-        let origin = point_on_triangle(&mut stream).point(corners);
-        let line = Line { origin, direction: cosine_direction(normal, &mut stream) };
-        Ray { line, leaving: Some(triangle) }
+        self.sources[source].emitter.ray(&self.model.scene, &mut self.streams.line(index))
     }
 
     /// Traces some of the lines. Each line should be traced once, by whomever; `worker` is the number of who does.

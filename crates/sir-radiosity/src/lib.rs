@@ -7,7 +7,8 @@
 //! solution. It knows nothing of threads, ranks, files or progress: those who do cut the ranges, and see the state of a
 //! stage as a sequence of numbers ([`Visitor`]).
 //!
-//! * [`FirstShot`]: lines from the light sources carry the emitted power to the first surfaces.
+//! * [`FirstShot`]: lines from the light sources ([`Emitter`]: surfaces, points, parallel light, the sky) carry the emitted power to
+//!   the first surfaces.
 //! * Lines through the whole scene pass the reflected power on, between every pair of surfaces that face each other
 //!   along a line, in both directions. [`Multipath`] sends it on line by line, as published. [`Batches`] freezes
 //!   what surfaces send while the lines of a batch are traced, so that any number of workers can share them.
@@ -58,6 +59,7 @@
 
 mod balance;
 mod batches;
+mod emitter;
 mod error;
 mod first_shot;
 mod global;
@@ -77,6 +79,7 @@ mod view_factors;
 
 pub use balance::{Balance, Books, Counts};
 pub use batches::{Batches, Part, Totals};
+pub use emitter::Emitter;
 pub use error::SolveError;
 pub use first_shot::{FirstShot, FirstShotTally, Shot};
 pub use grouping::Grouping;

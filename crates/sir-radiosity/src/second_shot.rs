@@ -11,6 +11,7 @@ use sir_geom::{Rgb, Side};
 use sir_lines::Stage;
 use sir_mesh::{PatchId, SideId};
 
+use crate::emitter::Emitter;
 use crate::first_shot::{FirstShot, FirstShotTally, Shot};
 use crate::sources::Source;
 use crate::{Books, Model, Quanta, SolveError, Visitor};
@@ -44,7 +45,8 @@ impl<'m> SecondShot<'m> {
                     if bright[id.index()] {
                         let corners = model.mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
                         let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
-                        sources.push(Source { triangle, side, corners, normal, power });
+                        let emitter = Emitter::Surface { triangle, side, corners, normal };
+                        sources.push(Source { emitter, power });
                         sides.push(id);
                     }
                 }

@@ -6,18 +6,20 @@ use glam::DVec3;
 use sir_geom::{Rgb, Scene, Side, TriangleId};
 
 use super::Sensor;
-use crate::sources::{Source, sources};
+use crate::{Emitter, sources};
 
 /// All emitting surfaces of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Emitters {
-    sources: Vec<Source>,
-    /// Exitance and area of each.
     lamps: Vec<Lamp>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Lamp {
+    triangle: TriangleId,
+    side: Side,
+    corners: [DVec3; 3],
+    normal: DVec3,
     exitance: Rgb,
     area: f64,
 }
@@ -47,18 +49,22 @@ pub(super) struct Aim {
 
 impl Emitters {
     pub(super) fn of(scene: &Scene) -> Self {
-        let sources = sources(scene);
-        let lamp =
-            |s: &Source| Lamp { exitance: scene.exitance(s.triangle, s.side), area: scene.area(s.triangle) };
-        Self { lamps: sources.iter().map(lamp).collect(), sources }
+        let lamps = sources(scene).into_iter().filter_map(|source| match source.emitter {
+            Emitter::Surface { triangle, side, corners, normal } => {
+                let (exitance, area) = (scene.exitance(triangle, side), scene.area(triangle));
+                Some(Lamp { triangle, side, corners, normal, exitance, area })
+            }
+            // Lights without a surface are measured by themselves, and the sky is what no ray meets.
+            _ => None,
+        });
+        Self { lamps: lamps.collect() }
     }
 
     /// How often each is to be aimed at from a point that looks in the direction `normal`: in proportion to an estimate of the
     /// irradiance that it brings.
     pub(super) fn from(&self, origin: DVec3, sensor: &Sensor) -> Choice<'_> {
         let normal = sensor.direction;
-        let weights: Vec<f64> =
-            self.sources.iter().zip(&self.lamps).map(|(s, lamp)| weight(s, lamp, origin, normal)).collect();
+        let weights: Vec<f64> = self.lamps.iter().map(|lamp| weight(lamp, origin, normal)).collect();
         let total: f64 = weights.iter().sum();
         let mut sum = 0.0;
         let mut ends = Vec::new();
@@ -74,9 +80,9 @@ impl Emitters {
 
 /// Exitance times an estimate of the share of the hemisphere that a source takes: from the geometry at its corners and its middle,
 /// and never more than all. Zero only where the source is behind the sensor, or the sensor behind the source.
-fn weight(source: &Source, lamp: &Lamp, origin: DVec3, normal: DVec3) -> f64 {
-    let [a, b, c] = source.corners;
-    let height = (origin - a).dot(source.normal);
+fn weight(lamp: &Lamp, origin: DVec3, normal: DVec3) -> f64 {
+    let [a, b, c] = lamp.corners;
+    let height = (origin - a).dot(lamp.normal);
     if height <= 0.0 {
         return 0.0;
     }
@@ -111,9 +117,9 @@ impl Choice<'_> {
     /// counts `M/π · cos θ` over the sum of both (the balance heuristic of Veach and Guibas 1995), which is never more than `M`:
     /// neither an emitter that nearly touches the sensor nor one that is small and bright makes few rays carry much.
     fn brings(&self, k: usize, direction: DVec3, distance: f64) -> Rgb {
-        let Lamp { exitance, area } = self.emitters.lamps[k];
+        let Lamp { exitance, area, normal, .. } = self.emitters.lamps[k];
         let cosine = direction.dot(self.normal);
-        let its_cosine = -direction.dot(self.emitters.sources[k].normal);
+        let its_cosine = -direction.dot(normal);
         if cosine <= 0.0 || its_cosine <= 0.0 {
             return Rgb::ZERO;
         }
@@ -123,7 +129,7 @@ impl Choice<'_> {
 
     /// What a ray of the cosine distribution brings that has met this side at this distance.
     pub(super) fn met(&self, triangle: TriangleId, side: Side, direction: DVec3, distance: f64) -> Rgb {
-        let found = self.emitters.sources.binary_search_by_key(&(triangle, side), |s| (s.triangle, s.side));
+        let found = self.emitters.lamps.binary_search_by_key(&(triangle, side), |s| (s.triangle, s.side));
         found.map_or(Rgb::ZERO, |k| self.brings(k, direction, distance))
     }
 
@@ -134,7 +140,7 @@ impl Choice<'_> {
         let probability = self.probability(k);
         let start = self.ends[k] - probability;
         let within = ((u - start) / probability).clamp(0.0, 1.0);
-        let Source { triangle, side, corners, .. } = self.emitters.sources[k];
+        let Lamp { triangle, side, corners, .. } = self.emitters.lamps[k];
         let to = sir_lines::point_on_triangle_of([within, v]).point(corners) - self.origin;
         let (distance, direction) = (to.length(), to.try_normalize()?);
         let brings = self.brings(k, direction, distance);

@@ -1,0 +1,70 @@
+//! Lines from one direction.
+
+use glam::DVec3;
+use sir_geom::{BoundingBox, Line};
+
+use crate::Stream;
+use crate::domain::axis_of;
+
+/// The lines of one direction that meet a box, uniform in the plane across them.
+///
+/// They enter through the faces that look against them, at most three, each of which takes the share of its projected area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParallelLines {
+    bounds: BoundingBox,
+    direction: DVec3,
+    /// Projected areas of the faces across each axis.
+    areas: DVec3,
+}
+
+impl ParallelLines {
+    /// The lines with a direction of unit length.
+    #[must_use]
+    pub fn through(bounds: BoundingBox, direction: DVec3) -> Self {
+        Self { bounds, direction, areas: bounds.face_areas() * direction.abs() }
+    }
+
+    /// Area of the shadow of the box \[m²\].
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.areas.element_sum()
+    }
+
+    /// A random line; its origin is on the box.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream) -> Line {
+        let axis = axis_of(self.area() * stream.unit(), self.areas);
+        let mut share = DVec3::ZERO;
+        share[(axis + 1) % 3] = stream.unit();
+        share[(axis + 2) % 3] = stream.unit();
+        share[axis] = if self.direction[axis] > 0.0 { 0.0 } else { 1.0 };
+        Line { origin: self.bounds.min + share * self.bounds.size(), direction: self.direction }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Stage, Streams};
+
+    /// Any area across the lines gets its share of them: here the shadow of a ball in the box.
+    #[test]
+    fn lines_are_uniform_across_their_direction() {
+        let bounds = BoundingBox { min: DVec3::new(-1.0, -2.0, -3.0), max: DVec3::new(1.0, 2.0, 3.0) };
+        let streams = Streams::new(3, Stage::FIRST_SHOT);
+        for direction in [DVec3::new(2.0, -1.0, -2.0) / 3.0, DVec3::new(0.6, 0.8, 0.0), DVec3::Z] {
+            let lines = ParallelLines::through(bounds, direction);
+            let expected = std::f64::consts::PI / lines.area();
+            for centre in [DVec3::ZERO, DVec3::new(0.0, 1.0, -2.0)] {
+                let n = 100_000;
+                let meets = |i: &u64| {
+                    let origin = lines.sample(&mut streams.line(*i)).origin;
+                    (origin - centre).cross(direction).length_squared() < 1.0
+                };
+                let share = (0..n).filter(meets).count() as f64 / n as f64;
+                let error = (expected * (1.0 - expected) / n as f64).sqrt();
+                assert!((share - expected).abs() < 4.0 * error, "{direction}, {centre}: {share}");
+            }
+        }
+    }
+}
