@@ -35,12 +35,7 @@ impl<'w> Bench<'w> {
     }
 
     /// Makes a run.
-    pub(crate) fn run(
-        &mut self,
-        sample: &Sample<'_>,
-        lines: u64,
-        seed: u64,
-    ) -> Result<Vec<f64>, RunError> {
+    pub(crate) fn run(&mut self, sample: &Sample<'_>, lines: u64, seed: u64) -> Result<Vec<f64>, RunError> {
         let tick = Tick {
             watcher: &mut *self.watcher,
             before: self.done,

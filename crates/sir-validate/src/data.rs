@@ -179,7 +179,11 @@ impl Case {
     }
 
     /// Something that a case of its kind must have.
-    pub(crate) fn need<'a, T>(&self, what: &'static str, found: Option<&'a T>) -> Result<&'a T, ValidateError> {
+    pub(crate) fn need<'a, T>(
+        &self,
+        what: &'static str,
+        found: Option<&'a T>,
+    ) -> Result<&'a T, ValidateError> {
         found.ok_or_else(|| ValidateError::Missing { case: self.id.clone(), what })
     }
 }

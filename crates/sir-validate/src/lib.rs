@@ -37,12 +37,17 @@
 mod bench;
 mod catalogue;
 mod check;
+mod cube;
 mod data;
 mod error;
 mod estimate;
+mod factors;
+mod flux;
 mod light;
+mod points;
 mod radiosity;
 mod report;
+mod room;
 mod shape;
 mod trial;
 mod validate;

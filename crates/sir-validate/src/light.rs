@@ -34,11 +34,7 @@ pub(crate) fn scene(
 }
 
 /// The same, before it is built.
-pub(crate) fn builder(
-    surfaces: &[&Surface],
-    paint: impl Fn(usize) -> Paint,
-    segments: u32,
-) -> SceneBuilder {
+pub(crate) fn builder(surfaces: &[&Surface], paint: impl Fn(usize) -> Paint, segments: u32) -> SceneBuilder {
     let mut builder = SceneBuilder::new();
     for (i, surface) in surfaces.iter().enumerate() {
         let Paint { exitance, reflectance } = paint(i);
@@ -54,17 +50,22 @@ pub(crate) fn per_face(scene: Scene) -> Result<Model, ValidateError> {
     Ok(Model::new(scene, Subdivision::PerFace)?)
 }
 
-/// All the light: a first and a second shot with 40 and 10 % of the lines, and global lines through the hull.
-pub(crate) fn solve(
-    model: &Model,
-    lines: u64,
-    seed: u64,
-    crew: &mut Crew<'_>,
-) -> Result<Solution, RunError> {
+/// The light of a scene.
+pub(crate) struct Light {
+    /// What comes straight from the sources.
+    pub(crate) direct: Solution,
+    /// All of it.
+    pub(crate) all: Solution,
+}
+
+/// Lights a scene: a first and a second shot with 40 and 10 % of the lines, and the rest through the convex hull.
+pub(crate) fn solve(model: &Model, lines: u64, seed: u64, crew: &mut Crew<'_>) -> Result<Light, RunError> {
     let shot = first_shot(model, lines * 2 / 5, seed, crew, None)?.outcome;
+    let direct = shot.solution(model);
     let shot = second_shot(model, shot, lines / 10, seed, crew, None)?.outcome;
     let domain = Domain::hull(&model.scene);
-    Ok(batches(model, shot, lines / 2, domain, seed, crew, None)?.outcome.solution)
+    let all = batches(model, shot, lines / 2, domain, seed, crew, None)?.outcome.solution;
+    Ok(Light { direct, all })
 }
 
 /// What falls on a surface and what leaves it.

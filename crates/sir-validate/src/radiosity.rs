@@ -60,8 +60,12 @@ enum Inputs {
 impl Inputs {
     fn of(&self, name: &str) -> Option<Light> {
         match self {
-            Self::Numbered { m1, rho1, .. } if name == "1" => Some(Light { exitance: *m1, reflectance: *rho1 }),
-            Self::Numbered { m2, rho2, .. } if name == "2" => Some(Light { exitance: *m2, reflectance: *rho2 }),
+            Self::Numbered { m1, rho1, .. } if name == "1" => {
+                Some(Light { exitance: *m1, reflectance: *rho1 })
+            }
+            Self::Numbered { m2, rho2, .. } if name == "2" => {
+                Some(Light { exitance: *m2, reflectance: *rho2 })
+            }
             Self::Numbered { .. } => None,
             Self::Named(lights) => lights.get(name).copied(),
         }
@@ -116,7 +120,7 @@ pub(crate) fn surfaces(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
         let model = per_face(scene(&surfaces, |i| paints[i], effort.segments(segments))?)?;
         Ok(Box::new(move |lines, seed, crew| {
-            let means = means(&model, &solve(&model, lines, seed, crew)?);
+            let means = means(&model, &solve(&model, lines, seed, crew)?.all);
             let (mut values, mut emitted, mut absorbed) = (Vec::new(), 0.0, 0.0);
             for (mean, material) in means.iter().zip(model.scene.materials()) {
                 values.extend([mean.radiosity.x, mean.irradiance.x]);
@@ -154,7 +158,8 @@ pub(crate) fn enclosures(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
                 for wall in walls {
                     for (what, exact) in [("B", *radiosity), ("E", *irradiance)] {
                         let name = format!("{what} {}", wall.name);
-                        quantities.push(Quantity { group: Some(group.clone()), ..Quantity::new(name, exact) });
+                        quantities
+                            .push(Quantity { group: Some(group.clone()), ..Quantity::new(name, exact) });
                     }
                 }
             }
@@ -163,7 +168,7 @@ pub(crate) fn enclosures(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
             let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
                 let model = per_face(scene(&walls, |_| paint, effort.segments(SEGMENTS))?)?;
                 Ok(Box::new(move |lines, seed, crew| {
-                    let means = means(&model, &solve(&model, lines, seed, crew)?);
+                    let means = means(&model, &solve(&model, lines, seed, crew)?.all);
                     let of_band = |band: usize| {
                         means.iter().flat_map(move |mean| [mean.radiosity[band], mean.irradiance[band]])
                     };

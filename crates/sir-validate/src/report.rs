@@ -50,9 +50,7 @@ impl Report {
             "{passed} of {all} answers in {} cases are exact to within noise",
             self.cases.len() - skipped.len()
         );
-        for (verdict, what) in
-            [(Verdict::Wrong, "are wrong"), (Verdict::TooNoisy, "are too noisy to tell")]
-        {
+        for (verdict, what) in [(Verdict::Wrong, "are wrong"), (Verdict::TooNoisy, "are too noisy to tell")] {
             match self.count(verdict) {
                 0 => {}
                 count => text += &format!("; {count} {what}"),

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use serde::Serialize;
 
 use crate::bench::{Bench, Watcher};
-use crate::catalogue::{Plan, plan};
+use crate::catalogue::plan;
 use crate::data::Case;
 use crate::{Check, Reference, ValidateError, Verdict};
 
