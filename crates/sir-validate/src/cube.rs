@@ -1,11 +1,15 @@
 //! CIE 171, 5.8: a closed cube with an isotropic point light in its centre.
 
-use sir_geom::{Rgb, Scene};
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use sir_geom::shapes::quad;
+use sir_geom::{Material, Rgb, Scene, SceneBuilder};
 use sir_mesh::Subdivision;
 use sir_radiosity::Model;
 
-use crate::data::{Case, Point, Surface};
-use crate::light::{Paint, builder, means, solve};
+use crate::data::{Case, FaceAverage, Point, Shape, Surface};
+use crate::light::{Paint, builder, means, per_face, solve};
 use crate::points::{irradiances, sensors};
 use crate::room::{add_point, flux};
 use crate::shape::SEGMENTS;
@@ -15,18 +19,56 @@ use crate::{Effort, ValidateError};
 /// Patches and lines of a run for the averages of faces. Those are right whatever the patches, since all faces are alike.
 const AVERAGES: (u64, u64) = (2_400, 800_000);
 
-/// The same for the light at points, of which one is 5 cm from two walls: patches have edges of 6 cm. Half of the lines are global and meet
-/// each patch some fifty times.
-const POINTS: (u64, u64) = (50_000, 2_500_000);
+/// Cells along an edge and lines of a run for the light at points. Cells are a tenth of a metre in the middle of a face and
+/// smaller towards its edges; half of the lines are global, and meet each cell some two hundred times.
+const POINTS: (u32, u64) = (48, 3_200_000);
+
+/// The same for points close to an edge: they see little but what few lines meet next to it, and need more runs than others.
+const CORNERS: (u32, u64) = (32, 2_000_000);
+
+/// What is close to an edge \[m\].
+const CLOSE: f64 = 0.1;
 
 /// Rays of a point.
 const RAYS: u64 = 20_000;
 
-/// The scene, with a reflectance for each band.
-fn scene(case: &Case, reflectance: Rgb) -> Result<Scene, ValidateError> {
+/// Adds the point light.
+fn add_light(case: &Case, builder: &mut SceneBuilder) -> Result<(), ValidateError> {
+    add_point(builder, case.need("source", case.geometry.source.as_ref())?, flux(case)?);
+    Ok(())
+}
+
+/// The cube as it is, with a reflectance for each band.
+fn plain(case: &Case, reflectance: Rgb) -> Result<Scene, ValidateError> {
     let surfaces: Vec<&Surface> = case.geometry.surfaces.iter().collect();
     let mut builder = builder(&surfaces, |_| Paint { exitance: Rgb::ZERO, reflectance }, SEGMENTS);
-    add_point(&mut builder, case.need("source", case.geometry.source.as_ref())?, flux(case)?);
+    add_light(case, &mut builder)?;
+    Ok(builder.build()?.scene)
+}
+
+/// The cube with faces of `cells` times `cells` rectangles, the smaller the closer to an edge.
+fn graded(case: &Case, reflectance: Rgb, cells: u32) -> Result<Scene, ValidateError> {
+    let mut builder = SceneBuilder::new();
+    let material = builder.add_material(Material::diffuse("", reflectance));
+    let at = |i: u32| {
+        let u = f64::from(i) / f64::from(cells);
+        0.5 * u + 0.25 * (1.0 - (PI * u).cos())
+    };
+    for surface in &case.geometry.surfaces {
+        let corners = match &surface.shape {
+            Shape::Polygon { vertices } => <[[f64; 3]; 4]>::try_from(vertices.as_slice()).ok(),
+            _ => None,
+        };
+        let [a, b, _, d] = case.need("square faces", corners.as_ref())?.map(DVec3::from_array);
+        let point = |i: u32, j: u32| a + (b - a) * at(i) + (d - a) * at(j);
+        for i in 0..cells {
+            for j in 0..cells {
+                let corners = [point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)];
+                quad(&mut builder, corners, material);
+            }
+        }
+    }
+    add_light(case, &mut builder)?;
     Ok(builder.build()?.scene)
 }
 
@@ -39,7 +81,9 @@ pub(crate) fn cube(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
         points.push((*case.need("point values named `rho=…`", reflectance.as_ref())?, values.as_slice()));
     }
     for some in points.chunks(3) {
-        trials.push(at_points(case, some)?);
+        for close in [false, true] {
+            trials.push(at_points(case, some, close)?);
+        }
     }
     Ok(trials)
 }
@@ -51,7 +95,7 @@ fn bands(reflectances: impl Iterator<Item = f64>) -> Rgb {
     bands
 }
 
-fn averages<'a>(case: &'a Case, some: &'a [crate::data::FaceAverage]) -> Trial<'a> {
+fn averages<'a>(case: &'a Case, some: &'a [FaceAverage]) -> Trial<'a> {
     let mut quantities = Vec::new();
     for average in some {
         let rho = average.reflectance;
@@ -65,7 +109,7 @@ fn averages<'a>(case: &'a Case, some: &'a [crate::data::FaceAverage]) -> Trial<'
     }
     let (patches, lines) = AVERAGES;
     let prepare = move |_: Effort| -> Result<Sample<'a>, ValidateError> {
-        let scene = scene(case, bands(some.iter().map(|average| average.reflectance)))?;
+        let scene = plain(case, bands(some.iter().map(|average| average.reflectance)))?;
         let model = Model::new(scene, Subdivision::Patches(patches))?;
         Ok(Box::new(move |lines, seed, crew| {
             let light = solve(&model, lines, seed, crew)?;
@@ -83,21 +127,28 @@ fn averages<'a>(case: &'a Case, some: &'a [crate::data::FaceAverage]) -> Trial<'
     Trial { quantities, lines, prepare: Box::new(prepare) }
 }
 
-/// The light at points, which are the same for all reflectances.
-fn at_points<'a>(case: &'a Case, some: &[(f64, &'a [Point])]) -> Result<Trial<'a>, ValidateError> {
+/// The light at points, which are the same for all reflectances: those that are close to two edges, or the others.
+fn at_points<'a>(
+    case: &'a Case,
+    some: &[(f64, &'a [Point])],
+    close: bool,
+) -> Result<Trial<'a>, ValidateError> {
+    let chosen = |points: &'a [Point]| {
+        points.iter().filter(move |point| (point.position.iter().all(|&x| x < CLOSE)) == close)
+    };
     let of = |&(rho, points): &(f64, &'a [Point])| {
-        points.iter().map(move |point| Quantity {
+        chosen(points).map(move |point| Quantity {
             published: point.cie_published,
             ..Quantity::new(format!("ρ = {rho}, all light: {}", point.name), point.exact)
         })
     };
     let quantities = some.iter().flat_map(of).collect();
     let (count, rho) = (some.len(), bands(some.iter().map(|&(rho, _)| rho)));
-    let sensors = sensors(case, case.need("points", some.first())?.1)?;
-    let (patches, lines) = POINTS;
+    let sensors = sensors(case, chosen(case.need("points", some.first())?.1))?;
+    let (cells, lines) = if close { CORNERS } else { POINTS };
     let prepare = move |effort: Effort| -> Result<Sample<'a>, ValidateError> {
-        let patches = effort.lines(patches);
-        let model = Model::new(scene(case, rho)?, Subdivision::Patches(patches))?;
+        let cells = if effort == Effort::Full { cells } else { cells / 2 };
+        let model = per_face(graded(case, rho, cells)?)?;
         let sensors = sensors.clone();
         Ok(Box::new(move |lines, seed, crew| {
             let light = solve(&model, lines, seed, crew)?;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use sir_geom::{Rgb, Scene};
 use sir_mesh::Subdivision;
 use sir_parallel::{Crew, RunError, measure};
-use sir_radiosity::{Model, Sensor, SensorSettings, Shot, Solution};
+use sir_radiosity::{LIFT, Model, Sensor, SensorSettings, Shot, Solution};
 
 use crate::data::{Case, Point, Surface};
 use crate::room::{add_point, black, exitance, flux, open_to_sky};
@@ -18,11 +18,14 @@ const RAYS: u64 = 2_000;
 const RAYS_TO_SKY: u64 = 200_000;
 
 /// Sensors at points.
-pub(crate) fn sensors(case: &Case, points: &[Point]) -> Result<Vec<Sensor>, ValidateError> {
+pub(crate) fn sensors<'p>(
+    case: &Case,
+    points: impl IntoIterator<Item = &'p Point>,
+) -> Result<Vec<Sensor>, ValidateError> {
     let sensor =
         |point: &Point| Sensor::new(DVec3::from_array(point.position), DVec3::from_array(point.normal));
-    let sensors = points.iter().map(|point| Ok(*case.need("normal of a point", sensor(point).as_ref())?));
-    sensors.collect()
+    let points = points.into_iter();
+    points.map(|point| Ok(*case.need("normal of a point", sensor(point).as_ref())?)).collect()
 }
 
 /// The irradiance at sensors, by so many rays at each.
@@ -79,6 +82,17 @@ impl Setting {
         Ok(builder.build()?.scene)
     }
 
+    /// Where a sensor has to be to look from a point of the scene. Sensors look from a little above their position, for them not to be
+    /// below the surface that they lie on. Where that is left out, they need not, and some points see just nothing.
+    fn place(&self, sensor: Sensor, scene: &Scene) -> Sensor {
+        let lift = LIFT * scene.bounding_sphere().radius;
+        let lowered = Sensor::new(sensor.position() - lift * sensor.direction(), sensor.direction());
+        match self {
+            Self::Reflector => lowered.unwrap_or(sensor),
+            _ => sensor,
+        }
+    }
+
     /// What irradiances are multiplied with.
     fn unit(&self) -> f64 {
         match self {
@@ -98,7 +112,8 @@ pub(crate) fn points(case: &Case, setting: Setting) -> Result<Vec<Trial<'_>>, Va
     let rays = if matches!(setting, Setting::Sky) { RAYS_TO_SKY } else { RAYS };
     let prepare = move |_: Effort| -> Result<Sample<'_>, ValidateError> {
         let model = Model::new(setting.scene(case)?, Subdivision::PerTriangle)?;
-        let (sensors, unit) = (sensors.clone(), setting.unit());
+        let place = |&sensor: &Sensor| setting.place(sensor, &model.scene);
+        let (sensors, unit): (Vec<_>, _) = (sensors.iter().map(place).collect(), setting.unit());
         Ok(Box::new(move |lines, seed, crew| {
             // All surfaces are black: what they receive is seen by nobody.
             let solution = Shot::nothing(&model).solution(&model);
