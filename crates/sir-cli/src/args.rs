@@ -8,6 +8,7 @@ use clap::{Parser, Subcommand};
 
 use crate::experiment::ExperimentArgs;
 use crate::scaling::ScalingArgs;
+use crate::validate::ValidateArgs;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -18,6 +19,7 @@ Examples:
   mpirun -n 4 sir run room.ron                   on several machines, if built with --features mpi
   sir scaling room.ron --threads 1,2,4           how much faster are more threads?
   sir experiment --scale 0.01                    what does the paper of 2009 claim, and does it hold?
+  sir validate --quick                           are answers right where they are known?
 
 A pipeline is a text file like this one (docs/pipeline.md tells all):
   Pipeline(
@@ -100,6 +102,11 @@ pub enum Command {
     /// their work is shared, and what the mean of independent replicas loses. The output directory gets report.md with diagrams
     /// and pictures, report.json, and all runs with their pipelines. Takes hours; a small --scale, minutes.
     Experiment(ExperimentArgs),
+    /// Check the program against cases whose answers are known.
+    ///
+    /// View factors, the analytical cases of CIE 171:2006, and exact solutions of radiosity. Prints exact answers, ours, their standard
+    /// errors and the differences, and ends with 1 if one is off by more than four standard errors. Takes minutes; --quick, half a minute.
+    Validate(ValidateArgs),
 }
 
 /// How to run a pipeline.
@@ -147,7 +154,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
     number.ok_or_else(|| "write a number of seconds, 0 or more".into())
 }
 
-fn threads(text: &str) -> Result<NonZeroUsize, String> {
+pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let number = text.parse().ok().filter(|&n| n <= 4096).and_then(NonZeroUsize::new);
     number.ok_or_else(|| "write a whole number from 1 to 4096".into())
 }

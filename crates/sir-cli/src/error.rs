@@ -12,6 +12,7 @@ use thiserror::Error;
 use crate::diagnostic::Diagnostics;
 use crate::experiment::ExperimentError;
 use crate::scaling::ScalingError;
+use crate::validate::ValidationError;
 
 /// Why a command fails. Every message ends with what to do, where that is not obvious.
 #[derive(Debug, Error)]
@@ -131,6 +132,9 @@ pub enum Error {
     /// The experiment cannot be done.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
+    /// Answers are wrong, or cannot be checked.
+    #[error(transparent)]
+    Validation(#[from] ValidationError),
 }
 
 impl From<SolveError> for Error {
@@ -156,6 +160,7 @@ impl Error {
             Self::Elsewhere { code, .. } => *code,
             Self::Scaling(error) => error.exit_code(),
             Self::Experiment(error) => error.exit_code(),
+            Self::Validation(error) => error.exit_code(),
             _ => 1,
         }
     }

@@ -54,6 +54,7 @@ mod save;
 pub mod scaling;
 pub mod summary;
 pub mod units;
+pub mod validate;
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -131,6 +132,7 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
         }
         Command::Scaling(args) => scaling::command(&args),
         Command::Experiment(args) => experiment::command(&args),
+        Command::Validate(args) => validate::command(&args),
     }
 }
 

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::{
-    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Light, Material, MaterialId, Sides, Sky, TriangleId,
-    VertexId,
+    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Light, Material, MaterialId, Sides, Sky,
+    TriangleId, VertexId,
 };
 
 /// One side of a triangle.

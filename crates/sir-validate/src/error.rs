@@ -59,4 +59,13 @@ impl ValidateError {
     pub fn is_interrupt(&self) -> bool {
         matches!(self, Self::Run(RunError::Interrupted { .. }))
     }
+
+    /// Whether what was asked for makes no sense: a case that is not there, or a file that is none of exact answers.
+    #[must_use]
+    pub fn is_usage(&self) -> bool {
+        match self {
+            Self::File { .. } | Self::Layout { .. } | Self::Missing { .. } | Self::NoCase { .. } => true,
+            Self::Scene(_) | Self::Mesh(_) | Self::Run(_) => false,
+        }
+    }
 }

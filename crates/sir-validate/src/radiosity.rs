@@ -180,3 +180,47 @@ pub(crate) fn enclosures(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     }
     Ok(trials)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::num::NonZeroUsize;
+
+    use super::*;
+    use crate::Reference;
+    use crate::estimate::Estimate;
+    use sir_parallel::Crew;
+
+    /// By how much the irradiance of the first zone of RE-06 is off, relatively, if circles are cut into so many parts.
+    fn facets(segments: u32) -> Estimate {
+        let reference = Reference::built_in().unwrap();
+        let case = reference.cases.iter().find(|case| case.id == "RE-06").unwrap();
+        let (inputs, values): (Inputs, Values) = (case.inputs().unwrap(), case.values().unwrap());
+        let surfaces: Vec<&Surface> = case.geometry.surfaces.iter().collect();
+        let [_, exact] = values.of("zone 1").unwrap();
+        let paint = |i: usize| {
+            let light = inputs.of(&surfaces[i].name).unwrap();
+            Paint::grey(light.exitance, light.reflectance)
+        };
+        let model = per_face(scene(&surfaces, paint, segments).unwrap()).unwrap();
+        let run = |seed| {
+            let crew = &mut Crew::of(NonZeroUsize::MIN);
+            let light = solve(&model, 400_000, seed, crew).unwrap().all;
+            means(&model, &light)[0].irradiance.x / exact - 1.0
+        };
+        Estimate::of(&(0..16).map(run).collect::<Vec<_>>())
+    }
+
+    /// What facets change falls with the square of their size, and is below a fifth of the largest standard error in full and in quick runs.
+    #[test]
+    fn facets_change_little() {
+        let (coarse, fine) = (facets(12), facets(24));
+        assert!(coarse.mean < -0.01 && coarse.sigma < 5e-4, "{coarse:?}");
+        let ratio = coarse.mean / fine.mean;
+        assert!((3.0..6.0).contains(&ratio), "{coarse:?}, {fine:?}");
+        let bound = fine.mean.abs() + 4.0 * fine.sigma;
+        for effort in [Effort::Full, Effort::Quick] {
+            let finer = f64::from(effort.segments(SEGMENTS)) / 24.0;
+            assert!(bound / (finer * finer) < 0.2 * effort.precision(), "{fine:?}");
+        }
+    }
+}
