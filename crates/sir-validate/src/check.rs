@@ -62,8 +62,7 @@ impl Verdict {
 impl Check {
     pub(crate) fn new(quantity: &Quantity, estimate: Estimate, effort: Effort) -> Self {
         let z = estimate.z(quantity.exact);
-        // Written so that NaN does not pass.
-        let verdict = if !(z.abs() <= LIMIT) {
+        let verdict = if z.is_nan() || z.abs() > LIMIT {
             Verdict::Wrong
         } else if estimate.sigma <= effort.precision() * quantity.exact.abs() {
             Verdict::Passed
