@@ -7,7 +7,7 @@ use std::process::Command;
 use serde_json::Value;
 
 /// Every crate of the workspace with the crates that it may use, from the bottom to the top.
-const LAYERS: [(&str, &[&str]); 10] = [
+const LAYERS: [(&str, &[&str]); 11] = [
     ("sir-geom", &[]),
     ("sir-mesh", &["sir-geom"]),
     ("sir-lines", &["sir-geom"]),
@@ -16,10 +16,21 @@ const LAYERS: [(&str, &[&str]); 10] = [
     ("sir-accel", &["sir-geom"]),
     ("sir-radiosity", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel"]),
     ("sir-parallel", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
+    // Exact answers need the solver, and nothing of pipelines or files.
+    ("sir-validate", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel"]),
     ("sir-view", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
     (
         "sir-cli",
-        &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel", "sir-view"],
+        &[
+            "sir-geom",
+            "sir-mesh",
+            "sir-lines",
+            "sir-accel",
+            "sir-radiosity",
+            "sir-parallel",
+            "sir-validate",
+            "sir-view",
+        ],
     ),
     (
         "sir",
@@ -31,6 +42,7 @@ const LAYERS: [(&str, &[&str]); 10] = [
             "sir-radiosity",
             "sir-parallel",
             "sir-scenes",
+            "sir-validate",
             "sir-view",
             "sir-cli",
         ],

@@ -8,6 +8,7 @@ use clap::{Parser, Subcommand};
 
 use crate::experiment::ExperimentArgs;
 use crate::scaling::ScalingArgs;
+use crate::validate::ValidateArgs;
 use crate::viewfactors::ViewFactorsArgs;
 
 const EXAMPLES: &str = "\
@@ -20,6 +21,7 @@ Examples:
   sir scaling room.ron --threads 1,2,4           how much faster are more threads?
   sir viewfactors room.obj --by group            which share of the flux of a part arrives where?
   sir experiment --scale 0.01                    what does the paper of 2009 claim, and does it hold?
+  sir validate --quick                           are answers right where they are known?
 
 A pipeline is a text file like this one (docs/pipeline.md tells all):
   Pipeline(
@@ -109,6 +111,11 @@ pub enum Command {
     /// needs no light. docs/viewfactors.md has the columns of the files.
     #[command(name = "viewfactors")]
     ViewFactors(ViewFactorsArgs),
+    /// Check the program against cases whose answers are known.
+    ///
+    /// View factors, the analytical cases of CIE 171:2006, and exact solutions of radiosity. Prints exact answers, ours, their standard
+    /// errors and the differences, and ends with 1 if one is off by more than four standard errors. Takes minutes; --quick, half a minute.
+    Validate(ValidateArgs),
 }
 
 /// How to run a pipeline.

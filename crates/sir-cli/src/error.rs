@@ -12,6 +12,7 @@ use thiserror::Error;
 use crate::diagnostic::Diagnostics;
 use crate::experiment::ExperimentError;
 use crate::scaling::ScalingError;
+use crate::validate::ValidationError;
 use crate::viewfactors::ViewFactorsError;
 
 /// Why a command fails. Every message ends with what to do, where that is not obvious.
@@ -141,6 +142,9 @@ pub enum Error {
     /// View factors cannot be computed.
     #[error(transparent)]
     ViewFactors(#[from] ViewFactorsError),
+    /// Answers are wrong, or cannot be checked.
+    #[error(transparent)]
+    Validation(#[from] ValidationError),
 }
 
 impl From<SolveError> for Error {
@@ -169,6 +173,7 @@ impl Error {
             Self::Scaling(error) => error.exit_code(),
             Self::Experiment(error) => error.exit_code(),
             Self::ViewFactors(error) => error.exit_code(),
+            Self::Validation(error) => error.exit_code(),
             _ => 1,
         }
     }

@@ -61,6 +61,7 @@ pub mod sensors;
 mod stages;
 pub mod summary;
 pub mod units;
+pub mod validate;
 pub mod viewfactors;
 
 use std::io::Write as _;
@@ -140,6 +141,7 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
         Command::Scaling(args) => scaling::command(&args),
         Command::Experiment(args) => experiment::command(&args),
         Command::ViewFactors(args) => viewfactors::command(&args, comm, &stop),
+        Command::Validate(args) => validate::command(&args),
     }
 }
 

@@ -17,8 +17,8 @@
 //! * Four times a second all ranks agree on how many lines to trace next, whether to save, and whether to stop. This
 //!   changes nothing in the result.
 //!
-//! [`first_shot`], [`batches`] and [`multipath`] run the stages of the solver, [`measure`] its sensors. In multipath what a line carries depends on the
-//! lines before it; there, threads and ranks share replicas instead of lines. [`view_factors`] stands by itself.
+//! [`first_shot`], [`batches`] and [`multipath`] run the stages of the solver, [`measure`] its sensors; [`view_factors`] stands by itself. In multipath
+//! what a line carries depends on the lines before it; there, threads and ranks share replicas instead of lines.
 //!
 //! # Example
 //!

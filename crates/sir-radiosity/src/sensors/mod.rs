@@ -128,7 +128,8 @@ impl<'s> Sensors<'s> {
     fn lights(&self, sensor: &Sensor, origin: DVec3, tracer: &mut Tracer<'_>) -> Rgb {
         let mut sum = Rgb::ZERO;
         for light in self.model.scene.lights() {
-            let Some(arrival) = light.kind.arrival(origin) else { continue };
+            // What arrives at the sensor itself; only the shadow ray starts above it.
+            let Some(arrival) = light.kind.arrival(sensor.position) else { continue };
             let cosine = arrival.towards.dot(sensor.direction);
             if cosine <= 0.0 {
                 continue;

@@ -1,0 +1,44 @@
+//! Why a validation fails.
+
+use std::io;
+use std::path::PathBuf;
+
+use sir_validate::ValidateError;
+use thiserror::Error;
+
+/// Why a validation fails.
+#[derive(Debug, Error)]
+pub enum ValidationError {
+    /// The cases cannot be run, or someone wanted to stop.
+    #[error(transparent)]
+    Cases(ValidateError),
+    /// A file of exact answers cannot be read.
+    #[error("cannot read {}; --reference needs a folder with {}", path.display(), sir_validate::FILES.join(", "))]
+    ReadReference {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// Some answers are wrong, or too noisy to tell.
+    #[error(
+        "{summary} Try another --seed: chance does not fail twice. If an answer stays wrong, please report it with the table"
+    )]
+    Failed {
+        /// How many answers passed, in a sentence.
+        summary: String,
+    },
+}
+
+impl ValidationError {
+    /// The exit code of the program.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Cases(error) if error.is_interrupt() => 130,
+            Self::Cases(error) if error.is_usage() => 2,
+            Self::ReadReference { .. } => 2,
+            Self::Cases(_) | Self::Failed { .. } => 1,
+        }
+    }
+}

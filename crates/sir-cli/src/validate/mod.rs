@@ -1,0 +1,75 @@
+//! `sir validate`: cases whose answers are known.
+
+mod error;
+mod options;
+mod watch;
+
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+
+pub use error::ValidationError;
+pub use options::ValidateArgs;
+use sir_validate::{Effort, FILES, Reference, Settings, validate};
+
+use crate::Error;
+use crate::interrupt;
+use crate::progress::Progress;
+use watch::Watch;
+
+/// The command: runs the cases, writes the report, and returns what is to be printed.
+///
+/// # Errors
+///
+/// If an answer is wrong or too noisy to tell, after the report was printed; if there is no such case, or files cannot be read or
+/// written.
+pub fn command(args: &ValidateArgs) -> Result<String, Error> {
+    let stop = interrupt::flag();
+    let reference = match &args.reference {
+        None => Reference::built_in(),
+        Some(folder) => read(folder)?,
+    }
+    .map_err(ValidationError::Cases)?;
+    // Before anything that takes time.
+    if let Some(folder) = &args.out {
+        fs::create_dir_all(folder).map_err(Error::directory(folder))?;
+    }
+    let settings = Settings {
+        effort: if args.quick { Effort::Quick } else { Effort::Full },
+        seed: args.seed,
+        threads: args.threads.unwrap_or_else(sir_parallel::cores),
+        cases: args.cases.clone(),
+    };
+    let progress = if args.quiet { Progress::Quiet } else { Progress::for_stderr() };
+    let mut watch = Watch::new(progress, stop);
+    let report = validate(&reference, &settings, &mut watch);
+    drop(watch);
+    let report = report.map_err(ValidationError::Cases)?;
+    if let Some(folder) = &args.out {
+        write_file(&folder.join("validation.md"), &report.markdown())?;
+        write_file(&folder.join("validation.json"), &report.json())?;
+    }
+    let text = if args.json { report.json() } else { report.markdown() };
+    if report.passed() {
+        return Ok(text);
+    }
+    // The report says more than the error; whoever does not read it has the exit code.
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    Err(ValidationError::Failed { summary: report.summary() }.into())
+}
+
+fn read(folder: &Path) -> Result<Result<Reference, sir_validate::ValidateError>, Error> {
+    let mut texts = Vec::new();
+    for name in FILES {
+        let path = folder.join(name);
+        let text = fs::read_to_string(&path);
+        texts.push(text.map_err(|source| ValidationError::ReadReference { path, source })?);
+    }
+    let mut texts = texts.iter().map(String::as_str);
+    Ok(Reference::parse(std::array::from_fn(|_| texts.next().unwrap_or_default())))
+}
+
+fn write_file(path: &Path, text: &str) -> Result<(), Error> {
+    sir_view::write_atomically(path, |file| file.write_all(text.as_bytes()))?;
+    Ok(())
+}

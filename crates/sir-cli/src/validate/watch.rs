@@ -1,0 +1,76 @@
+//! What a validation says while it runs.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use sir_validate::Watcher;
+
+use crate::progress::Progress;
+
+/// Time between two lines of progress where there is no terminal.
+const PAUSE: Duration = Duration::from_secs(10);
+
+/// Shows the case at work, and how long all will take.
+pub(super) struct Watch {
+    progress: Progress,
+    stop: Arc<AtomicBool>,
+    bar: ProgressBar,
+    start: Instant,
+    last: Instant,
+    begun: bool,
+}
+
+impl Watch {
+    pub(super) fn new(progress: Progress, stop: Arc<AtomicBool>) -> Self {
+        let bar = match progress {
+            Progress::Bar => {
+                let bar = ProgressBar::new(1);
+                let template = "{bar:30} {percent:>3} %  {msg}  {eta} left";
+                // A wrong template would be a slip in the line above; indicatif's own style then serves as well.
+                if let Ok(style) = ProgressStyle::with_template(template) {
+                    bar.set_style(style);
+                }
+                bar
+            }
+            _ => ProgressBar::hidden(),
+        };
+        let now = Instant::now();
+        Self { progress, stop, bar, start: now, last: now, begun: false }
+    }
+}
+
+impl Watcher for Watch {
+    fn begin(&mut self, case: &str, title: &str) {
+        self.begun = true;
+        self.bar.set_message(case.to_owned());
+        if self.progress == Progress::Lines {
+            eprintln!("{:.0} s: {case}, {title}", self.start.elapsed().as_secs_f64());
+        }
+    }
+
+    fn progress(&mut self, done: u64, total: u64) {
+        self.bar.set_length(total);
+        self.bar.set_position(done);
+        if self.progress == Progress::Lines && self.last.elapsed() >= PAUSE {
+            self.last = Instant::now();
+            let share = done as f64 / total.max(1) as f64;
+            let left = self.start.elapsed().as_secs_f64() * (1.0 - share) / share.max(1e-3);
+            eprintln!("{:.0} %, {left:.0} s left", 100.0 * share);
+        }
+    }
+
+    fn should_stop(&self) -> bool {
+        self.stop.load(Relaxed)
+    }
+}
+
+impl Drop for Watch {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+        if self.begun && self.progress == Progress::Lines {
+            eprintln!("after {:.0} s", self.start.elapsed().as_secs_f64());
+        }
+    }
+}

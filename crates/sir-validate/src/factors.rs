@@ -1,0 +1,63 @@
+//! The cases of `view-factors.json`.
+
+use std::collections::BTreeMap;
+
+use sir_mesh::Subdivision;
+use sir_parallel::view_factors;
+use sir_radiosity::{Grouping, Model, ViewFactorSettings};
+
+use crate::data::{Case, Surface};
+use crate::light::{Paint, scene};
+use crate::shape::SEGMENTS;
+use crate::trial::{Quantity, Sample, Trial};
+use crate::{Effort, ValidateError};
+
+/// Lines of a run, from all surfaces together.
+const LINES: u64 = 1_000_000;
+
+/// View factors between the surfaces of a case, counted by local lines.
+pub(crate) fn factors(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
+    let surfaces: Vec<&Surface> = case.geometry.surfaces.iter().collect();
+    let values: BTreeMap<String, f64> = case.values()?;
+    let (mut pairs, mut quantities) = (Vec::new(), Vec::new());
+    for (name, &exact) in &values {
+        let number = |name: &str| surfaces.iter().position(|surface| surface.name == name);
+        let pair = names(name).and_then(|(from, to)| Some((number(from)?, number(to)?)));
+        pairs.push(*case.need("surfaces for all factors", pair.as_ref())?);
+        quantities.push(Quantity::new(name, exact));
+    }
+    let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
+        let scene = scene(&surfaces, |_| Paint::grey(0.0, 0.0), effort.segments(SEGMENTS))?;
+        let model = Model::new(scene, Subdivision::PerTriangle)?;
+        // Every surface has a material of its own, and a triangle: the numbers of groups are those of surfaces.
+        let grouping = Grouping::by_material(&model.scene);
+        let pairs = pairs.clone();
+        Ok(Box::new(move |lines, seed, crew| {
+            let found = view_factors(&model, &grouping, ViewFactorSettings::of_lines(lines, seed), crew)?;
+            Ok(pairs.iter().map(|&(from, to)| found.factor(from, to)).collect())
+        }))
+    };
+    Ok(vec![Trial { quantities, lines: LINES, prepare: Box::new(prepare) }])
+}
+
+/// The surfaces between which a factor is: `F12` or `F_base_side`.
+fn names(factor: &str) -> Option<(&str, &str)> {
+    let names = factor.strip_prefix('F')?;
+    match names.strip_prefix('_') {
+        Some(words) => words.split_once('_'),
+        None if names.len() == 2 => names.split_at_checked(1),
+        None => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_name_two_surfaces() {
+        assert_eq!(names("F12"), Some(("1", "2")));
+        assert_eq!(names("F_base_side"), Some(("base", "side")));
+        assert_eq!([names("F1"), names("F_base"), names("G12")], [None; 3]);
+    }
+}
