@@ -119,10 +119,12 @@ impl SensorsReport {
         let Self { mean, mean_error, minimum, maximum, uniformity, .. } = *self;
         let decimals = decimals(mean_error);
         format!(
-            "mean {mean:.decimals$} ± {mean_error:.decimals$} {}, minimum {}, maximum {}, U0 = {uniformity:.2}",
+            "mean {mean:.decimals$} ± {mean_error:.decimals$} {}, minimum {}, maximum {}, U0 = {}",
             units.irradiance(),
             significant(minimum),
             significant(maximum),
+            // Standards have two decimals; a small one is not nothing.
+            if uniformity < 0.1 { format!("{uniformity:.1e}") } else { format!("{uniformity:.2}") },
         )
     }
 }
