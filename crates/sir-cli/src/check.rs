@@ -9,9 +9,11 @@ use sir_radiosity::{Batches, Books, FirstShot, Model, Quanta, SecondShot, SolveE
 
 use crate::Error;
 use crate::fields::grouped;
+use crate::memory;
 use crate::pipeline::{Action, Content, Pipeline};
-use crate::prepare::{Prepared, prepare};
+use crate::prepare::{Prepared, chosen_camera, prepare};
 use crate::progress::Progress;
+use crate::save::settings;
 
 /// How long the lines of a stage are tried to learn their rate.
 const PROBE: Duration = Duration::from_millis(300);
@@ -21,6 +23,9 @@ const BLOCK: u64 = 1 << 10;
 
 /// Bytes per side of what pictures and lit meshes are made from: measured on two million sides, rounded up.
 const DISPLAY_BYTES: usize = 200;
+
+/// Bytes per pixel of the largest picture: a ray's colours while it is drawn and when it is done, and its file.
+const PIXEL_BYTES: usize = 2 * 24 + 16;
 
 /// What a pipeline will do and cost.
 #[derive(Clone, Debug)]
@@ -55,11 +60,19 @@ pub struct StageEstimate {
 pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error> {
     let prepared = prepare(pipeline, progress)?;
     let (memory, peak_memory) = memory(&prepared.model, pipeline);
+    // The try below takes as much as the run.
+    memory::refuse_more_than_available(needed_beside_model(&memory))?;
     let stages = probe(pipeline, &prepared.model)?;
     Ok(Estimate { prepared, memory, peak_memory, stages })
 }
 
-fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
+/// Of the parts of a run's memory, what it needs beside its scene, patches and acceleration structure.
+pub(crate) fn needed_beside_model(memory: &[(&'static str, usize)]) -> usize {
+    memory.iter().skip(3).map(|part| part.1).max().unwrap_or(0)
+}
+
+/// Memory of a run per part and at most \[bytes\].
+pub(crate) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
     let Model { scene, mesh, accel } = model;
     let sides = mesh.side_count();
     // Power and its variance; in the first shot two records of 64 bytes in the ledger, later one, and less than 64 bytes
@@ -67,13 +80,28 @@ fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, us
     let tracing = size_of::<Quanta>() + size_of::<[f32; 3]>() + 2 * 64;
     let solution = 2 * size_of::<Rgb>();
     let shown = pipeline.outputs().any(|o| o.content != Content::Table);
+    let pixels = pipeline.outputs().filter_map(|o| match &o.content {
+        Content::Image(image) => {
+            let camera = chosen_camera(&image.camera, scene);
+            let size = settings(image, camera.as_ref(), 1);
+            Some(size.width as usize * size.height as usize)
+        }
+        _ => None,
+    });
     let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles())),
         // See `PatchMesh`: 28 bytes per triangle.
         ("patches", 28 * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing),
-        ("pictures and lit meshes", if shown { sides * (solution + DISPLAY_BYTES) } else { 0 }),
+        (
+            "pictures and lit meshes",
+            if shown {
+                sides * (solution + DISPLAY_BYTES) + pixels.max().unwrap_or(0) * PIXEL_BYTES
+            } else {
+                0
+            },
+        ),
     ];
     // The last two are not needed at the same time.
     let [scene, patches, accel, light, display] = [0, 1, 2, 3, 4].map(|i: usize| memory[i].1);
@@ -173,7 +201,8 @@ impl fmt::Display for Estimate {
     }
 }
 
-fn bytes(n: usize) -> String {
+/// A size in a unit that people can grasp.
+pub(crate) fn bytes(n: usize) -> String {
     let (mut x, mut unit) = (n as f64, "B");
     for next in ["kiB", "MiB", "GiB", "TiB"] {
         if x < 1024.0 {

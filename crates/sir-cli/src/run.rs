@@ -13,6 +13,7 @@ use sir_parallel::{Alone, Checkpoints, Communicator, Crew, RunError, Saved, Stag
 use sir_radiosity::{Model, MultipathSettings, Quanta, Shot, Solution};
 
 use crate::Error;
+use crate::check;
 use crate::directory::{absolute, check_given, make_given, make_new, run_name};
 use crate::fingerprint::{self, PROGRAM};
 use crate::memory;
@@ -102,6 +103,9 @@ pub fn run_together(
     )?;
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     let prepared = agree(comm, prepare(&pipeline, progress))?;
+    let (parts, most) = check::memory(&prepared.model, &pipeline);
+    progress.note(&format!("Memory: {} at most", check::bytes(most)));
+    agree(comm, memory::refuse_more_than_available(check::needed_beside_model(&parts)))?;
     let seed = options.seed.unwrap_or(pipeline.seed);
     let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared.model);
     agree(comm, same_everywhere(comm, fingerprint))?;
