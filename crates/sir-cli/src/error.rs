@@ -99,6 +99,14 @@ pub enum Error {
         /// The run directory.
         directory: PathBuf,
     },
+    /// A file of a run cannot be written, for want of space on a disk, for instance.
+    #[error("the run in {0} is not complete; free some space or put right what is said below, and `sir resume {0}` goes on from the last checkpoint", directory.display())]
+    NotWritten {
+        /// The run directory.
+        directory: PathBuf,
+        /// The file, and what the operating system says.
+        source: ViewError,
+    },
     /// A run cannot go on.
     #[error("the run in {} cannot be resumed: {why}", directory.display())]
     CannotResume {

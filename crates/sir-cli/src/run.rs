@@ -11,6 +11,7 @@ use std::time::Duration;
 use sir_geom::Rgb;
 use sir_parallel::{Alone, Checkpoints, Communicator, Crew, RunError, Saved, StageTime, cores};
 use sir_radiosity::{Model, MultipathSettings, Quanta, Shot, Solution};
+use sir_view::ViewError;
 
 use crate::Error;
 use crate::check;
@@ -103,9 +104,7 @@ pub fn run_together(
     )?;
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     let prepared = agree(comm, prepare(&pipeline, progress))?;
-    let (parts, most) = check::memory(&prepared.model, &pipeline);
-    progress.note(&format!("Memory: {} at most", check::bytes(most)));
-    agree(comm, memory::refuse_more_than_available(check::needed_beside_model(&parts)))?;
+    agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
     let seed = options.seed.unwrap_or(pipeline.seed);
     let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared.model);
     agree(comm, same_everywhere(comm, fingerprint))?;
@@ -154,6 +153,7 @@ pub fn resume_together(
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     // The warnings have been shown when the run began.
     let prepared = agree(comm, prepare(&pipeline, Progress::Silent))?;
+    agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
     let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared.model);
     agree(comm, resume::check_fingerprint(directory, &head, fingerprint))?;
     if comm.is_first() {
@@ -163,6 +163,13 @@ pub fn resume_together(
     // A run that had not begun a stage begins with the first.
     let saved = (head.stage > 0).then_some(saved);
     Run { pipeline, prepared, directory, options, comm, progress, watch, head }.finish(saved)
+}
+
+/// Says how much memory the run will take, and refuses what this machine does not have.
+fn check_memory(model: &Model, pipeline: &Pipeline, progress: Progress) -> Result<(), Error> {
+    let (parts, most) = check::memory(model, pipeline);
+    progress.note(&format!("Memory: {} at most", check::bytes(most)));
+    memory::refuse_more_than_available(check::needed_beside_model(&parts))
 }
 
 /// A run that is under way.
@@ -190,26 +197,17 @@ impl Run<'_> {
                 checkpoints.save_start(self.comm).map_err(|error| RunError::from(error).into()),
             )?;
         }
-        self.stages(&mut checkpoints, saved, earlier).map_err(|error| self.name_directory(error))?;
+        self.stages(&mut checkpoints, saved, earlier)
+            .map_err(|error| name_directory(error, &self.directory))?;
         let Self { directory, comm, mut head, watch, .. } = self;
         let peak_memory = memory::largest_peak(comm);
         head.report.time = Time { peak_memory, ..Time::of(earlier + watch.seconds()) };
         let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
-        agree(comm, written)?;
+        agree(comm, written.map_err(|error| name_directory(error, &directory)))?;
         if comm.is_first() {
             checkpoints.remove();
         }
         Ok(RunResult { directory, report: head.report })
-    }
-
-    /// Says where an interrupted run can be resumed.
-    fn name_directory(&self, error: Error) -> Error {
-        match error {
-            Error::Run(RunError::Interrupted { done, total }) => {
-                Error::Interrupted { done, total, directory: self.directory.clone() }
-            }
-            other => other,
-        }
     }
 
     /// Runs all stages, or those from the one that `saved` is of.
@@ -341,6 +339,16 @@ impl Run<'_> {
             return Err(Error::InterruptedSaving { directory: self.directory.clone() });
         }
         Ok(reports)
+    }
+}
+
+/// Says where a run that was not finished can be resumed.
+fn name_directory(error: Error, directory: &Path) -> Error {
+    let directory = directory.to_owned();
+    match error {
+        Error::Run(RunError::Interrupted { done, total }) => Error::Interrupted { done, total, directory },
+        Error::View(source @ ViewError::Io { .. }) => Error::NotWritten { directory, source },
+        other => other,
     }
 }
 

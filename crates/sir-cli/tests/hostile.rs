@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use sir_cli::Error;
 use sir_cli::pipeline::Pipeline;
-use sir_cli::run::{RunOptions, run};
+use sir_cli::run::{RunOptions, resume_together, run};
+use sir_parallel::Alone;
 
 /// Far more than any text needs: a busy machine must do no harm.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -126,4 +127,25 @@ fn what_does_not_fit_into_memory_is_refused_before_anything_is_written() {
     assert!(matches!(error, Error::Memory { .. }), "{}", error.chain());
     assert!(error.chain().contains("make fewer patches"), "{}", error.chain());
     assert!(!results.exists());
+}
+
+#[test]
+fn a_file_that_cannot_be_written_leaves_a_run_that_can_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let stages = "FirstShot(lines: 2_000), Save([Table(path: \"a.csv\")])";
+    let pipeline = room(folder.path(), stages);
+    fs::write(folder.path().join("room.ron"), &pipeline.text).unwrap();
+    let out = folder.path().join("out");
+    // A folder of that name is in the way, which even the superuser cannot write to.
+    fs::create_dir_all(out.join("a.csv/x")).unwrap();
+    let options = RunOptions { out: Some(out.clone()), ..RunOptions::default() };
+    let error = run(&pipeline, &options).unwrap_err();
+    assert!(matches!(error, Error::NotWritten { .. }), "{}", error.chain());
+    assert!(error.chain().contains("a.csv") && error.chain().contains("sir resume"), "{}", error.chain());
+    assert!(!out.join("result.json").exists());
+    let left: Vec<_> = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left.len(), 2, "no half of a file is left: {left:?}");
+    fs::remove_dir_all(out.join("a.csv")).unwrap();
+    resume_together(&out, &options, &Alone).unwrap();
+    assert!(out.join("a.csv").is_file() && out.join("result.json").is_file());
 }
