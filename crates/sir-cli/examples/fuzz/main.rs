@@ -149,10 +149,7 @@ fn attempt(target: Target, folder: &Path, bytes: usize) -> Result<Option<String>
     let before = MEMORY.current_usage();
     let outcome = catch_unwind(AssertUnwindSafe(|| match target {
         Target::Pipeline => Pipeline::read(&path).map(drop).map_err(|error| error.chain()),
-        _ => load(&path, &LoadOptions::default())
-            .map(Some)
-            .map_err(|error| chain(&error))
-            .map(|built| light(built)),
+        _ => load(&path, &LoadOptions::default()).map(Some).map_err(|error| chain(&error)).map(light),
     }));
     let memory = MEMORY.peak_usage().saturating_sub(before);
     let limit = MEMORY_LIMIT.0 + MEMORY_LIMIT.1 * bytes;
