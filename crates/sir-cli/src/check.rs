@@ -66,13 +66,20 @@ pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error>
     Ok(Estimate { prepared, memory, peak_memory, stages })
 }
 
+/// Says how much memory a run will take, and refuses what this machine does not have.
+pub(crate) fn check_memory(model: &Model, pipeline: &Pipeline, progress: Progress) -> Result<(), Error> {
+    let (parts, most) = memory(model, pipeline);
+    progress.note(&format!("Memory: {} at most", bytes(most)));
+    memory::refuse_more_than_available(needed_beside_model(&parts))
+}
+
 /// Of the parts of a run's memory, what it needs beside its scene, patches and acceleration structure.
-pub(crate) fn needed_beside_model(memory: &[(&'static str, usize)]) -> usize {
+fn needed_beside_model(memory: &[(&'static str, usize)]) -> usize {
     memory.iter().skip(3).map(|part| part.1).max().unwrap_or(0)
 }
 
 /// Memory of a run per part and at most \[bytes\].
-pub(crate) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
+fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
     let Model { scene, mesh, accel } = model;
     let sides = mesh.side_count();
     // Power and its variance; in the first shot two records of 64 bytes in the ledger, later one, and less than 64 bytes

@@ -17,7 +17,7 @@ use crate::Error;
 use crate::check;
 use crate::directory::{absolute, check_given, make_given, make_new, run_name};
 use crate::fingerprint::{self, PROGRAM};
-use crate::memory;
+use crate::memory::largest_peak;
 use crate::pipeline::{Action, Output, Pipeline, Transport};
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
@@ -104,7 +104,7 @@ pub fn run_together(
     )?;
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     let prepared = agree(comm, prepare(&pipeline, progress))?;
-    agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
+    agree(comm, check::check_memory(&prepared.model, &pipeline, progress))?;
     let seed = options.seed.unwrap_or(pipeline.seed);
     let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared.model);
     agree(comm, same_everywhere(comm, fingerprint))?;
@@ -153,7 +153,7 @@ pub fn resume_together(
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     // The warnings have been shown when the run began.
     let prepared = agree(comm, prepare(&pipeline, Progress::Silent))?;
-    agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
+    agree(comm, check::check_memory(&prepared.model, &pipeline, progress))?;
     let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared.model);
     agree(comm, resume::check_fingerprint(directory, &head, fingerprint))?;
     if comm.is_first() {
@@ -163,13 +163,6 @@ pub fn resume_together(
     // A run that had not begun a stage begins with the first.
     let saved = (head.stage > 0).then_some(saved);
     Run { pipeline, prepared, directory, options, comm, progress, watch, head }.finish(saved)
-}
-
-/// Says how much memory the run will take, and refuses what this machine does not have.
-fn check_memory(model: &Model, pipeline: &Pipeline, progress: Progress) -> Result<(), Error> {
-    let (parts, most) = check::memory(model, pipeline);
-    progress.note(&format!("Memory: {} at most", check::bytes(most)));
-    memory::refuse_more_than_available(check::needed_beside_model(&parts))
 }
 
 /// A run that is under way.
@@ -200,7 +193,7 @@ impl Run<'_> {
         self.stages(&mut checkpoints, saved, earlier)
             .map_err(|error| name_directory(error, &self.directory))?;
         let Self { directory, comm, mut head, watch, .. } = self;
-        let peak_memory = memory::largest_peak(comm);
+        let peak_memory = largest_peak(comm);
         head.report.time = Time { peak_memory, ..Time::of(earlier + watch.seconds()) };
         let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
         agree(comm, written.map_err(|error| name_directory(error, &directory)))?;
