@@ -11,9 +11,11 @@ use sir_radiosity::{
 
 use crate::Error;
 use crate::fields::grouped;
+use crate::memory;
 use crate::pipeline::{Action, Content, Pipeline, Repeat, Until};
-use crate::prepare::{Prepared, prepare};
+use crate::prepare::{Prepared, chosen_camera, prepare};
 use crate::progress::Progress;
+use crate::save::settings;
 use crate::units::Units;
 
 /// How long the lines of a stage are tried to learn their rate.
@@ -24,6 +26,9 @@ const BLOCK: u64 = 1 << 10;
 
 /// Bytes per side of what pictures and lit meshes are made from: measured on two million sides, rounded up.
 const DISPLAY_BYTES: usize = 200;
+
+/// Bytes per pixel of the largest picture: a ray's colours while it is drawn and when it is done, and its file.
+const PIXEL_BYTES: usize = 2 * 24 + 16;
 
 /// What a pipeline will do and cost.
 #[derive(Clone, Debug)]
@@ -71,6 +76,8 @@ pub struct Repeated {
 pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error> {
     let prepared = prepare(pipeline, progress)?;
     let (memory, peak_memory) = memory(&prepared.model, pipeline);
+    // The try below takes as much as the run.
+    memory::refuse_more_than_available(needed_beside_model(&memory))?;
     let repeat = pipeline.stages.iter().find_map(|stage| match &stage.action {
         Action::Repeat(repeat) => Some(repeat),
         _ => None,
@@ -80,6 +87,19 @@ pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error>
     Ok(Estimate { units: pipeline.units, prepared, memory, peak_memory, stages, repeat })
 }
 
+/// Says how much memory a run will take, and refuses what this machine does not have.
+pub(crate) fn check_memory(model: &Model, pipeline: &Pipeline, progress: Progress) -> Result<(), Error> {
+    let (parts, most) = memory(model, pipeline);
+    progress.note(&format!("Memory: {} at most", bytes(most)));
+    memory::refuse_more_than_available(needed_beside_model(&parts))
+}
+
+/// Of the parts of a run's memory, what it needs beside its scene, patches and acceleration structure.
+fn needed_beside_model(memory: &[(&'static str, usize)]) -> usize {
+    memory.iter().skip(3).map(|part| part.1).max().unwrap_or(0)
+}
+
+/// Memory of a run per part and at most \[bytes\].
 fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
     let Model { scene, mesh, accel } = model;
     let sides = mesh.side_count();
@@ -94,13 +114,26 @@ fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, us
     let measured =
         pipeline.outputs().any(|o| o.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
     let displays = usize::from(shown) + usize::from(measured);
+    let pixels = pipeline.outputs().filter_map(|o| match &o.content {
+        Content::Image(image) => {
+            let camera = chosen_camera(&image.camera, scene);
+            let size = settings(image, camera.as_ref(), 1);
+            Some(size.width as usize * size.height as usize)
+        }
+        _ => None,
+    });
     let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles())),
         // See `PatchMesh`: 28 bytes per triangle.
         ("patches", 28 * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing),
-        ("pictures and lit meshes", sides * displays.min(1) * solution + sides * displays * DISPLAY_BYTES),
+        (
+            "pictures and lit meshes",
+            sides * displays.min(1) * solution
+                + sides * displays * DISPLAY_BYTES
+                + pixels.max().unwrap_or(0) * PIXEL_BYTES,
+        ),
     ];
     // The last two are not needed at the same time.
     let [scene, patches, accel, light, display] = [0, 1, 2, 3, 4].map(|i: usize| memory[i].1);
@@ -251,7 +284,8 @@ fn kinds(sources: &[Source]) -> String {
     named.collect::<Vec<_>>().join(", ")
 }
 
-fn bytes(n: usize) -> String {
+/// A size in a unit that people can grasp.
+pub(crate) fn bytes(n: usize) -> String {
     let (mut x, mut unit) = (n as f64, "B");
     for next in ["kiB", "MiB", "GiB", "TiB"] {
         if x < 1024.0 {

@@ -7,6 +7,12 @@ use std::path::{Path, PathBuf};
 /// The most characters of a line that are shown.
 const WIDTH: usize = 160;
 
+/// The most characters of a message, which may quote the file.
+const MESSAGE: usize = 400;
+
+/// The most problems that are shown.
+const SHOWN: usize = 30;
+
 /// A place in a text: line and column, both from 1, columns counted in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Position {
@@ -63,7 +69,9 @@ impl Diagnostics {
     /// Problems of the file `path`, which says `text`.
     #[must_use]
     pub fn new(path: &Path, text: &str, mut list: Vec<Diagnostic>) -> Self {
-        for Diagnostic { span, .. } in &mut list {
+        for Diagnostic { span, message, help } in &mut list {
+            shorten(message);
+            shorten(help);
             span.start = span.start.min(text.len());
             span.end = span.end.clamp(span.start, text.len());
         }
@@ -86,7 +94,7 @@ impl Diagnostics {
 
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, problem) in self.list.iter().enumerate() {
+        for (i, problem) in self.list.iter().enumerate().take(SHOWN) {
             if i > 0 {
                 writeln!(f)?;
             }
@@ -102,7 +110,19 @@ impl fmt::Display for Diagnostics {
             writeln!(f, "{:width$} | {:indent$}{}", "", "", "^".repeat(marks), width = number.len())?;
             writeln!(f, "{:width$} = help: {}", "", problem.help, width = number.len())?;
         }
+        if self.list.len() > SHOWN {
+            writeln!(f, "\n{} more problems are not shown", self.list.len() - SHOWN)?;
+        }
         Ok(())
+    }
+}
+
+/// Cuts off what is too long, and takes out what would play tricks on a terminal.
+fn shorten(text: &mut String) {
+    if text.chars().nth(MESSAGE).is_some() || text.contains(char::is_control) {
+        let dots = if text.chars().nth(MESSAGE).is_some() { "…" } else { "" };
+        let plain = text.chars().take(MESSAGE).map(|c| if c.is_control() { '\u{fffd}' } else { c });
+        *text = plain.chain(dots.chars()).collect();
     }
 }
 

@@ -35,6 +35,25 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
+    /// What was given as a pipeline file is too long for one.
+    #[error("{} has more than {most} bytes, but a pipeline is a short text; `sir --help` shows an example", path.display())]
+    LongPipeline {
+        /// The file.
+        path: PathBuf,
+        /// The most bytes that are read.
+        most: u64,
+    },
+    /// The run does not fit the memory of this machine.
+    #[error(
+        "the run needs {needed} of memory beside its scene, but {available} are available; make fewer patches or smaller pictures, \
+         end other programs, or take a machine with more memory"
+    )]
+    Memory {
+        /// What it needs beside the scene, as `sir check` counts it.
+        needed: String,
+        /// What the operating system can give.
+        available: String,
+    },
     /// The run directory that was asked for holds a result already.
     #[error("{} holds a result already; choose another --out, or replace it with --force", directory.display())]
     Exists {
@@ -87,6 +106,14 @@ pub enum Error {
     InterruptedMeasuring {
         /// The run directory.
         directory: PathBuf,
+    },
+    /// A file of a run cannot be written, for want of space on a disk, for instance.
+    #[error("the run in {0} is not complete; free some space or put right what is said below, and `sir resume {0}` goes on from the last checkpoint", directory.display())]
+    NotWritten {
+        /// The run directory.
+        directory: PathBuf,
+        /// The file, and what the operating system says.
+        source: ViewError,
     },
     /// A run cannot go on.
     #[error("the run in {} cannot be resumed: {why}", directory.display())]
@@ -162,7 +189,8 @@ impl Error {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Pipeline(_) | Self::ReadPipeline { .. } | Self::NotText { .. } => 2,
+            Self::Pipeline(_) | Self::ReadPipeline { .. } => 2,
+            Self::NotText { .. } | Self::LongPipeline { .. } => 2,
             Self::Exists { .. } | Self::ExistsInterrupted { .. } => 2,
             Self::CannotResume { .. } => 2,
             Self::Interrupted { .. } | Self::InterruptedSaving { .. } | Self::InterruptedMeasuring { .. } => {
@@ -190,6 +218,7 @@ impl Error {
             }
             cause = error.source();
         }
-        text
+        // Names of files and of what is in them may play tricks on a terminal.
+        text.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}")
     }
 }

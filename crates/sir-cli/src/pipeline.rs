@@ -1,5 +1,6 @@
 //! What a pipeline file says, with every default filled in.
 
+use std::io::Read as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -238,6 +239,9 @@ pub enum CameraChoice {
     Own(Camera),
 }
 
+/// The most bytes of a pipeline file. Thousands of outputs fit in.
+const LONGEST: u64 = 1 << 18;
+
 impl Pipeline {
     /// Reads the pipeline file `path`.
     ///
@@ -245,8 +249,14 @@ impl Pipeline {
     ///
     /// All problems of the file, or why it cannot be read.
     pub fn read(path: &Path) -> Result<Self, crate::Error> {
-        let bytes = std::fs::read(path)
+        let mut bytes = Vec::new();
+        // Also what never ends can be given as a file.
+        std::fs::File::open(path)
+            .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
             .map_err(|source| crate::Error::ReadPipeline { path: path.to_owned(), source })?;
+        if bytes.len() as u64 > LONGEST {
+            return Err(crate::Error::LongPipeline { path: path.to_owned(), most: LONGEST });
+        }
         let text = String::from_utf8(bytes).map_err(|_| crate::Error::NotText { path: path.to_owned() })?;
         Ok(Self::parse(&text, path)?)
     }

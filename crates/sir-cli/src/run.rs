@@ -11,11 +11,13 @@ use std::time::Duration;
 use sir_geom::Rgb;
 use sir_parallel::{Alone, Checkpoints, Communicator, RunError, Saved};
 use sir_radiosity::Model;
+use sir_view::ViewError;
 
 use crate::Error;
+use crate::check;
 use crate::directory::{absolute, check_given, make_given, make_new, run_name};
 use crate::fingerprint::{self, PROGRAM};
-use crate::memory;
+use crate::memory::largest_peak;
 use crate::pipeline::Pipeline;
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
@@ -98,6 +100,7 @@ pub fn run_together(
     )?;
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     let prepared = agree(comm, prepare(&pipeline, progress))?;
+    agree(comm, check::check_memory(&prepared.model, &pipeline, progress))?;
     let seed = options.seed.unwrap_or(pipeline.seed);
     let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared.model);
     agree(comm, same_everywhere(comm, fingerprint))?;
@@ -150,6 +153,7 @@ pub fn resume_together(
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     // The warnings have been shown when the run began.
     let prepared = agree(comm, prepare(&pipeline, Progress::Silent))?;
+    agree(comm, check::check_memory(&prepared.model, &pipeline, progress))?;
     let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared.model);
     agree(comm, resume::check_fingerprint(directory, &head, fingerprint))?;
     if comm.is_first() {
@@ -188,12 +192,12 @@ impl Run<'_> {
                 checkpoints.save_start(self.comm).map_err(|error| RunError::from(error).into()),
             )?;
         }
-        self.stages(&mut checkpoints, saved).map_err(|error| self.name_directory(error))?;
-        let peak_memory = memory::largest_peak(self.comm);
+        self.stages(&mut checkpoints, saved).map_err(|error| name_directory(error, &self.directory))?;
+        let peak_memory = largest_peak(self.comm);
         self.head.report.time = Time { peak_memory, ..Time::of(self.seconds()) };
         let Self { directory, comm, head, .. } = self;
         let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
-        agree(comm, written)?;
+        agree(comm, written.map_err(|error| name_directory(error, &directory)))?;
         if comm.is_first() {
             checkpoints.remove();
         }
@@ -204,15 +208,15 @@ impl Run<'_> {
     pub(crate) fn seconds(&self) -> f64 {
         self.earlier + self.watch.seconds()
     }
+}
 
-    /// Says where an interrupted run can be resumed.
-    fn name_directory(&self, error: Error) -> Error {
-        match error {
-            Error::Run(RunError::Interrupted { done, total }) => {
-                Error::Interrupted { done, total, directory: self.directory.clone() }
-            }
-            other => other,
-        }
+/// Says where a run that was not finished can be resumed.
+fn name_directory(error: Error, directory: &Path) -> Error {
+    let directory = directory.to_owned();
+    match error {
+        Error::Run(RunError::Interrupted { done, total }) => Error::Interrupted { done, total, directory },
+        Error::View(source @ ViewError::Io { .. }) => Error::NotWritten { directory, source },
+        other => other,
     }
 }
 

@@ -113,7 +113,8 @@ impl Studio<'_> {
     }
 }
 
-fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -> PictureSettings {
+/// The size of a picture, and how it is made.
+pub(crate) fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -> PictureSettings {
     let shape = camera.and_then(|c| c.aspect).map_or(DEFAULT_SHAPE, |aspect| 1.0 / aspect);
     let height = (f64::from(image.width) * shape).round().clamp(1.0, 16_384.0);
     PictureSettings {

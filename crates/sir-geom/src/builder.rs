@@ -15,7 +15,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SceneError {
     /// There is nothing that light could meet.
-    #[error("the scene has no triangle with an area ({dropped} without one were dropped)")]
+    #[error("{}; add meshes of triangles to the scene", nothing(*dropped))]
     Empty {
         /// Degenerate triangles that were dropped.
         dropped: u64,
@@ -39,7 +39,7 @@ pub enum SceneError {
         count: usize,
     },
     /// A material has a negative, infinite or undefined colour.
-    #[error("material \"{name}\" has the {what} ({}, {}, {}), which must be finite and not negative", value.x, value.y, value.z)]
+    #[error("material {} has the {what} ({}, {}, {}), which must be finite and not negative", quoted(name), value.x, value.y, value.z)]
     BadMaterial {
         /// Name of the material.
         name: String,
@@ -88,15 +88,28 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DroppedTriangles { count } => {
-                write!(f, "{count} triangles without an area were left out")
+                write!(f, "{count} triangles without an area or with infinite coordinates were left out")
             }
             Self::ClampedReflectance { material, asked } => write!(
                 f,
-                "material \"{material}\" reflects {asked:.4} of the light it gets; {MAX_REFLECTANCE} is used, \
-                 because a surface must absorb some"
+                "material {} reflects {asked:.4} of the light it gets; {MAX_REFLECTANCE} is used, \
+                 because a surface must absorb some",
+                quoted(material)
             ),
             Self::Ignored { what } => f.write_str(what),
         }
+    }
+}
+
+/// The start of a name from a file in quotes, with escapes for what would play tricks on a terminal.
+fn quoted(name: &str) -> String {
+    format!("{:?}", name.chars().take(80).collect::<String>())
+}
+
+fn nothing(dropped: u64) -> String {
+    match dropped {
+        0 => "it has no triangles".to_owned(),
+        n => format!("none of its {n} triangles has both an area and finite coordinates"),
     }
 }
 
@@ -309,7 +322,8 @@ impl SceneBuilder {
 
     /// Makes one vertex of equal positions, in the order of their first use, and forgets unused ones.
     fn weld(&mut self) {
-        let mut by_position: HashMap<[u64; 3], VertexId> = HashMap::with_capacity(self.vertices.len());
+        let mut by_position: HashMap<[u64; 3], VertexId> =
+            HashMap::with_capacity(self.vertices.len().min(3 * self.triangles.len()));
         let mut welded: Vec<DVec3> = Vec::new();
         for t in &mut self.triangles {
             for v in &mut t.vertices {

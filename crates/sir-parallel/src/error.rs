@@ -29,7 +29,7 @@ pub enum RunError {
 #[derive(Debug, Error)]
 pub enum CheckpointError {
     /// It cannot be written. The one before it is still there.
-    #[error("cannot write the checkpoint {}; the one before it, if any, is still whole", path.display())]
+    #[error("cannot write the checkpoint {}; make room for it, or take another directory (an earlier checkpoint is still whole, and the run can be resumed from it)", path.display())]
     Write {
         /// The file.
         path: PathBuf,

@@ -18,10 +18,22 @@ pub enum LoadError {
         /// What its name ends in.
         extension: Option<String>,
     },
-    /// A file is absent, is not a regular file, or cannot be read.
-    #[error("cannot read {}", path.display())]
+    /// The scene file is absent, is not a regular file, or cannot be read.
+    #[error("cannot read the scene {}", path.display())]
     Read {
-        /// The file: the scene itself, or one that it refers to and cannot do without.
+        /// The scene file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// A file that the scene cannot do without cannot be read.
+    #[error("{}: {element} is in the file {}, which cannot be read; put it there, or export the scene again", scene.display(), path.display())]
+    Missing {
+        /// The scene file.
+        scene: PathBuf,
+        /// The element of the file, such as `buffer 0`.
+        element: String,
+        /// The file that it refers to.
         path: PathBuf,
         /// What the operating system says.
         source: io::Error,
@@ -65,7 +77,7 @@ pub enum LoadError {
         what: String,
     },
     /// A face of an OBJ file refers to a vertex that is not there.
-    #[error("{}:{line}: a face refers to vertex {index}, but {count} vertices stand before it; export the file again", path.display())]
+    #[error("{}:{line}: a face refers to vertex {index}, but there are {count} vertices{}; export the file again", path.display(), if index.starts_with('-') { " before it" } else { "" })]
     NoSuchVertex {
         /// The OBJ file.
         path: PathBuf,
@@ -73,7 +85,8 @@ pub enum LoadError {
         line: usize,
         /// The number as the file has it.
         index: String,
-        /// How many vertices stand before the line.
+        /// How many vertices the file has, or, if the number is negative and so counts back, how many stand before
+        /// the line.
         count: usize,
     },
     /// The file describes more geometry than is taken in.
@@ -81,7 +94,7 @@ pub enum LoadError {
     TooLarge {
         /// The scene file.
         path: PathBuf,
-        /// `vertices` or `triangles`.
+        /// `vertices`, `triangles` or `mesh primitives`.
         what: &'static str,
         /// How many are taken in.
         limit: usize,

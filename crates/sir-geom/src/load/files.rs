@@ -10,6 +10,9 @@ use percent_encoding::percent_decode_str;
 
 use super::LoadError;
 
+/// The most bytes of a name in a reference.
+const LONGEST_NAME: usize = 500;
+
 /// Reads a regular file: a pipe or a device, which may never end, is an error.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     if fs::metadata(path)?.is_file() {
@@ -19,9 +22,39 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
-/// Reads a file that the scene cannot do without.
-pub(super) fn read_needed(path: &Path) -> Result<Vec<u8>, LoadError> {
+/// Reads the scene file itself.
+pub(super) fn read_scene(path: &Path) -> Result<Vec<u8>, LoadError> {
     read(path).map_err(|source| LoadError::Read { path: path.to_owned(), source })
+}
+
+/// The file `name` beside the scene, or in a folder beside it; `None` if the name leads elsewhere: a scene from
+/// somebody else must not make its reader open files that have nothing to do with it.
+///
+/// One file has one path, however its name is written, so that what is read can be remembered.
+pub(super) fn beside(scene: &Path, name: &str) -> Option<PathBuf> {
+    // A drive letter is one on some systems only.
+    let drive = name.as_bytes().get(1) == Some(&b':');
+    let is_inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+    let path = Path::new(name);
+    (is_name(name) && !drive && path.components().all(is_inside)).then(|| {
+        let plain: PathBuf = path.components().filter(|part| *part != Component::CurDir).collect();
+        scene.with_file_name(plain)
+    })
+}
+
+/// Whether a text can be the name of a file: error messages show it.
+fn is_name(text: &str) -> bool {
+    !text.is_empty() && text.len() <= LONGEST_NAME && !text.contains(char::is_control)
+}
+
+/// The start of a text from a file, without what would play tricks on a terminal.
+pub(super) fn shortened(text: &str, characters: usize) -> String {
+    let mut start: String =
+        text.chars().take(characters).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if text.chars().nth(characters).is_some() {
+        start.push('…');
+    }
+    start
 }
 
 /// What a URI in a glTF file stands for.
@@ -35,8 +68,7 @@ pub(super) enum Reference {
 
 /// Resolves a URI of the glTF file `scene`: a `data:` URI, or a relative path with percent-encoded characters.
 ///
-/// The error says why it is not followed: a scene from elsewhere must not make its reader open files in places
-/// that have nothing to do with it, or ask for them over a network.
+/// The error says why it is not followed.
 pub(super) fn resolve(scene: &Path, uri: &str) -> Result<Reference, &'static str> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decode_data(data).map(Reference::Data);
@@ -46,16 +78,11 @@ pub(super) fn resolve(scene: &Path, uri: &str) -> Result<Reference, &'static str
         return Err("only relative paths and data URIs are followed");
     }
     let decoded = percent_decode_str(uri).decode_utf8().map_err(|_| "it is not UTF-8 text")?;
-    let path = Path::new(&*decoded);
-    if decoded.is_empty() || decoded.contains('\0') {
-        return Err("it names no file");
+    if !is_name(&decoded) {
+        return Err("this cannot be the name of a file");
     }
-    if decoded.contains('\\')
-        || !path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir))
-    {
-        return Err("it leads out of the scene's folder");
-    }
-    Ok(Reference::File(scene.with_file_name(path)))
+    let path = (!decoded.contains('\\')).then(|| beside(scene, &decoded)).flatten();
+    path.map(Reference::File).ok_or("it leads out of the scene's folder")
 }
 
 /// The bytes of a data URI without its scheme: `[media type][;base64],DATA` (RFC 2397).

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::files::shortened;
 use crate::{SceneBuilder, Warning};
 
 /// How many names a line gives before it only counts.
@@ -36,7 +37,7 @@ impl Notes {
         if note.seen.insert(name.clone()) {
             note.count += 1;
             if note.names.len() < NAMES {
-                note.names.push(name);
+                note.names.push(shortened(&name, 120));
             }
         }
     }

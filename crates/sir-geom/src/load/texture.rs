@@ -2,22 +2,33 @@
 
 use std::io::Cursor;
 
-use image::{DynamicImage, ImageReader};
+use image::{DynamicImage, ImageReader, Limits};
 
 use crate::Rgb;
 
 /// The kind of warning about textures whose mean is not known.
 pub(super) const UNREADABLE: &str = "textures cannot be read, and their colour factor alone is used";
 
+/// The most memory for a decoded image, in bytes.
+const MAX_MEMORY: u64 = 512 << 20;
+
+/// The most bytes of pixels that a byte of a file can stand for. PNG packs 1,032 into one (the limit of deflate); JPEG needs a
+/// bit for each of the six blocks that 256 pixels have at least, which makes 1,024. Sixteen bits per channel may need
+/// room for two copies.
+const EXPANSION: u64 = 2200;
+
 /// The mean linear colour of a PNG or JPEG image, its 8-bit values read as sRGB and its alpha ignored.
 ///
-/// Decoders may use 512 MiB at most, the default of [`image::Limits`].
+/// Decoders may use as much memory as a file of this size can need, 512 MiB at most.
 ///
 /// # Errors
 ///
 /// The message of the decoder.
 pub(super) fn mean_colour(bytes: &[u8]) -> Result<Rgb, String> {
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MAX_MEMORY.min(EXPANSION.saturating_mul(bytes.len() as u64) + (1 << 20)));
+    reader.limits(limits);
     let pixels = match reader.decode().map_err(|e| e.to_string())? {
         DynamicImage::ImageRgb8(pixels) => pixels,
         other => other.into_rgb8(),

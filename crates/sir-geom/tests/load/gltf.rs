@@ -318,13 +318,13 @@ fn buffers_are_whole_and_beside_the_scene() {
     let gltf = Gltf::triangle();
     let cut =
         load_from("s.gltf", &[("s.gltf", &gltf.text("b.bin")), ("b.bin", &gltf.bytes[..35])]).unwrap_err();
-    assert!(cut.to_string().contains("buffer 0: it should have 36 bytes, but there are 35"), "{cut}");
+    assert!(cut.to_string().contains("buffer 0 should have 36 bytes, but there are 35"), "{cut}");
     let absent = load_from("s.gltf", &[("s.gltf", &gltf.text("b.bin"))]).unwrap_err();
-    assert!(matches!(&absent, LoadError::Read { path, .. } if path.ends_with("b.bin")), "{absent}");
+    assert!(matches!(&absent, LoadError::Missing { path, .. } if path.ends_with("b.bin")), "{absent}");
     let mut gone = gltf.json.clone();
     gone["buffers"] = json!([{"byteLength": 36}]);
     let gone = load_from("s.gltf", &[("s.gltf", &serde_json::to_vec(&gone).unwrap())]).unwrap_err();
-    assert!(gone.to_string().contains("buffer 0, which has 0 bytes"), "{gone}");
+    assert!(gone.to_string().contains("buffer 0 has no data"), "{gone}");
     for uri in ["../b.bin", "/b.bin", "file:///b.bin", "https://example.org/b.bin", "data:nothing"] {
         let error =
             load_from("s/s.gltf", &[("s/s.gltf", &gltf.text(uri)), ("b.bin", &gltf.bytes)]).unwrap_err();

@@ -1,64 +1,10 @@
 //! Files by others, which are read where they are and are no part of the project.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
-use sir_geom::{LoadError, LoadOptions, Scene, SceneError, Warning, load};
+use sir_geom::{LoadOptions, Scene, Warning, load};
 
-use crate::files::{chain, third_party_data};
-
-fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() { files_below(&path, found) } else { found.push(path) }
-    }
-}
-
-#[test]
-fn every_file_of_the_corpus_ends_with_a_scene_or_an_error() {
-    let Some(data) = third_party_data() else { return };
-    let mut files = Vec::new();
-    files_below(&data.join("corpus"), &mut files);
-    files.sort();
-    let (mut loaded, mut refused, mut other) = (0, 0, 0);
-    for file in &files {
-        match load(file, &LoadOptions::default()) {
-            Ok(_) => loaded += 1,
-            Err(LoadError::UnknownFormat { .. }) => other += 1,
-            Err(error) => {
-                refused += 1;
-                println!("{}", chain(&error));
-            }
-        }
-    }
-    println!("{loaded} files loaded, {refused} refused, {other} of other formats");
-    assert!(loaded >= 45 && loaded + refused >= 200, "{loaded} loaded, {refused} refused");
-}
-
-/// A file that a validator finds no error in is refused only for what it does not hold.
-#[test]
-fn valid_gltf_files_are_refused_for_want_of_triangles_only() {
-    let Some(data) = third_party_data() else { return };
-    let mut files = Vec::new();
-    files_below(&data.join("corpus/gltf-validator"), &mut files);
-    let mut valid = 0;
-    for report in files.iter().filter(|f| f.to_string_lossy().ends_with(".report.json")) {
-        let json: serde_json::Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
-        if json["issues"]["numErrors"] != 0 {
-            continue;
-        }
-        valid += 1;
-        let file = PathBuf::from(report.to_string_lossy().trim_end_matches(".report.json"));
-        match load(&file, &LoadOptions::default()) {
-            Ok(_)
-            | Err(LoadError::Scene { source: SceneError::Empty { .. }, .. })
-            | Err(LoadError::RequiredExtensions { .. }) => {}
-            // Some have buffers without data, on purpose.
-            Err(error) => assert!(chain(&error).contains("which has 0 bytes"), "{}", chain(&error)),
-        }
-    }
-    assert!(valid > 50, "only {valid} valid files");
-}
+use crate::files::third_party_data;
 
 /// Triangles of the files, those without an area included, as their README counts them.
 const TRIANGLES: [(&str, usize); 11] = [

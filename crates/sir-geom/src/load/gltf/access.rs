@@ -24,7 +24,17 @@ impl Reader<'_> {
         what: &str,
     ) -> Result<(&[u8], Option<usize>), LoadError> {
         let view = lookup(self.path, self.root, index, &format!("{what}: buffer view"))?;
-        let buffer = self.buffers.get(view.buffer.value()).map_or(&[][..], |b| b);
+        let number = view.buffer.value();
+        let (buffer, length) = match (self.buffers.get(number), self.root.buffers.get(number)) {
+            (Some(bytes), Some(buffer)) if bytes.is_empty() && buffer.byte_length.0 > 0 => {
+                return Err(self.invalid(format!(
+                    "buffer {number} has no data: it has no uri, and there is no binary chunk for it"
+                )));
+            }
+            (Some(bytes), Some(buffer)) => (&bytes[..], buffer.byte_length.0 as usize),
+            _ => (&[][..], 0),
+        };
+        let buffer = &buffer[..length.min(buffer.len())];
         let start = usize::try_from(view.byte_offset.unwrap_or_default().0).ok();
         let end = start.and_then(|s| s.checked_add(usize::try_from(view.byte_length.0).ok()?));
         let bytes = start.zip(end).and_then(|(start, end)| buffer.get(start..end));
@@ -32,7 +42,7 @@ impl Reader<'_> {
             self.invalid(format!(
                 "buffer view {} reaches beyond buffer {}, which has {} bytes",
                 index.value(),
-                view.buffer.value(),
+                number,
                 buffer.len()
             ))
         })?;
@@ -70,6 +80,9 @@ impl Reader<'_> {
         };
         if let Some(sparse) = &accessor.sparse {
             let changes = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
+            if changes > count {
+                return Err(self.invalid(format!("{name} has {count} elements, but changes {changes}")));
+            }
             let Checked::Valid(index_type) = &sparse.indices.component_type else {
                 return Err(self.invalid(format!("{name} has sparse indices of an unknown type")));
             };

@@ -1,24 +1,41 @@
 //! From files to the JSON document and its buffers.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
-use ::gltf::json::{Buffer, Root, Value, deserialize};
+use ::gltf::json::{Root, Value, deserialize};
 
 use super::super::files::{self, Reference};
 use super::LoadError;
 
+/// The most characters of what a parser says, which may quote the file at length.
+const MESSAGE: usize = 160;
+
 /// The document, and the binary part if the file is a GLB that has one.
 pub(super) fn open(path: &Path) -> Result<(Root, Option<Vec<u8>>), LoadError> {
     let invalid = |what: String| LoadError::Gltf { path: path.to_owned(), what };
-    let bytes = files::read_needed(path)?;
-    let (json, binary) = if bytes.starts_with(b"glTF") {
-        split_glb(&bytes).map_err(|what| invalid(what.to_owned()))?
-    } else {
-        (&bytes[..], None)
+    let bytes = files::read_scene(path)?;
+    let (json, binary) = match &bytes[..] {
+        [] => return Err(invalid("the file is empty".to_owned())),
+        [b'g', b'l', b'T', b'F', ..] => split_glb(&bytes).map_err(|what| invalid(what.to_owned()))?,
+        // JSON should have no byte order mark; readers may ignore one (RFC 8259, section 8.1).
+        [0xef, 0xbb, 0xbf, text @ ..] => (text, None),
+        text => (text, None),
     };
-    let mut document: Value = deserialize::from_slice(json).map_err(|e| invalid(e.to_string()))?;
+    let said = |error: &dyn std::fmt::Display| files::shortened(&error.to_string(), MESSAGE);
+    let mut document: Value = deserialize::from_slice(json)
+        .map_err(|e| invalid(format!("its text is not whole JSON ({})", said(&e))))?;
     forget_unused(&mut document);
-    let root = deserialize::from_value(document).map_err(|e| invalid(e.to_string()))?;
+    // Where a value is of the wrong kind, its path is of more use than its line.
+    let root = serde_path_to_error::deserialize(document).map_err(|e| {
+        // The whole document is called ".".
+        let place = e.path().to_string();
+        invalid(match place.as_str() {
+            "." => said(e.inner()),
+            place => format!("{}: {}", files::shortened(place, MESSAGE), said(e.inner())),
+        })
+    })?;
     Ok((root, binary.map(<[u8]>::to_vec)))
 }
 
@@ -60,42 +77,63 @@ fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), &'static str> {
 }
 
 /// The bytes of all buffers of a document. One with neither a URI nor the binary part is empty, which is a fault
-/// only if something refers to it.
+/// only if something refers to it. Buffers may share a file, which is then in memory once.
 pub(super) fn buffers(
     path: &Path,
     root: &Root,
     mut binary: Option<Vec<u8>>,
-) -> Result<Vec<Vec<u8>>, LoadError> {
-    let bytes = |(i, buffer): (usize, &Buffer)| {
+) -> Result<Vec<Rc<Vec<u8>>>, LoadError> {
+    let mut read: BTreeMap<PathBuf, Rc<Vec<u8>>> = BTreeMap::new();
+    let mut buffers = Vec::with_capacity(root.buffers.len());
+    for (i, buffer) in root.buffers.iter().enumerate() {
+        let element = || format!("buffer {i}");
         let found = match &buffer.uri {
-            Some(uri) => Some(fetch(path, uri, || format!("buffer {i}"))?),
-            None if i == 0 => binary.take(),
+            Some(uri) => match resolve(path, uri, element)? {
+                Reference::Data(bytes) => Some(Rc::new(bytes)),
+                Reference::File(file) => match read.get(&file) {
+                    Some(bytes) => Some(Rc::clone(bytes)),
+                    None => {
+                        let bytes = Rc::new(read_file(path, &file, element)?);
+                        read.insert(file, Rc::clone(&bytes));
+                        Some(bytes)
+                    }
+                },
+            },
+            None if i == 0 => binary.take().map(Rc::new),
             None => None,
         };
-        let Some(mut bytes) = found else { return Ok(Vec::new()) };
-        let length = usize::try_from(buffer.byte_length.0).unwrap_or(usize::MAX);
-        if bytes.len() < length {
-            let what = format!("buffer {i}: it should have {length} bytes, but there are {}", bytes.len());
+        let Some(bytes) = found else {
+            buffers.push(Rc::default());
+            continue;
+        };
+        if (bytes.len() as u64) < buffer.byte_length.0 {
+            let (length, real) = (buffer.byte_length.0, bytes.len());
+            let what = format!("buffer {i} should have {length} bytes, but there are {real}");
             return Err(LoadError::Gltf { path: path.to_owned(), what });
         }
-        bytes.truncate(length);
-        Ok(bytes)
-    };
-    root.buffers.iter().enumerate().map(bytes).collect()
+        buffers.push(bytes);
+    }
+    Ok(buffers)
 }
 
-/// The bytes that a URI of the file stands for.
-pub(super) fn fetch(path: &Path, uri: &str, element: impl Fn() -> String) -> Result<Vec<u8>, LoadError> {
-    match files::resolve(path, uri) {
-        Ok(Reference::Data(bytes)) => Ok(bytes),
-        Ok(Reference::File(file)) => files::read_needed(&file),
-        Err(why) => Err(LoadError::Reference {
-            path: path.to_owned(),
-            element: element(),
-            uri: uri.chars().take(60).collect(),
-            why: why.to_owned(),
-        }),
-    }
+/// What a URI of the file stands for. `element` is the part of the file that has it.
+pub(super) fn resolve(path: &Path, uri: &str, element: impl Fn() -> String) -> Result<Reference, LoadError> {
+    files::resolve(path, uri).map_err(|why| LoadError::Reference {
+        path: path.to_owned(),
+        element: element(),
+        uri: files::shortened(uri, 60),
+        why: why.to_owned(),
+    })
+}
+
+/// Reads a file that an element of the scene refers to.
+fn read_file(scene: &Path, file: &Path, element: impl Fn() -> String) -> Result<Vec<u8>, LoadError> {
+    files::read(file).map_err(|source| LoadError::Missing {
+        scene: scene.to_owned(),
+        element: element(),
+        path: file.to_owned(),
+        source,
+    })
 }
 
 #[cfg(test)]

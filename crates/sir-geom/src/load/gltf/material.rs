@@ -1,14 +1,27 @@
 //! Materials and their textures.
 
 use std::f64::consts::PI;
+use std::path::PathBuf;
 
 use ::gltf::json::Index;
 use ::gltf::json::material::Material as Source;
 use ::gltf::json::texture::Info;
 
+use super::super::files::{self, Reference};
 use super::super::{DEFAULT_REFLECTANCE, texture};
-use super::{LoadError, Reader, container, lookup};
+use super::{LoadError, Reader, lookup};
 use crate::{Material, MaterialId, Rgb, Sides};
+
+/// Where the encoded bytes of an image lie. Images may share them, and large ones take time to decode.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Pixels {
+    /// In a buffer view.
+    View(usize),
+    /// In a file.
+    File(PathBuf),
+    /// In the URI of this image, or nowhere.
+    Own(usize),
+}
 
 impl Reader<'_> {
     /// The material at an index of the file, added when it is first used; `None` is the default material.
@@ -59,35 +72,48 @@ impl Reader<'_> {
             return Ok(Rgb::ONE);
         };
         let image = lookup(self.path, self.root, info.index, "a material: texture")?.source.value();
-        let mean = match self.textures.get(&image) {
+        let pixels = self.pixels(image);
+        let mean = match self.textures.get(&pixels) {
             Some(&mean) => mean,
             None => {
-                let mean = self.image(image).and_then(|bytes| texture::mean_colour(&bytes));
+                let mean = self.image(image, &pixels).and_then(|bytes| texture::mean_colour(&bytes));
                 let mean = mean
                     .inspect_err(|e| self.notes.name(texture::UNREADABLE, format!("image {image} ({e})")));
-                *self.textures.entry(image).or_insert(mean.ok())
+                *self.textures.entry(pixels).or_insert(mean.ok())
             }
         };
         Ok(mean.unwrap_or(Rgb::ONE))
     }
 
+    fn pixels(&self, index: usize) -> Pixels {
+        let image = self.root.images.get(index);
+        match image.map(|image| (&image.uri, image.buffer_view)) {
+            Some((Some(uri), _)) if !uri.starts_with("data:") => match files::resolve(self.path, uri) {
+                Ok(Reference::File(path)) => Pixels::File(path),
+                _ => Pixels::Own(index),
+            },
+            Some((None, Some(view))) => Pixels::View(view.value()),
+            _ => Pixels::Own(index),
+        }
+    }
+
     /// The encoded bytes of an image.
-    fn image(&self, index: usize) -> Result<Vec<u8>, String> {
+    fn image(&self, index: usize, pixels: &Pixels) -> Result<Vec<u8>, String> {
         let image = self.root.images.get(index).ok_or("it does not exist in a known format")?;
-        match (&image.uri, image.buffer_view) {
-            (Some(uri), _) => {
-                container::fetch(self.path, uri, || format!("image {index}")).map_err(|e| match e {
-                    LoadError::Read { path, source } => format!("{}: {source}", path.display()),
-                    LoadError::Reference { why, .. } => why,
-                    other => other.to_string(),
-                })
+        match (pixels, &image.uri, image.buffer_view) {
+            (Pixels::File(path), ..) => {
+                files::read(path).map_err(|source| format!("{}: {source}", path.display()))
             }
-            (None, Some(view)) => match self.view(view, "an image") {
+            (_, Some(uri), _) => match files::resolve(self.path, uri)? {
+                Reference::Data(bytes) => Ok(bytes),
+                Reference::File(_) => Err("it has no data".to_owned()),
+            },
+            (_, None, Some(view)) => match self.view(view, "an image") {
                 Ok((bytes, _)) => Ok(bytes.to_vec()),
                 Err(LoadError::Gltf { what, .. }) => Err(what),
                 Err(other) => Err(other.to_string()),
             },
-            (None, None) => Err("it has no data".to_owned()),
+            (_, None, None) => Err("it has no data".to_owned()),
         }
     }
 }

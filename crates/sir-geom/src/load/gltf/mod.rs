@@ -12,13 +12,14 @@ mod material;
 mod primitive;
 mod walk;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::rc::Rc;
 
 use ::gltf::json::{Index, Root, root::Get};
 
 use super::notes::Notes;
-use super::{LoadError, LoadOptions};
+use super::{LoadError, LoadOptions, files};
 use crate::{MaterialId, Rgb, SceneBuilder};
 
 /// Extensions whose meaning is taken in, or does not change a diffuse scene.
@@ -28,6 +29,9 @@ const KNOWN_EXTENSIONS: [&str; 4] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
+
+/// The most unknown extensions that are named.
+const MOST_NAMES: usize = 8;
 
 /// Reads a glTF file into a builder.
 pub(super) fn read(
@@ -51,6 +55,7 @@ pub(super) fn read(
         textures: BTreeMap::new(),
         vertices: 0,
         triangles: 0,
+        primitives: 0,
     };
     reader.scene()
 }
@@ -59,17 +64,18 @@ pub(super) fn read(
 struct Reader<'a> {
     path: &'a Path,
     root: &'a Root,
-    buffers: Vec<Vec<u8>>,
+    buffers: Vec<Rc<Vec<u8>>>,
     options: LoadOptions,
     builder: &'a mut SceneBuilder,
     notes: &'a mut Notes,
     /// Materials met so far by their index in the file; `None` stands for the default one.
     materials: BTreeMap<Option<usize>, MaterialId>,
-    /// Mean colours by image; `None` for one that cannot be read.
-    textures: BTreeMap<usize, Option<Rgb>>,
+    /// Mean colours of images; `None` for one that cannot be read.
+    textures: BTreeMap<material::Pixels, Option<Rgb>>,
     /// How many were added so far.
     vertices: usize,
     triangles: usize,
+    primitives: usize,
 }
 
 impl Reader<'_> {
@@ -100,12 +106,14 @@ fn check_version(path: &Path, root: &Root) -> Result<(), LoadError> {
         return Ok(());
     }
     let what = format!("its version is \"{needed}\", and 2.0 is read");
-    Err(LoadError::Gltf { path: path.to_owned(), what })
+    Err(LoadError::Gltf { path: path.to_owned(), what: files::shortened(&what, 100) })
 }
 
 fn check_extensions(path: &Path, root: &Root, notes: &mut Notes) -> Result<(), LoadError> {
     let unknown = |names: &[String]| -> Vec<String> {
-        names.iter().filter(|name| !KNOWN_EXTENSIONS.contains(&name.as_str())).cloned().collect()
+        let mut seen = BTreeSet::from(KNOWN_EXTENSIONS);
+        let new = names.iter().filter(|&name| seen.insert(name));
+        new.take(MOST_NAMES).map(|name| files::shortened(name, 60)).collect()
     };
     let names = unknown(&root.extensions_required);
     if !names.is_empty() {

@@ -1,5 +1,8 @@
 //! Triangles of mesh primitives.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
 use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
@@ -9,8 +12,8 @@ use super::super::MAX_ELEMENTS;
 use super::{LoadError, Reader};
 use crate::VertexId;
 
-/// Vertices of one instance of a mesh: primitives often share a position accessor, whose index comes first.
-pub(super) type Shared = Vec<(usize, Vec<VertexId>)>;
+/// Vertices of one instance of a mesh by their position accessor, which primitives often share.
+pub(super) type Shared = HashMap<usize, Vec<VertexId>>;
 
 impl Reader<'_> {
     /// Adds a primitive in world space. `shared` has the vertices that other primitives of this mesh instance
@@ -35,11 +38,10 @@ impl Reader<'_> {
         if primitive.attributes.keys().any(|k| matches!(k, Checked::Valid(Semantic::Colors(_)))) {
             self.notes.count("mesh primitives have vertex colours, which were ignored", 1);
         }
-        let Some(place) = self.vertices_of(primitive, to_world, shared, what)? else {
+        let Some(vertices) = self.vertices_of(primitive, to_world, shared, what)? else {
             self.notes.count("mesh primitives without positions were skipped", 1);
             return Ok(());
         };
-        let vertices = &shared[place].1;
         let corners = self.corners(primitive, vertices.len(), what)?;
         let triangles = Triangles { mode, corners: corners.len() };
         self.triangles += triangles.count();
@@ -57,28 +59,28 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The place in `shared` of the vertices of a primitive, which are added if they are not there yet.
-    fn vertices_of(
+    /// The vertices of a primitive, which are added to `shared` if they are not there yet.
+    fn vertices_of<'s>(
         &mut self,
         primitive: &Primitive,
         to_world: &DAffine3,
-        shared: &mut Shared,
+        shared: &'s mut Shared,
         what: &str,
-    ) -> Result<Option<usize>, LoadError> {
+    ) -> Result<Option<&'s [VertexId]>, LoadError> {
         use ComponentType::{F32, I8, I16, U8, U16};
         let Some(&accessor) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
             return Ok(None);
         };
-        if let Some(place) = shared.iter().position(|(index, _)| *index == accessor.value()) {
-            return Ok(Some(place));
-        }
+        let vacant = match shared.entry(accessor.value()) {
+            Entry::Occupied(known) => return Ok(Some(known.into_mut())),
+            Entry::Vacant(vacant) => vacant,
+        };
         // Whole numbers are those of KHR_mesh_quantization.
         let positions = self.elements::<3>(accessor, Type::Vec3, &[F32, I8, U8, I16, U16], what)?;
         self.vertices += positions.len();
         self.check_size("vertices", self.vertices)?;
         let add = |p| self.builder.add_vertex(to_world.transform_point3(DVec3::from_array(p)));
-        shared.push((accessor.value(), positions.into_iter().map(add).collect()));
-        Ok(Some(shared.len() - 1))
+        Ok(Some(vacant.insert(positions.into_iter().map(add).collect())))
     }
 
     /// Numbers of the vertices of a primitive in the order of its corners.
@@ -95,7 +97,7 @@ impl Reader<'_> {
         }
     }
 
-    fn check_size(&self, what: &'static str, count: usize) -> Result<(), LoadError> {
+    pub(super) fn check_size(&self, what: &'static str, count: usize) -> Result<(), LoadError> {
         if count > MAX_ELEMENTS {
             return Err(LoadError::TooLarge { path: self.path.to_owned(), what, limit: MAX_ELEMENTS });
         }

@@ -4,6 +4,7 @@ use ::gltf::json::scene::Node;
 use ::gltf::json::{Index, Root};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
+use super::primitive::Shared;
 use super::{LoadError, Reader, camera, lookup};
 
 impl Reader<'_> {
@@ -50,7 +51,10 @@ impl Reader<'_> {
             }
             let mesh = lookup(self.path, self.root, index, "a node: mesh")?;
             self.builder.begin_group(node.name.as_deref().or(mesh.name.as_deref()).unwrap_or_default());
-            let mut shared = Vec::new();
+            // Also those without triangles take time, and a small file can ask for many.
+            self.primitives += mesh.primitives.len();
+            self.check_size("mesh primitives", self.primitives)?;
+            let mut shared = Shared::new();
             for (i, primitive) in mesh.primitives.iter().enumerate() {
                 let what = format!("mesh {}, primitive {i}", index.value());
                 self.primitive(primitive, to_world, &mut shared, &what)?;

@@ -7,6 +7,8 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
+use super::super::files::shortened;
+
 /// An OBJ file in plain form.
 #[derive(Debug, Default)]
 pub(super) struct Obj {
@@ -64,7 +66,8 @@ pub(super) fn mtl(text: &str) -> Result<String, (usize, String)> {
                     // One number stands for three (the MTL specification has this for all colours).
                     ("Kd" | "Ke", 1) => push_words(&mut plain, known, [rest; 3].into_iter()),
                     ("Kd" | "Ke", 0 | 2) => {
-                        return Err((line, format!("\"{statement}\" must have one or three numbers")));
+                        let start = shortened(&statement, 80);
+                        return Err((line, format!("\"{start}\" must have one or three numbers")));
                     }
                     ("newmtl", 0) => return Err((line, "a material has no name".to_owned())),
                     ("map_Kd" | "map_Ke", 0) => {}

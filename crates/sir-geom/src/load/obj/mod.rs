@@ -7,7 +7,6 @@
 mod clean;
 mod mtl;
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use glam::DVec3;
@@ -29,11 +28,10 @@ pub(super) fn read(
     builder: &mut SceneBuilder,
     notes: &mut Notes,
 ) -> Result<(), LoadError> {
-    let obj = clean::obj(&String::from_utf8_lossy(&files::read_needed(path)?));
+    let obj = clean::obj(&String::from_utf8_lossy(&files::read_scene(path)?));
     notes.count("points and lines were skipped", obj.points_and_lines);
     let mut library = mtl::Library::new(&obj.used_materials, options);
-    let mut read = HashSet::new();
-    for names in obj.libraries.iter().filter(|&names| read.insert(names)) {
+    for names in &obj.libraries {
         library.add(path, names, notes)?;
     }
     for name in obj.used_materials.iter().filter(|name| !library.by_name.contains_key(*name)) {
@@ -66,22 +64,24 @@ fn parse(path: &Path, text: &str, library: &mtl::Library<'_>) -> Result<Vec<tobj
 /// The number, from 1, and the start of the line that ends at byte `end`.
 fn line_at(text: &str, end: usize) -> (usize, String) {
     let (line, statement) = text[..end].lines().enumerate().last().unwrap_or_default();
-    (line + 1, statement.chars().take(80).collect())
+    (line + 1, files::shortened(statement, 80))
 }
 
-/// Finds the first corner of a face that is none of the vertices before it.
+/// Finds the first corner of a face that is none of the vertices: of all, or, if it counts back, of those before it.
 fn no_such_vertex(path: &Path, text: &str) -> LoadError {
-    let mut count = 0;
+    let all = text.lines().filter(|line| line.starts_with("v ")).count();
+    let mut before = 0;
     for (i, line) in text.lines().enumerate() {
-        count += usize::from(line.starts_with("v "));
+        before += usize::from(line.starts_with("v "));
         let mut corners = line.strip_prefix("f ").unwrap_or_default().split_whitespace();
-        let known = |corner: &str| corner.parse::<isize>().is_ok_and(|n| n != 0 && n.unsigned_abs() <= count);
+        let count = |corner: &str| if corner.starts_with('-') { before } else { all };
+        let known = |c: &&str| c.parse::<isize>().is_ok_and(|n| n != 0 && n.unsigned_abs() <= count(c));
         if let Some(index) = corners.find(|corner| !known(corner)) {
             return LoadError::NoSuchVertex {
                 path: path.to_owned(),
                 line: i + 1,
-                index: index.to_owned(),
-                count,
+                index: files::shortened(index, 40),
+                count: count(index),
             };
         }
     }

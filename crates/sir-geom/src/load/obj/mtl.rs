@@ -1,6 +1,6 @@
 //! Material libraries.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
@@ -19,27 +19,49 @@ pub(super) struct Library<'a> {
     /// Places in `materials`; of equal names the last counts.
     pub(super) by_name: BTreeMap<String, usize>,
     textures: HashMap<PathBuf, Option<Rgb>>,
+    /// The files that were tried.
+    read: HashSet<PathBuf>,
 }
 
 impl<'a> Library<'a> {
     /// A library that takes in the materials of these names.
     pub(super) fn new(wanted: &'a BTreeSet<String>, options: LoadOptions) -> Self {
-        Self { wanted, options, materials: Vec::new(), by_name: BTreeMap::new(), textures: HashMap::new() }
+        Self {
+            wanted,
+            options,
+            materials: Vec::new(),
+            by_name: BTreeMap::new(),
+            textures: HashMap::new(),
+            read: HashSet::new(),
+        }
     }
 
     /// Reads what a `mtllib` statement of the file `obj` names: one file whose name may have blanks, or else
     /// several.
     pub(super) fn add(&mut self, obj: &Path, names: &str, notes: &mut Notes) -> Result<(), LoadError> {
-        let beside = |name: &str| obj.with_file_name(name.trim_matches('"').replace('\\', "/"));
-        if let Ok(bytes) = files::read(&beside(names)) {
-            return self.parse(&beside(names), &bytes, notes);
+        let whole = plain_name(names);
+        if files::beside(obj, &whole).is_some_and(|path| path.is_file()) {
+            return self.add_file(obj, &whole, notes);
         }
         // A blank inside one of several names has a backslash before it.
         for name in names.replace("\\ ", "\0").split_whitespace().map(|name| name.replace('\0', " ")) {
-            match files::read(&beside(&name)) {
-                Ok(bytes) => self.parse(&beside(&name), &bytes, notes)?,
-                Err(_) => notes.name("material libraries cannot be read", name),
-            }
+            self.add_file(obj, &plain_name(&name), notes)?;
+        }
+        Ok(())
+    }
+
+    /// Reads one library, unless it was read before.
+    fn add_file(&mut self, obj: &Path, name: &str, notes: &mut Notes) -> Result<(), LoadError> {
+        let Some(path) = files::beside(obj, name) else {
+            notes.name("material libraries are not in the folder of the scene, and were not read", name);
+            return Ok(());
+        };
+        if !self.read.insert(path.clone()) {
+            return Ok(());
+        }
+        match files::read(&path) {
+            Ok(bytes) => self.parse(&path, &bytes, notes)?,
+            Err(_) => notes.name("material libraries cannot be read", name),
         }
         Ok(())
     }
@@ -82,13 +104,21 @@ impl<'a> Library<'a> {
 
     /// Mean colour of the texture that a `map_…` statement of a library names.
     fn texture(&mut self, mtl: &Path, map: &str, notes: &mut Notes) -> Option<Rgb> {
-        let name = without_options(map).trim_matches('"').replace('\\', "/");
-        let path = mtl.with_file_name(&name);
+        let name = plain_name(without_options(map));
+        let Some(path) = files::beside(mtl, &name) else {
+            notes.name("textures are not in the folder of the scene, and were not read", &name);
+            return None;
+        };
         *self.textures.entry(path).or_insert_with_key(|path| {
             let mean = files::read(path).map_err(|e| e.to_string()).and_then(|b| texture::mean_colour(&b));
             mean.inspect_err(|e| notes.name(texture::UNREADABLE, format!("{name} ({e})"))).ok()
         })
     }
+}
+
+/// A file name without quotes, with the slashes of this system.
+fn plain_name(name: &str) -> String {
+    name.trim_matches('"').replace('\\', "/")
 }
 
 /// The file name behind the options of a `map_…` statement.

@@ -1,0 +1,13 @@
+//! Files that mean harm, and broken files of others: each ends with a scene or one clear error, in little time and memory.
+//!
+//! A program of its own, because the memory of one file can only be measured if nothing else runs.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "these are tests")]
+
+mod bounded;
+mod corpus;
+#[allow(dead_code, reason = "other tests use the rest of it")]
+#[path = "../load/files.rs"]
+mod files;
+mod gltf;
+mod obj;
