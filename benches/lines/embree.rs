@@ -2,7 +2,7 @@
 #![allow(unsafe_code, reason = "Embree has a C interface")]
 
 use std::ffi::{c_char, c_int, c_uint, c_void};
-use std::mem::offset_of;
+use std::mem::{ManuallyDrop, offset_of};
 
 use libloading::Library;
 use sir::geom::{Line, Scene};
@@ -150,7 +150,8 @@ struct Functions {
 pub(crate) struct Embree {
     functions: Functions,
     device: Handle,
-    _library: Library,
+    /// Never unloaded: threads of the library may outlive the device.
+    _library: ManuallyDrop<Library>,
 }
 
 impl Embree {
@@ -188,7 +189,7 @@ impl Embree {
             };
             let device = (functions.new_device)(c"threads=1,set_affinity=0".as_ptr());
             assert!(!device.is_null(), "Embree makes no device");
-            Ok(Self { functions, device, _library: library })
+            Ok(Self { functions, device, _library: ManuallyDrop::new(library) })
         }
     }
 
