@@ -27,8 +27,8 @@ const LONGEST_ERROR: usize = 800;
 
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Holds other tests back, as their memory would be counted, too.
-fn alone() -> MutexGuard<'static, ()> {
+/// Holds other tests back: each begins with this, before it makes its files, because memory is counted for all together.
+pub(crate) fn alone() -> MutexGuard<'static, ()> {
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -52,7 +52,6 @@ pub(crate) fn load_within_bounds(path: &Path, bytes: usize) -> Result<Built, Loa
 
 /// Reads the first of some files, which lie in one folder.
 pub(crate) fn load_hostile(files: &[(&str, &[u8])]) -> Result<Built, LoadError> {
-    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path().join("scene");
     for (name, bytes) in files {
@@ -71,10 +70,4 @@ pub(crate) fn refused(files: &[(&str, &[u8])], words: &[&str]) -> String {
     println!("{text}");
     assert!(words.iter().all(|word| text.contains(word)), "{words:?} are not all in: {text}");
     text
-}
-
-/// Runs a check of files that lie elsewhere.
-pub(crate) fn undisturbed(check: impl FnOnce()) {
-    let _alone = alone();
-    check();
 }

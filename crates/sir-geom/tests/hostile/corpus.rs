@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use sir_geom::{LoadError, SceneError};
 
-use crate::bounded::{load_within_bounds, undisturbed};
+use crate::bounded::{alone, load_within_bounds};
 use crate::files::{chain, third_party_data};
 
 /// All files that a folder and those in it hold, by name, with the bytes of all files in the same folder.
@@ -42,33 +42,32 @@ fn by_design(error: &LoadError) -> bool {
 
 #[test]
 fn every_file_of_the_corpus_ends_with_a_scene_or_an_error() {
+    let _alone = alone();
     let Some(data) = third_party_data() else { return };
-    undisturbed(|| {
-        let mut files = Vec::new();
-        scenes_below(&data.join("corpus"), &mut files);
-        let (mut loaded, mut valid, mut refused, mut design) = (0, 0, 0, 0);
-        for (file, bytes) in &files {
-            let ok = is_valid(file);
-            valid += usize::from(ok == Some(true));
-            let kind = match load_within_bounds(file, *bytes) {
-                Ok(_) => {
-                    loaded += 1;
-                    "loaded".to_owned()
-                }
-                Err(error) if ok == Some(true) => {
-                    assert!(by_design(&error), "a valid file is refused: {}", chain(&error));
-                    design += 1;
-                    format!("by design  {}", chain(&error))
-                }
-                Err(error) => {
-                    refused += 1;
-                    format!("refused    {}", chain(&error))
-                }
-            };
-            let data = data.display().to_string() + "/corpus/";
-            println!("{}  {}", file.display().to_string().replace(&data, ""), kind.replace(&data, ""));
-        }
-        println!("{} files: {loaded} loaded, {refused} refused, {design} by design", files.len());
-        assert!(files.len() > 230 && loaded >= 45 && valid > 50, "{loaded} of {} loaded", files.len());
-    });
+    let mut files = Vec::new();
+    scenes_below(&data.join("corpus"), &mut files);
+    let (mut loaded, mut valid, mut refused, mut design) = (0, 0, 0, 0);
+    for (file, bytes) in &files {
+        let ok = is_valid(file);
+        valid += usize::from(ok == Some(true));
+        let kind = match load_within_bounds(file, *bytes) {
+            Ok(_) => {
+                loaded += 1;
+                "loaded".to_owned()
+            }
+            Err(error) if ok == Some(true) => {
+                assert!(by_design(&error), "a valid file is refused: {}", chain(&error));
+                design += 1;
+                format!("by design  {}", chain(&error))
+            }
+            Err(error) => {
+                refused += 1;
+                format!("refused    {}", chain(&error))
+            }
+        };
+        let data = data.display().to_string() + "/corpus/";
+        println!("{}  {}", file.display().to_string().replace(&data, ""), kind.replace(&data, ""));
+    }
+    println!("{} files: {loaded} loaded, {refused} refused, {design} by design", files.len());
+    assert!(files.len() > 230 && loaded >= 45 && valid > 50, "{loaded} of {} loaded", files.len());
 }

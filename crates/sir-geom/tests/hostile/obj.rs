@@ -1,6 +1,6 @@
 //! OBJ and MTL files that claim more than they have, or reach for what is not theirs.
 
-use crate::bounded::{load_hostile, refused};
+use crate::bounded::{alone, load_hostile, refused};
 use crate::files::warnings;
 
 const VERTICES: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -12,6 +12,7 @@ fn triangle(statements: &str) -> String {
 
 #[test]
 fn indices_beyond_the_vertices_are_refused() {
+    let _alone = alone();
     for index in ["4", "0", "-4", "1000000000", "-1000000000", "9223372036854775807", "99999999999999999999"]
     {
         refused(&[("a.obj", format!("{VERTICES}f 1 2 {index}\n").as_bytes())], &["a.obj:4:", index]);
@@ -27,6 +28,7 @@ fn indices_beyond_the_vertices_are_refused() {
 
 #[test]
 fn coordinates_that_are_no_numbers() {
+    let _alone = alone();
     for bad in ["nan", "inf", "-inf", "1e999", "1.#IND"] {
         let text = format!("{VERTICES}v {bad} 1 1\nf 1 2 3\nf 1 2 4\n");
         let built = load_hostile(&[("a.obj", text.as_bytes())]).unwrap();
@@ -43,6 +45,7 @@ fn coordinates_that_are_no_numbers() {
 
 #[test]
 fn long_lines_take_memory_in_proportion() {
+    let _alone = alone();
     let long = "x".repeat(50_000_000);
     let texts = [format!("# {long}\n{}", triangle("")), triangle(&format!("o {long}"))];
     for text in texts {
@@ -56,12 +59,14 @@ fn long_lines_take_memory_in_proportion() {
 
 #[test]
 fn many_short_meshes_take_memory_in_proportion() {
+    let _alone = alone();
     let text = format!("{VERTICES}{}", "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n".repeat(50_000));
     assert_eq!(load_hostile(&[("a.obj", text.as_bytes())]).unwrap().scene.triangles().len(), 100_000);
 }
 
 #[test]
 fn libraries_and_textures_outside_the_folder_are_not_read() {
+    let _alone = alone();
     let secret = b"newmtl a\nKd 0.25 0.25 0.25\n";
     for name in ["../secret.mtl", "/etc/passwd", "C:\\secret.mtl", "a/../../secret.mtl", "..\\secret.mtl"] {
         let text = triangle(&format!("mtllib {name}"));
@@ -83,6 +88,7 @@ fn libraries_and_textures_outside_the_folder_are_not_read() {
 
 #[test]
 fn a_library_is_read_once_however_it_is_named() {
+    let _alone = alone();
     let names: String = (0..20_000).map(|i| format!("mtllib {}a.mtl a.mtl\n", "./".repeat(i % 9))).collect();
     let library = format!("{}newmtl a\nKd 0.25 0.25 0.25\n", "newmtl b\nKd 1 1 1\n".repeat(10_000));
     let built =
@@ -92,6 +98,7 @@ fn a_library_is_read_once_however_it_is_named() {
 
 #[test]
 fn a_library_that_names_libraries_leads_nowhere() {
+    let _alone = alone();
     let library = "mtllib a.mtl\nmtllib a.obj\nnewmtl a\nKd 0.25 0.25 0.25\n";
     let text = triangle("mtllib a.obj a.mtl");
     let built = load_hostile(&[("a.obj", text.as_bytes()), ("a.mtl", library.as_bytes())]).unwrap();
@@ -100,6 +107,7 @@ fn a_library_that_names_libraries_leads_nowhere() {
 
 #[test]
 fn a_texture_that_is_no_image_is_a_warning() {
+    let _alone = alone();
     let library = b"newmtl a\nKd 0.25 0.25 0.25\nmap_Kd a.obj\n";
     let text = triangle("mtllib a.mtl");
     let built = load_hostile(&[("a.obj", text.as_bytes()), ("a.mtl", library)]).unwrap();
@@ -108,6 +116,7 @@ fn a_texture_that_is_no_image_is_a_warning() {
 
 #[test]
 fn broken_libraries_name_their_line() {
+    let _alone = alone();
     for (line, word) in
         [("Kd 1 2", "three numbers"), ("Kd x y z", "Kd"), ("newmtl", "no name"), ("Ke 1 nan x", "Ke")]
     {
@@ -124,6 +133,7 @@ fn broken_libraries_name_their_line() {
 
 #[test]
 fn encodings() {
+    let _alone = alone();
     let text = triangle("g x");
     let marked = format!("\u{feff}{}", text.replace('\n', "\r\n"));
     for bytes in
