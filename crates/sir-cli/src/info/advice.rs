@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::Serialize;
 
+use super::lines::{Fates, Lines};
 use super::numbers::Info;
 use super::text::{length, percent};
 use crate::fields::grouped;
@@ -10,7 +11,7 @@ use crate::fields::grouped;
 /// A share of lines that is more than a crack between surfaces.
 const SOME: f64 = 0.01;
 
-/// A share of lines that does not matter, and that some of [`LINES`](super::lines::LINES) lines would have found.
+/// A share of lines that does not matter, and that some of a hundred thousand lines would have found.
 const NONE: f64 = 0.0005;
 
 /// Something to write into a pipeline.
@@ -39,7 +40,10 @@ fn unit(info: &Info) -> Option<String> {
     match size.max_element() {
         _ if room && height > 100.0 => {
             let unit = if height > 1000.0 { "millimetres" } else { "centimetres" };
-            Some(format!("a height of {} m: looks like {unit}; {lengths}", length(height)))
+            Some(format!(
+                "a height of {} m: if this is a room, it looks like {unit}; {lengths}",
+                length(height)
+            ))
         }
         most if most > 1000.0 => Some(format!("an extent of {} m; {lengths}", length(most))),
         most if most < 0.05 => Some(format!(
@@ -98,7 +102,7 @@ fn coincident(info: &Info) -> Option<String> {
 
 fn winding(info: &Info) -> Option<String> {
     let fronts = info.lines.from_fronts;
-    let backs = fronts.back + fronts.absorbed;
+    let backs = of_light(info, |fates| fates.back + fates.absorbed);
     if looks_outward(info) {
         Some(format!(
             "{} of the lines from fronts leave the scene, but only {} of those from backs: an object seen from outside, or a room turned \
@@ -108,7 +112,7 @@ fn winding(info: &Info) -> Option<String> {
         ))
     } else if backs > SOME {
         Some(format!(
-            "{} of the lines from fronts meet a back first: triangles are wound differently, or surfaces are seen from both sides",
+            "{} of the light falls on backs: triangles are wound differently, or surfaces are seen from both sides",
             percent(backs)
         ))
     } else {
@@ -116,15 +120,22 @@ fn winding(info: &Info) -> Option<String> {
     }
 }
 
-/// Whether fronts face the outside.
+/// A share of the light: that of the emitting surfaces before or after its first reflection, whichever is more, or else that of all
+/// fronts, hidden ones included.
+fn of_light(info: &Info, share: fn(Fates) -> f64) -> f64 {
+    let Lines { from_fronts, from_emitters, reflected, .. } = info.lines;
+    from_emitters.map_or(share(from_fronts), |emitted| share(emitted).max(reflected.map_or(0.0, share)))
+}
+
+/// Whether fronts face the outside. (Of the fronts of a room with thick walls, about half do.)
 fn looks_outward(info: &Info) -> bool {
     let [fronts, backs] = [info.lines.from_fronts.escaped, info.lines.from_backs.escaped];
-    fronts > 0.5 && backs < 0.5 * fronts
+    fronts > 0.7 && backs < 0.5 * fronts
 }
 
 fn lamps(info: &Info) -> Option<String> {
     let fates = info.lines.from_emitters?;
-    if fates.escaped > 0.5 && info.lines.from_fronts.escaped < 0.5 {
+    if fates.escaped > 0.5 && info.lines.from_fronts.escaped < 0.7 {
         Some(format!(
             "{} of the light of emitting surfaces leaves the scene at once: are they turned the wrong way? OBJ and one-sided glTF \
              materials emit from their fronts",
@@ -166,7 +177,7 @@ fn sides(info: &Info) -> Option<Setting> {
     let emitters = info.lines.from_emitters;
     // Lights without a surface may shine on backs.
     let only_surfaces = info.sources.len() == usize::from(emitters.is_some());
-    let hidden = |fates: super::Fates| fates.back < NONE && fates.absorbed < NONE;
+    let hidden = |fates: Fates| fates.back < NONE && fates.absorbed < NONE;
     let seldom = hidden(fronts) && emitters.is_none_or(hidden) && fronts.escaped < 0.5;
     if two_sided && only_surfaces && seldom {
         return load(
@@ -181,7 +192,8 @@ fn light(info: &Info) -> Vec<Setting> {
     if !info.sources.is_empty() {
         return Vec::new();
     }
-    let escaped = info.lines.from_fronts.escaped;
+    // The outsides of walls do not count, so the light of interest is that which has met something.
+    let escaped = info.lines.reflected.unwrap_or(info.lines.from_fronts).escaped;
     let outward = looks_outward(info);
     let mut lights = Vec::new();
     if escaped > SOME {
@@ -192,7 +204,7 @@ fn light(info: &Info) -> Vec<Setting> {
                 true => "nothing emits; daylight, if this is an object or its openings are windows".into(),
                 false => {
                     format!(
-                        "nothing emits, and {} of the light leaves through openings: windows?",
+                        "nothing emits, and {} of reflected light leaves through openings: windows?",
                         percent(escaped)
                     )
                 }
@@ -211,14 +223,14 @@ fn light(info: &Info) -> Vec<Setting> {
     lights
 }
 
-/// A lamp of a quarter of the room's length and width, a little below its top.
+/// A lamp of a quarter of the room's length and width, at nine tenths of its height.
 fn panel(info: &Info) -> String {
     let room = info.dominant.as_ref().map_or(info.extent, |dominant| dominant.rest);
     let (size, up) = (room.size(), DVec3::from(info.up));
     // Their cross product points down.
     let (a, b) = if up == DVec3::Z { (DVec3::Y, DVec3::X) } else { (DVec3::X, DVec3::Z) };
     let (a, b) = (0.25 * a * size, 0.25 * b * size);
-    let corner = room.centre() + 0.48 * up * size - 0.5 * (a + b);
+    let corner = room.centre() + 0.4 * up * size - 0.5 * (a + b);
     let [corner, a, b] =
         [corner, a, b].map(|v| format!("({}, {}, {})", length(v.x), length(v.y), length(v.z)));
     format!("Light([Panel(corner: {corner}, edges: ({a}, {b}), power: 1000)])")

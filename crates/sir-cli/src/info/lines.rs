@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 use sir_accel::{Accel, Hit, Ray};
-use sir_geom::{Line, Scene, Side, Sides, TriangleId};
+use sir_geom::{Barycentric, Line, Scene, Side, TriangleId};
 use sir_lines::{Allocation, Domain, Stage, Streams, cosine_direction, point_on_triangle};
 use sir_radiosity::{Emitter, Source};
 
@@ -30,6 +30,9 @@ pub struct Lines {
     pub from_backs: Fates,
     /// Lines from emitting surfaces; `None` if there are none.
     pub from_emitters: Option<Fates>,
+    /// Lines from where those from emitting surfaces have met a side that reflects, or else those from fronts: light after its first
+    /// reflection. `None` if they met none.
+    pub reflected: Option<Fates>,
 }
 
 /// What uniform lines through the convex hull cross.
@@ -62,14 +65,26 @@ pub struct Fates {
 /// Traces all lines.
 pub(super) fn trace(scene: &Scene, sources: &[Source]) -> Lines {
     let accel = Accel::new(scene);
-    let side = |side| scene.triangle_ids().map(|id| (id, side, scene.area(id))).collect::<Vec<_>>();
+    let from = |side: Side, kind| {
+        let sides: Vec<_> = scene.triangle_ids().map(|id| (id, side, scene.area(id))).collect();
+        local(scene, &accel, &starts(&sides, kind), kind)
+    };
+    let (from_fronts, mut arrived) = from(Side::Front, 1);
+    let (from_backs, _) = from(Side::Back, 2);
     let emitters: Vec<_> = sources.iter().filter_map(emitting_side).collect();
+    let from_emitters = (!emitters.is_empty()).then(|| {
+        let (fates, lit) = local(scene, &accel, &starts(&emitters, 3), 3);
+        arrived = lit;
+        fates
+    });
+    let reflected = (!arrived.is_empty()).then(|| local(scene, &accel, &arrived, 4).0);
     Lines {
         lines_of_each_kind: LINES,
         global: global(scene, &accel),
-        from_fronts: local(scene, &accel, &side(Side::Front), 1),
-        from_backs: local(scene, &accel, &side(Side::Back), 2),
-        from_emitters: (!emitters.is_empty()).then(|| local(scene, &accel, &emitters, 3)),
+        from_fronts,
+        from_backs,
+        from_emitters,
+        reflected,
     }
 }
 
@@ -123,41 +138,64 @@ fn coincide(scene: &Scene, hits: &[Hit]) -> bool {
     sine < 1e-3 && corners(a) != corners(b)
 }
 
-/// Traces diffuse lines from sides, in proportion to their weights. `kind` numbers the kinds of lines.
-fn local(scene: &Scene, accel: &Accel, sides: &[(TriangleId, Side, f64)], kind: u64) -> Fates {
-    let streams = Streams::new(kind, Stage::PROBE);
+/// Where a diffuse line starts: a point on a side.
+#[derive(Clone, Copy)]
+struct Start {
+    triangle: TriangleId,
+    side: Side,
+    point: Barycentric,
+}
+
+/// Random points on sides, in proportion to their weights. `kind` numbers the kinds of lines.
+fn starts(sides: &[(TriangleId, Side, f64)], kind: u64) -> Vec<Start> {
     let weights: Vec<f64> = sides.iter().map(|side| side.2).collect();
     let allocation = Allocation::new(&weights, LINES, 0.5);
-    let mut owners = allocation.owners(0).zip(0..LINES);
+    // Other numbers than those of the directions.
+    let streams = Streams::new(kind + 10, Stage::PROBE);
+    let owners = allocation.owners(0).zip(0..LINES);
+    owners
+        .map(|(owner, i)| {
+            let (triangle, side, _) = sides[owner];
+            Start { triangle, side, point: point_on_triangle(&mut streams.line(i)) }
+        })
+        .collect()
+}
+
+/// Traces a diffuse line from each start; returns what they met, and where they met a side that reflects.
+fn local(scene: &Scene, accel: &Accel, starts: &[Start], kind: u64) -> (Fates, Vec<Start>) {
+    let streams = Streams::new(kind, Stage::PROBE);
     let [mut front, mut back, mut absorbed, mut escaped] = [0; 4];
+    let mut arrived = Vec::with_capacity(starts.len());
     let mut tracer = accel.tracer();
-    loop {
-        let block = owners.by_ref().take(BLOCK as usize);
-        let rays: Vec<Ray> = block
-            .map(|(owner, i)| {
-                let (triangle, side, _) = sides[owner];
-                let stream = &mut streams.line(i);
-                let origin = point_on_triangle(stream).point(scene.corners(triangle));
-                let normal = match side {
-                    Side::Front => scene.normal(triangle),
-                    Side::Back => -scene.normal(triangle),
-                };
-                let line = Line { origin, direction: cosine_direction(normal, stream) };
-                Ray { line, leaving: Some(triangle) }
-            })
-            .collect();
-        if rays.is_empty() {
-            break;
-        }
-        tracer.closest_each(&rays, |_, hit| match hit {
-            None => escaped += 1,
-            Some(hit) if hit.side == Side::Front => front += 1,
-            Some(hit) if scene.material(hit.triangle).sides == Sides::Both => back += 1,
-            Some(_) => absorbed += 1,
+    let mut numbers = 0..;
+    for block in starts.chunks(BLOCK as usize) {
+        let rays = block.iter().zip(&mut numbers).map(|(start, i)| {
+            let normal = match start.side {
+                Side::Front => scene.normal(start.triangle),
+                Side::Back => -scene.normal(start.triangle),
+            };
+            let origin = start.point.point(scene.corners(start.triangle));
+            let line = Line { origin, direction: cosine_direction(normal, &mut streams.line(i)) };
+            Ray { line, leaving: Some(start.triangle) }
         });
+        let rays: Vec<Ray> = rays.collect();
+        // Hits come in any order, but the lines that start at them shall be the same every time.
+        let mut hits = vec![None; rays.len()];
+        tracer.closest_each(&rays, |i, hit| hits[i] = hit);
+        for hit in hits {
+            match hit {
+                None => escaped += 1,
+                Some(hit) if !scene.is_active(hit.triangle, hit.side) => absorbed += 1,
+                Some(Hit { triangle, side, point, .. }) => {
+                    *(if side == Side::Front { &mut front } else { &mut back }) += 1;
+                    arrived.push(Start { triangle, side, point });
+                }
+            }
+        }
     }
-    let [front, back, absorbed, escaped] = [front, back, absorbed, escaped].map(|n| share(n, LINES));
-    Fates { front, back, absorbed, escaped }
+    let [front, back, absorbed, escaped] =
+        [front, back, absorbed, escaped].map(|n| share(n, starts.len() as u64));
+    (Fates { front, back, absorbed, escaped }, arrived)
 }
 
 fn share(part: u64, whole: u64) -> f64 {

@@ -40,7 +40,13 @@ fn overview(info: &Info) -> String {
             &format!("{} m²; the largest triangle has {}", length(info.area), percent(info.largest_triangle)),
         ),
         row("extent", &format!("{}, up is {up}", dimensions(info.extent.size()))),
-        row("place", &format!("({min}) to ({max}), {} m from the origin", length(info.distance_from_origin))),
+        row(
+            "place",
+            &format!(
+                "({min}) to ({max}), its centre {} m from the origin",
+                length(info.distance_from_origin)
+            ),
+        ),
         row("cameras", &listed(info.cameras.iter().map(String::as_str))),
     ]
     .concat()
@@ -120,6 +126,7 @@ fn lines(info: &Info) -> String {
         ("from fronts", Some(lines.from_fronts)),
         ("from backs", Some(lines.from_backs)),
         ("from emitting surfaces", lines.from_emitters),
+        ("after one reflection", lines.reflected),
     ];
     for (name, fates) in kinds {
         if let Some(Fates { front, back, absorbed, escaped }) = fates {
