@@ -200,14 +200,17 @@ fn light(info: &Info) -> Vec<Setting> {
         let up = if DVec3::from(info.up) == DVec3::Z { "up: (0, 0, 1), " } else { "" };
         lights.push(Setting {
             set: format!("Light([Sky({up}model: Overcast, horizontal: 10_000, ground: 500)])"),
-            why: match outward {
-                true => "nothing emits; daylight, if this is an object or its openings are windows".into(),
-                false => {
-                    format!(
-                        "nothing emits, and {} of reflected light leaves through openings: windows?",
-                        percent(escaped)
-                    )
+            why: match escaped {
+                _ if outward => {
+                    "nothing emits; daylight, if this is an object or its openings are windows".into()
                 }
+                share if share > 0.5 => {
+                    "nothing emits, and most of the light leaves the scene: daylight".into()
+                }
+                share => format!(
+                    "nothing emits, and {} of reflected light leaves through openings: windows?",
+                    percent(share)
+                ),
             },
         });
     }
