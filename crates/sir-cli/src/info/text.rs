@@ -178,6 +178,8 @@ pub(super) fn percent(share: f64) -> String {
 
 /// A length, an area or a power to four digits, as a pipeline can read it.
 pub(super) fn length(x: f64) -> String {
+    // Turns −0 into +0.
+    let x = x + 0.0;
     let digits = if x == 0.0 { 0.0 } else { 3.0 - x.abs().log10().floor() };
     match digits {
         // Of large and small numbers, the power of ten says more.
