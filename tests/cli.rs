@@ -113,3 +113,21 @@ fn help_has_examples_and_exit_codes() {
         assert!(stdout.contains(part), "{stdout}");
     }
 }
+
+#[test]
+fn info_tells_people_and_programs_the_same() {
+    let folder = folder();
+    let (code, stdout, stderr) = sir(folder.path(), &["info", "room.obj"]);
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    let (code, json, _) = sir(folder.path(), &["info", "room.obj", "--json"]);
+    assert_eq!(code, 0);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&json["triangles"], &json["vertices"]), (&12.into(), &8.into()));
+    assert!(stdout.contains("triangles  12\n") && stdout.contains("extent     2 × 2 × 2 m"), "{stdout}");
+    for setting in json["settings"].as_array().unwrap() {
+        assert!(stdout.contains(setting["set"].as_str().unwrap()), "{stdout}");
+    }
+    let (code, stdout, stderr) = sir(folder.path(), &["info", "absent.obj"]);
+    assert_eq!((code, stdout.as_str()), (1, ""));
+    assert!(stderr.starts_with("error: ") && stderr.contains("absent.obj"), "{stderr}");
+}

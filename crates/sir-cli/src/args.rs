@@ -7,12 +7,14 @@ use std::time::Duration;
 use clap::{Parser, Subcommand};
 
 use crate::experiment::ExperimentArgs;
+use crate::info::InfoArgs;
 use crate::scaling::ScalingArgs;
 use crate::validate::ValidateArgs;
 use crate::viewfactors::ViewFactorsArgs;
 
 const EXAMPLES: &str = "\
 Examples:
+  sir info room.gltf                             what is in this scene, and what should a pipeline set?
   sir check scenes/cornell-box/pipeline.ron      what will it do, and how long will it take?
   sir run scenes/cornell-box/pipeline.ron        light the scene; the files go to results/cornell-box
   sir compare results/cornell-box results/cornell-box-2
@@ -78,6 +80,11 @@ pub enum Command {
         /// The pipeline file.
         pipeline: PathBuf,
     },
+    /// Say what is in a scene, and what to set to light it.
+    ///
+    /// Reads a glTF, GLB or OBJ file and prints counts, sizes, materials, light sources, how closed it is and which sides of
+    /// its surfaces face each other; then what is strange, and what a pipeline should set. Writes nothing.
+    Info(InfoArgs),
     /// Compare two results: relative RMS, bias and the worst patches.
     ///
     /// Both must be of the same scene, cut into the same patches. Differences are relative to the mean radiosity

@@ -268,7 +268,7 @@ impl fmt::Display for Estimate {
 }
 
 /// How many sources there are of which kind.
-fn kinds(sources: &[Source]) -> String {
+pub(crate) fn kinds(sources: &[Source]) -> String {
     let count = |is: fn(&Emitter) -> bool| sources.iter().filter(|s| is(&s.emitter)).count();
     let counts = [
         ("triangle side", count(|e| matches!(e, Emitter::Surface { .. }))),

@@ -41,6 +41,7 @@ mod error;
 pub mod experiment;
 mod fields;
 mod fingerprint;
+pub mod info;
 mod interrupt;
 mod lighting;
 pub mod lights;
@@ -130,6 +131,7 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
             let pipeline = Pipeline::read(&pipeline)?;
             Ok(check::check(&pipeline, Progress::Quiet)?.to_string())
         }
+        Command::Info(args) => info::command(&args),
         Command::Compare { a, b, json } => {
             let comparison = compare::compare(&a, &b)?;
             Ok(if json {

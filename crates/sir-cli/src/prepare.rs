@@ -101,7 +101,7 @@ fn layouts(
     if problems.is_empty() { Ok(layouts) } else { Err(problems) }
 }
 
-fn up(path: &Path, scene: &Scene) -> DVec3 {
+pub(crate) fn up(path: &Path, scene: &Scene) -> DVec3 {
     // By the standard, +y is up in glTF; OBJ does not say.
     let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
     if is_obj { guess_up(scene) } else { DVec3::Y }

@@ -1,0 +1,204 @@
+//! What is in a scene, as numbers.
+
+use std::mem::discriminant;
+use std::path::Path;
+
+use glam::DVec3;
+use serde::Serialize;
+use sir_geom::{LoadOptions, Scene, Sides, Warning};
+use sir_radiosity::{Source, sources};
+
+use super::advice::{self, Setting};
+use super::lines::{self, Lines};
+use super::shape::{self, Dominant, Extent, Twins, sums};
+use crate::Error;
+use crate::check::kinds;
+use crate::fingerprint::PROGRAM;
+use crate::prepare::up;
+
+/// Version of the JSON text.
+const VERSION: u32 = 1;
+
+/// What is in a scene file.
+#[derive(Clone, Debug, Serialize)]
+pub struct Info {
+    version: u32,
+    program: &'static str,
+    /// The file.
+    pub scene: String,
+    /// What the reader changed or left out.
+    pub warnings: Vec<String>,
+    /// Triangles that have an area.
+    pub triangles: usize,
+    /// Triangles without an area, or with coordinates that are not finite.
+    pub dropped_triangles: u64,
+    /// Different positions.
+    pub vertices: usize,
+    /// Polygons that the triangles are parts of.
+    pub polygons: usize,
+    /// Area of all triangles, one side each \[m²\].
+    pub area: f64,
+    /// Share of the area that the largest triangle has.
+    pub largest_triangle: f64,
+    /// Where the scene is \[m\].
+    pub extent: Extent,
+    /// Distance of its centre from the origin \[m\].
+    pub distance_from_origin: f64,
+    /// Upwards: +y in glTF, guessed in OBJ.
+    pub up: [f64; 3],
+    /// Materials that a triangle has, the largest area first.
+    pub materials: Vec<MaterialInfo>,
+    /// Named parts, in file order.
+    pub groups: Vec<Group>,
+    /// Light sources by kind.
+    pub sources: Vec<Lights>,
+    /// Names of the cameras, in file order.
+    pub cameras: Vec<String>,
+    /// Triangles with the same corners.
+    pub twins: Twins,
+    /// What dwarfs the rest.
+    pub dominant: Option<Dominant>,
+    /// What random lines have found.
+    pub lines: Lines,
+    /// What is strange.
+    pub findings: Vec<String>,
+    /// What to set in a pipeline.
+    pub settings: Vec<Setting>,
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MaterialInfo {
+    /// Its name.
+    pub name: String,
+    /// Triangles that have it.
+    pub triangles: usize,
+    /// Their area \[m²\].
+    pub area: f64,
+    /// Reflectance per band.
+    pub reflectance: [f64; 3],
+    /// Emitted exitance per band \[W/m²\].
+    pub exitance: [f64; 3],
+    /// Emitted power per band, by both sides if both emit \[W\].
+    pub power: [f64; 3],
+    /// Whether both sides reflect.
+    pub two_sided: bool,
+}
+
+/// A named part of the scene.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Group {
+    /// Its name.
+    pub name: String,
+    /// Its triangles.
+    pub triangles: usize,
+    /// Their area \[m²\].
+    pub area: f64,
+}
+
+/// All light sources of a kind.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Lights {
+    /// How many of which kind.
+    pub what: String,
+    /// Their power per band \[W\].
+    pub power: [f64; 3],
+}
+
+/// Reads a scene file and finds out what is in it.
+///
+/// # Errors
+///
+/// If the file cannot be read, as [`sir_geom::load`].
+pub fn inspect(path: &Path) -> Result<Info, Error> {
+    let built = sir_geom::load(path, &LoadOptions::default())?;
+    let scene = &built.scene;
+    let sources = sources(scene);
+    let dropped = built.warnings.iter().map(|warning| match warning {
+        Warning::DroppedTriangles { count } => *count,
+        _ => 0,
+    });
+    let extent = Extent::from(scene.bounding_box());
+    let area = scene.total_area();
+    let largest = scene.triangle_ids().map(|id| scene.area(id)).fold(0.0, f64::max);
+    let mut info = Info {
+        version: VERSION,
+        program: PROGRAM,
+        scene: path.display().to_string(),
+        warnings: built.warnings.iter().map(ToString::to_string).collect(),
+        triangles: scene.triangles().len(),
+        dropped_triangles: dropped.sum(),
+        vertices: scene.vertices().len(),
+        // The triangles of a polygon follow each other.
+        polygons: scene.triangles().chunk_by(|a, b| a.face == b.face).count(),
+        area,
+        largest_triangle: largest / area,
+        extent,
+        distance_from_origin: extent.centre().length(),
+        up: up(path, scene).into(),
+        materials: materials(scene),
+        groups: groups(scene),
+        sources: by_kind(&sources),
+        cameras: scene.cameras().iter().map(|camera| camera.name.clone()).collect(),
+        twins: shape::twins(scene),
+        dominant: shape::dominant(scene),
+        lines: lines::trace(scene, &sources),
+        findings: Vec::new(),
+        settings: Vec::new(),
+    };
+    info.findings = advice::findings(&info);
+    info.settings = advice::settings(&info);
+    Ok(info)
+}
+
+fn materials(scene: &Scene) -> Vec<MaterialInfo> {
+    let counts = sums(scene, |t| t.material.index(), |_| 1);
+    let areas = sums(scene, |t| t.material.index(), |id| scene.area(id));
+    let mut materials: Vec<MaterialInfo> = std::iter::zip(counts, areas)
+        .zip(scene.materials())
+        .filter(|((triangles, _), _)| *triangles > 0)
+        .map(|((triangles, area), material)| {
+            let two_sided = material.sides == Sides::Both;
+            let emitting_sides = if two_sided && material.back_emits { 2.0 } else { 1.0 };
+            MaterialInfo {
+                name: material.name.clone(),
+                triangles,
+                area,
+                reflectance: material.reflectance.into(),
+                exitance: material.exitance.into(),
+                power: (material.exitance * area * emitting_sides).into(),
+                two_sided,
+            }
+        })
+        .collect();
+    materials.sort_by(|a, b| b.area.total_cmp(&a.area));
+    materials
+}
+
+fn groups(scene: &Scene) -> Vec<Group> {
+    let counts = sums(scene, |t| t.group.index(), |_| 1);
+    let areas = sums(scene, |t| t.group.index(), |id| scene.area(id));
+    std::iter::zip(counts, areas)
+        .zip(scene.groups())
+        .filter(|((triangles, _), name)| *triangles > 0 && !name.is_empty())
+        .map(|((triangles, area), name)| Group { name: name.clone(), triangles, area })
+        .collect()
+}
+
+fn by_kind(sources: &[Source]) -> Vec<Lights> {
+    let mut of_kinds: Vec<Vec<Source>> = Vec::new();
+    for source in sources {
+        let is_alike = |of_kind: &Vec<Source>| {
+            of_kind.first().is_some_and(|first| discriminant(&first.emitter) == discriminant(&source.emitter))
+        };
+        match of_kinds.iter_mut().find(|of_kind| is_alike(of_kind)) {
+            Some(of_kind) => of_kind.push(*source),
+            None => of_kinds.push(vec![*source]),
+        }
+    }
+    let lights = of_kinds.iter().map(|of_kind| {
+        let power: DVec3 = of_kind.iter().map(|source| source.power).sum();
+        Lights { what: kinds(of_kind), power: power.into() }
+    });
+    lights.collect()
+}
