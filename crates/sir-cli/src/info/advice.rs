@@ -167,12 +167,10 @@ fn sides(info: &Info) -> Option<Setting> {
             "the fronts face outward; if this is a room, its insides would only absorb".into(),
         );
     }
-    if fronts.absorbed > SOME {
-        let share = percent(fronts.absorbed);
-        return load(
-            "Both",
-            format!("{share} of the light from fronts falls on backs that would only absorb it"),
-        );
+    let absorbed = of_light(info, |fates| fates.absorbed);
+    if absorbed > SOME {
+        let why = format!("{} of the light falls on backs that would only absorb it", percent(absorbed));
+        return load("Both", why);
     }
     let emitters = info.lines.from_emitters;
     // Lights without a surface may shine on backs.
