@@ -75,7 +75,7 @@ impl SidesPolicy {
 ///
 /// # OBJ
 ///
-/// Triangles in the order of the faces, polygons cut into fans from their first corner. `Kd` times the mean of
+/// Triangles in the order of the faces, polygons cut into fans from their first corner, or into other triangles where that would be wrong. `Kd` times the mean of
 /// `map_Kd` is the reflectance; `Ke` times the mean of `map_Ke` a radiance that gives the exitance `π Ke`. Groups have the
 /// names in `o` and `g` statements, of which the last before a face counts.
 ///
@@ -104,9 +104,11 @@ pub fn load_with(
         Some("obj") => obj::read(path, *options, &mut builder, &mut notes)?,
         _ => return Err(LoadError::UnknownFormat { path: path.to_owned(), extension }),
     }
+    let skipped = notes.skipped();
     notes.warn(&mut builder);
     add(&mut builder);
-    let mut built = builder.build().map_err(|source| LoadError::Scene { path: path.to_owned(), source })?;
+    let mut built =
+        builder.build().map_err(|source| LoadError::Scene { path: path.to_owned(), skipped, source })?;
     notes::shorten(&mut built.warnings);
     Ok(built)
 }

@@ -1,8 +1,7 @@
 //! Wavefront OBJ with material libraries (MTL).
 //!
 //! `Kd` is the reflectance, times the mean of `map_Kd`; `Ke`, times the mean of `map_Ke`, the radiance that the
-//! front emits: a file has no notion of sides, so both reflect and only the front emits. Polygons are cut into
-//! fans from their first corner.
+//! front emits: a file has no notion of sides, so both reflect and only the front emits.
 
 mod clean;
 mod mtl;
