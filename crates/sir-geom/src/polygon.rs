@@ -30,8 +30,14 @@ pub(crate) struct Cut {
 pub(crate) fn cut(corners: &[DVec3]) -> Cut {
     let fan: Vec<_> = (2..corners.len()).map(|i| [0, i - 1, i]).collect();
     let normal = normal(corners);
-    if corners.len() <= 3 || !normal.is_finite() || normal == DVec3::ZERO {
+    if corners.len() <= 3 || !normal.is_finite() {
         return Cut { triangles: fan, right: true };
+    }
+    if normal == DVec3::ZERO {
+        // A line, or an outline that runs as far clockwise as counter-clockwise.
+        let right =
+            fan.iter().all(|t| (corners[t[1]] - corners[0]).cross(corners[t[2]] - corners[0]) == DVec3::ZERO);
+        return Cut { triangles: fan, right };
     }
     let flat: Vec<DVec2> = corners.iter().map(|&p| along(p - corners[0], normal)).collect();
     if fan.iter().all(|&t| turns_left(t.map(|i| flat[i]))) {
