@@ -252,7 +252,8 @@ fn deviation(model: &Model, found: &Solution, expected: &Solution) -> f64 {
 }
 
 /// The same room in other units has the same irradiances if its lamps have the same exitance: the same bits if lengths are
-/// multiplied by a power of two; else lines that pass an edge closely may go the other way.
+/// multiplied by a power of two; else the same but for rounding, which may also cut a flat side of the convex hull along its other
+/// diagonal, and then some of the lines are others.
 #[test]
 fn millimetres_and_kilometres() {
     let model = furnished(1.0, DVec3::ZERO);
@@ -263,12 +264,12 @@ fn millimetres_and_kilometres() {
     for scale in [1e-3, 1e3, 1e6, 1e-6, 0.0254] {
         let off = deviation(&model, &solve(&furnished(scale, DVec3::ZERO)), &metres);
         println!("scale {scale}: {off:e}");
-        assert!(off < 1e-3, "{scale}: {off}");
+        assert!(off < 5e-3, "{scale}: {off}");
     }
 }
 
-/// Far from the origin, too, as long as coordinates have digits left: at 10⁶ m they have steps of 10⁻¹⁰ m, at 10⁹ m of 10⁻⁷ m,
-/// which is the step of the grid of a room. At 10¹² m they are 0.1 mm, as in contact; what is closer to each other is undone.
+/// Far from the origin, too, as long as coordinates have digits left: at 10⁶ m they have steps of 10⁻¹⁰ m, at 10⁹ m of 10⁻⁷ m, at
+/// 10¹² m of 0.1 mm. What is closer to each other than that is undone.
 #[test]
 fn far_from_the_origin() {
     let model = furnished(1.0, DVec3::ZERO);
