@@ -57,7 +57,7 @@ fn where_light_is_emitted_that_is_not_reflected_all_is_equally_bright() {
         .map(|(t, p)| model.mesh.reflectance(&model.scene, sir_geom::TriangleId(t), sir_mesh::PatchId(p)).x)
         .collect();
     let (least, most) = varied.iter().fold((1.0, 0.0), |(a, b), &x| (f64::min(a, x), f64::max(b, x)));
-    assert!(least < 0.05 && most > 0.5, "patches differ: {least} to {most}");
+    assert!(least < 0.05 && most > 0.4, "patches differ: {least} to {most}");
     for (way, transport) in TRANSPORTS {
         let runs = runs(&model, transport, 400_000, 16);
         for band in 0..3 {
