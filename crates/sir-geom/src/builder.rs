@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use glam::DVec3;
+use glam::{DVec3, Vec2, Vec4};
 use thiserror::Error;
 
+use crate::appearance::{Appearance, Corners};
 use crate::{
-    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Light, MAX_REFLECTANCE, Material, MaterialId, Rgb,
-    Scene, Sky, Triangle, VertexId, polygon,
+    BoundingBox, BoundingSphere, Camera, ColourMap, FaceId, GroupId, Light, MAX_REFLECTANCE, Material,
+    MaterialId, Rgb, Scene, Sky, Texture, TextureId, Triangle, VertexId, polygon,
 };
 
 /// Why a scene cannot be built.
@@ -43,7 +44,7 @@ pub enum SceneError {
     BadMaterial {
         /// Name of the material.
         name: String,
-        /// `reflectance` or `exitance`.
+        /// `reflectance`, `exitance` or `opacity`.
         what: &'static str,
         /// The value found.
         value: Rgb,
@@ -148,6 +149,7 @@ pub struct SceneBuilder {
     group: u32,
     /// Polygons that cross themselves.
     crossed: u64,
+    appearance: Appearance,
     warnings: Vec<Warning>,
 }
 
@@ -168,6 +170,12 @@ impl SceneBuilder {
     pub fn add_material(&mut self, material: Material) -> MaterialId {
         self.materials.push(material);
         MaterialId::new(self.materials.len() - 1)
+    }
+
+    /// Adds an image for the maps of materials.
+    pub fn add_texture(&mut self, texture: Texture) -> TextureId {
+        self.appearance.textures.push(texture);
+        TextureId::new(self.appearance.textures.len() - 1)
     }
 
     /// Adds a camera.
@@ -220,9 +228,20 @@ impl SceneBuilder {
         for &vertices in triangles {
             let source = self.triangles.len() as u32;
             let group = GroupId(self.group);
-            self.triangles.push(Triangle { vertices, material, face, group, source });
+            let corners = Corners::PLAIN;
+            self.triangles.push(Triangle { vertices, material, face, group, source, corners });
         }
         face
+    }
+
+    /// Gives the triangle that was added last what varies over it, corner by corner: as many sets of texture coordinates as the maps
+    /// of its material use ([`Material::coordinate_sets`]), and a colour with opacity that multiplies those of the
+    /// material. Coordinates that are not finite are ignored, and the triangle has the mean colour of its texture.
+    pub fn set_corners(&mut self, coordinates: &[[Vec2; 3]], tint: Option<[Vec4; 3]>) {
+        if let Some(triangle) = self.triangles.last_mut() {
+            let tint = tint.filter(|tint| tint.iter().all(|corner| corner.is_finite()));
+            triangle.corners = self.appearance.add(coordinates, tint);
+        }
     }
 
     /// Checks everything, welds equal vertices, drops triangles without an area and clamps reflectances.
@@ -263,6 +282,7 @@ impl SceneBuilder {
             cameras: self.cameras,
             lights: self.lights,
             sky: self.sky,
+            appearance: self.appearance.into(),
             bounding_box,
             bounding_sphere,
         };
@@ -301,7 +321,14 @@ impl SceneBuilder {
 
     fn check_materials(&mut self) -> Result<(), SceneError> {
         for m in &mut self.materials {
-            for (what, value) in [("reflectance", m.reflectance), ("exitance", m.exitance)] {
+            let factor = |map: &Option<ColourMap>| map.map_or(Rgb::ZERO, |map| map.factor);
+            for (what, value) in [
+                ("reflectance", m.reflectance),
+                ("exitance", m.exitance),
+                ("reflectance", factor(&m.reflectance_map)),
+                ("exitance", factor(&m.exitance_map)),
+                ("opacity", Rgb::splat(m.opacity.factor)),
+            ] {
                 if !value.is_finite() || value.min_element() < 0.0 {
                     return Err(SceneError::BadMaterial { name: m.name.clone(), what, value });
                 }

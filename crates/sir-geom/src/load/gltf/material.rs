@@ -76,7 +76,9 @@ impl Reader<'_> {
         let mean = match self.textures.get(&pixels) {
             Some(&mean) => mean,
             None => {
-                let mean = self.image(image, &pixels).and_then(|bytes| texture::mean_colour(&bytes));
+                let mean = self
+                    .image(image, &pixels)
+                    .and_then(|bytes| texture::decode(&bytes).map(|t| t.mean_colour()));
                 let mean = mean
                     .inspect_err(|e| self.notes.name(texture::UNREADABLE, format!("image {image} ({e})")));
                 *self.textures.entry(pixels).or_insert(mean.ok())

@@ -110,7 +110,9 @@ impl<'a> Library<'a> {
             return None;
         };
         *self.textures.entry(path).or_insert_with_key(|path| {
-            let mean = files::read(path).map_err(|e| e.to_string()).and_then(|b| texture::mean_colour(&b));
+            let mean = files::read(path)
+                .map_err(|e| e.to_string())
+                .and_then(|b| texture::decode(&b).map(|t| t.mean_colour()));
             mean.inspect_err(|e| notes.name(texture::UNREADABLE, format!("{name} ({e})"))).ok()
         })
     }
