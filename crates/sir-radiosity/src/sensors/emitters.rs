@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use sir_geom::{Rgb, Scene, Side, TriangleId};
+use sir_geom::{Rgb, Side, TriangleId};
+use sir_mesh::PatchId;
 
 use super::Sensor;
-use crate::{Emitter, sources};
+use crate::{Emitter, Model, sources};
 
 /// All emitting surfaces of a scene.
 #[derive(Clone, Debug)]
@@ -17,6 +18,8 @@ pub(super) struct Emitters {
 #[derive(Clone, Copy, Debug)]
 struct Lamp {
     triangle: TriangleId,
+    /// The patch of it, if its patches differ.
+    patch: Option<PatchId>,
     side: Side,
     corners: [DVec3; 3],
     normal: DVec3,
@@ -48,11 +51,18 @@ pub(super) struct Aim {
 }
 
 impl Emitters {
-    pub(super) fn of(scene: &Scene) -> Self {
-        let lamps = sources(scene).into_iter().filter_map(|source| match source.emitter {
-            Emitter::Surface { triangle, side, corners, normal } => {
-                let (exitance, area) = (scene.exitance(triangle, side), scene.area(triangle));
-                Some(Lamp { triangle, side, corners, normal, exitance, area })
+    pub(super) fn of(model: &Model) -> Self {
+        let Model { scene, mesh, .. } = model;
+        let lamps = sources(scene, mesh).into_iter().filter_map(|source| match source.emitter {
+            Emitter::Surface { triangle, patch, side, corners, normal } => {
+                let exitance = match patch {
+                    Some(patch) => model.exitance(triangle, patch, side),
+                    None => scene.exitance(triangle, side),
+                };
+                // Gaps included: rays that are aimed at them meet something else.
+                let [a, b, c] = corners;
+                let area = 0.5 * (b - a).cross(c - a).length();
+                Some(Lamp { triangle, patch, side, corners, normal, exitance, area })
             }
             // Lights without a surface are measured by themselves, and the sky is what no ray meets.
             _ => None,
@@ -127,9 +137,18 @@ impl Choice<'_> {
         exitance * (cosine / (aimed + cosine))
     }
 
-    /// What a ray of the cosine distribution brings that has met this side at this distance.
-    pub(super) fn met(&self, triangle: TriangleId, side: Side, direction: DVec3, distance: f64) -> Rgb {
-        let found = self.emitters.lamps.binary_search_by_key(&(triangle, side), |s| (s.triangle, s.side));
+    /// What a ray of the cosine distribution brings that has met this side at this distance; `patch` is where, if the patches of
+    /// the triangle differ.
+    pub(super) fn met(
+        &self,
+        triangle: TriangleId,
+        patch: Option<PatchId>,
+        side: Side,
+        direction: DVec3,
+        distance: f64,
+    ) -> Rgb {
+        let key = |lamp: &Lamp| (lamp.triangle, lamp.side, lamp.patch);
+        let found = self.emitters.lamps.binary_search_by_key(&(triangle, side, patch), key);
         found.map_or(Rgb::ZERO, |k| self.brings(k, direction, distance))
     }
 

@@ -90,7 +90,7 @@ impl<'s> Sensors<'s> {
             model,
             solution,
             settings,
-            emitters: Emitters::of(&model.scene),
+            emitters: Emitters::of(model),
             streams: Streams::new(seed, Stage::SENSORS),
             lift: LIFT * model.scene.bounding_sphere().radius,
         }
