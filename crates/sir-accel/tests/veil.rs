@@ -27,7 +27,7 @@ fn squares(heights: &[f64], material: impl FnOnce(&mut SceneBuilder) -> Material
 
 /// A checkerboard of 8 × 8 fields whose first one, at the origin, is open, and of the given alpha elsewhere.
 fn checkerboard(b: &mut SceneBuilder, alpha: u8, cutoff: Option<f64>) -> MaterialId {
-    let texel = |i: u32| [0, 0, 0, if (i % 8 + i / 8) % 2 == 0 { 0 } else { alpha }];
+    let texel = |i: u32| [0, 0, 0, if (i % 8 + i / 8).is_multiple_of(2) { 0 } else { alpha }];
     let texture = b.add_texture(Texture::new(8, 8, (0..64).map(texel).collect()).unwrap());
     let map = TextureMap { texture, wrap: [Wrap::Repeat; 2], coordinates: 0 };
     let opacity = Opacity { factor: 1.0, map: Some(map), cutoff };

@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn texels_have_the_mean_of_what_they_cover() {
         // Black and white make a linear 0.5, which is 188.
-        let board = (0..16).map(|i| [if (i % 4 + i / 4) % 2 == 0 { 0 } else { 255 }; 4]);
+        let board = (0..16u32).map(|i| [if (i % 4 + i / 4).is_multiple_of(2) { 0 } else { 255 }; 4]);
         let board = Texture::new(4, 4, board.collect()).unwrap();
         let half = board.halved(false);
         assert_eq!((half.size(), half.texels()), ([2, 2], &[[188, 188, 188, 128]; 4][..]));
