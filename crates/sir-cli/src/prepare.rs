@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 use sir_geom::{Camera, LoadOptions, Scene};
 use sir_mesh::{MeshError, Subdivision};
-use sir_radiosity::{Model, SolveError, Source, sources};
+use sir_radiosity::{Model, SolveError, Source, emits, sources};
 use sir_view::guess_up;
 
 use crate::Error;
@@ -63,8 +63,7 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
     progress.warn(&warnings);
 
-    let sources = sources(&built.scene);
-    if sources.is_empty() {
+    if !emits(&built.scene) {
         return Err(SolveError::NoLight.into());
     }
     let mut problems = camera_problems(pipeline, &built.scene);
@@ -73,6 +72,10 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     match Model::new(built.scene, how) {
         Ok(model) if problems.is_empty() => {
             let build_seconds = watch.seconds();
+            let sources = sources(&model.scene, &model.mesh);
+            if sources.is_empty() {
+                return Err(SolveError::NoLight.into());
+            }
             let up = up(pipeline.scene_path(), &model.scene);
             let layouts = layouts(pipeline, &model, up).map_err(|problems| pipeline.diagnostics(problems))?;
             Ok(Prepared { model, up, warnings, sources, layouts, load_seconds, build_seconds })

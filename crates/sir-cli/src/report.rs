@@ -302,7 +302,7 @@ impl LightReport {
 pub(crate) fn relative_error(model: &Model, solution: &Solution) -> [f64; 3] {
     let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
     model.mesh.for_each_side(|triangle, _, _, side| {
-        let a = model.mesh.patch_area(triangle);
+        let a = model.area(triangle, side);
         let error = solution.error[side.index()];
         area += a;
         sum += a * solution.irradiance[side.index()];

@@ -98,7 +98,7 @@ impl Opacities {
     /// Those of a scene; `None` if all surfaces are opaque.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
-        let see_through = |t: &Triangle| scene.lets_light_through(t).then_some((t.material.0, t.corners));
+        let see_through = |t: &Triangle| scene.is_open(t).then_some((t.material.0, t.corners));
         let triangles: Vec<_> = scene.triangles().iter().map(see_through).collect();
         triangles.iter().any(Option::is_some).then(|| Self {
             appearance: scene.appearance.clone(),
@@ -184,7 +184,35 @@ impl Scene {
     }
 
     /// Whether light goes through some of a triangle.
-    fn lets_light_through(&self, triangle: &Triangle) -> bool {
+    #[must_use]
+    pub fn lets_light_through(&self, id: TriangleId) -> bool {
+        self.is_open(self.triangle(id))
+    }
+
+    /// Memory in use by textures and by what triangles have at their corners \[bytes\].
+    #[must_use]
+    pub fn appearance_bytes(&self) -> usize {
+        let Appearance { textures, coordinates, tints } = &*self.appearance;
+        let texels: usize = textures.iter().map(|texture| size_of_val(texture.texels())).sum();
+        texels + size_of_val(&coordinates[..]) + size_of_val(&tints[..])
+    }
+
+    /// Passes everything on that makes surfaces differ from place to place, for a number that tells scenes apart.
+    pub fn hash_appearance(&self, number: &mut dyn FnMut(u64)) {
+        let Appearance { textures, coordinates, tints } = &*self.appearance;
+        for texture in textures {
+            texture.size().iter().for_each(|&n| number(n.into()));
+            texture.texels().iter().for_each(|&texel| number(u32::from_le_bytes(texel).into()));
+        }
+        coordinates.iter().flatten().flat_map(|c| c.to_array()).for_each(|x| number(x.to_bits().into()));
+        tints.iter().flatten().flat_map(|c| c.to_array()).for_each(|x| number(x.to_bits().into()));
+        for triangle in self.triangles.iter().filter(|triangle| triangle.corners != Corners::PLAIN) {
+            let Corners { coordinates, sets, tint } = triangle.corners;
+            [coordinates, sets.into(), tint].iter().for_each(|&n| number(n.into()));
+        }
+    }
+
+    fn is_open(&self, triangle: &Triangle) -> bool {
         let Material { opacity, .. } = &self.materials[triangle.material.index()];
         let tint = self.appearance.tints.get(triangle.corners.tint as usize);
         !opacity.is_full()

@@ -9,7 +9,7 @@ use thiserror::Error;
 use crate::appearance::{Appearance, Corners};
 use crate::{
     BoundingBox, BoundingSphere, Camera, ColourMap, FaceId, GroupId, Light, MAX_REFLECTANCE, Material,
-    MaterialId, Rgb, Scene, Sky, Texture, TextureId, Triangle, VertexId,
+    MaterialId, Rgb, Scene, Sky, Texture, TextureId, Triangle, VertexId, polygon,
 };
 
 /// Why a scene cannot be built.
@@ -71,6 +71,11 @@ pub enum Warning {
         /// How many.
         count: u64,
     },
+    /// Polygons whose outlines cross themselves, or have more than 4,096 corners and are not convex, were cut into fans.
+    CrossedPolygons {
+        /// How many.
+        count: u64,
+    },
     /// A material reflected as much light as it gets, or more: its reflectance was set to [`MAX_REFLECTANCE`].
     ClampedReflectance {
         /// Name of the material.
@@ -90,6 +95,12 @@ impl fmt::Display for Warning {
         match self {
             Self::DroppedTriangles { count } => {
                 write!(f, "{count} triangles without an area or with infinite coordinates were left out")
+            }
+            Self::CrossedPolygons { count } => {
+                write!(
+                    f,
+                    "{count} polygons cross themselves, or have too many corners for another way, and were cut from their first corner"
+                )
             }
             Self::ClampedReflectance { material, asked } => write!(
                 f,
@@ -136,6 +147,8 @@ pub struct SceneBuilder {
     /// Numbers of the groups by name: from 1, since number 0 has no name.
     groups: HashMap<String, GroupId>,
     group: u32,
+    /// Polygons that cross themselves.
+    crossed: u64,
     appearance: Appearance,
     warnings: Vec<Warning>,
 }
@@ -195,11 +208,17 @@ impl SceneBuilder {
         group
     }
 
-    /// Adds a polygon, counter-clockwise seen from its front. It is cut into the fan of triangles
-    /// `(0, 1, 2), (0, 2, 3), …`; with fewer than three corners it adds nothing.
+    /// Adds a polygon, counter-clockwise seen from its front; with fewer than three corners it adds nothing. It is cut into the fan of
+    /// triangles `(0, 1, 2), (0, 2, 3), …` if that is right, as it is for convex ones, else into as many others. One that crosses
+    /// itself, or has more than 4,096 corners, is cut into the fan with a warning.
     pub fn add_polygon(&mut self, corners: &[VertexId], material: MaterialId) -> FaceId {
-        let fan: Vec<_> = (2..corners.len()).map(|i| [corners[0], corners[i - 1], corners[i]]).collect();
-        self.add_face(&fan, material)
+        // Vertices that were not added are an error when the scene is built.
+        let places: Option<Vec<DVec3>> =
+            corners.iter().map(|v| self.vertices.get(v.index()).copied()).collect();
+        let cut = polygon::cut(&places.unwrap_or_else(|| vec![DVec3::ZERO; corners.len()]));
+        self.crossed += u64::from(!cut.right);
+        let triangles: Vec<_> = cut.triangles.iter().map(|t| t.map(|i| corners[i])).collect();
+        self.add_face(&triangles, material)
     }
 
     /// Adds triangles that belong together, counter-clockwise seen from their fronts.
@@ -258,6 +277,9 @@ impl SceneBuilder {
         self.check_indices()?;
         self.check_materials()?;
         self.check_lights()?;
+        if self.crossed > 0 {
+            self.warnings.push(Warning::CrossedPolygons { count: self.crossed });
+        }
         self.drop_degenerate_triangles();
         if self.triangles.is_empty() {
             let dropped = self.warnings.iter().map(|w| match w {
@@ -362,7 +384,7 @@ impl SceneBuilder {
             let longest = ab.length_squared().max(bc.length_squared()).max(ca.length_squared());
             let doubled_area = ab.cross(ca).length();
             // Also false for NaN and infinite coordinates.
-            doubled_area.is_finite() && doubled_area > 1e-12 * longest
+            doubled_area.is_finite() && doubled_area > polygon::FLAT * longest
         });
         let count = (before - self.triangles.len()) as u64;
         if count > 0 {

@@ -48,6 +48,7 @@ mod light;
 mod line;
 mod load;
 mod material;
+mod polygon;
 mod scene;
 pub mod shapes;
 mod sky;

@@ -194,3 +194,114 @@ impl Images<'_> {
         Some(sums.mean(corners.map(at)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Subdivision;
+    use glam::{DVec3, Vec2, Vec4};
+    use sir_geom::{SceneBuilder, Side, Sides, Texture};
+
+    const RED: Rgb = Rgb::X;
+    const GREEN: Rgb = Rgb::Y;
+
+    /// A square of side 2, in two triangles, with an image of a red and an almost transparent green half.
+    fn square(opacity: Opacity, tint: Option<[Vec4; 3]>) -> Scene {
+        let mut b = SceneBuilder::new();
+        let texture = b.add_texture(Texture::new(2, 1, vec![[255, 0, 0, 255], [0, 255, 0, 51]]).unwrap());
+        let map = TextureMap { texture, wrap: [Wrap::Clamp; 2], coordinates: 0 };
+        let colour = Some(ColourMap { map, factor: Rgb::splat(0.5) });
+        let material = b.add_material(Material {
+            reflectance_map: colour,
+            exitance_map: colour,
+            opacity: Opacity { map: opacity.map.or(Some(map)), ..opacity },
+            sides: Sides::Both,
+            ..Material::diffuse("", Rgb::splat(0.25)).emitting(Rgb::splat(0.25))
+        });
+        let places = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+        let v = places.map(|p| b.add_vertex(2.0 * DVec3::new(p.x.into(), p.y.into(), 0.0)));
+        for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
+            b.add_polygon(&[v[i], v[j], v[k]], material);
+            b.set_corners(&[[places[i], places[j], places[k]]], tint);
+        }
+        b.build().unwrap().scene
+    }
+
+    fn close(a: Rgb, b: Rgb) -> bool {
+        (a - b).length() < 1e-6
+    }
+
+    #[test]
+    fn patches_have_the_mean_of_what_covers_them() {
+        let scene = square(Opacity::default(), None);
+        let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
+        // Of the lower triangle (0, 0), (1, 0), (1, 1) a quarter lies in the red half.
+        let (triangle, patch) = (TriangleId(0), PatchId(0));
+        let covered = 0.25 + 0.75 * 0.2;
+        assert!((mesh.covered_area(triangle, patch) - 2.0 * covered).abs() < 1e-6);
+        let mean = (0.25 * RED + 0.75 * 0.2 * GREEN) / covered;
+        assert!(close(mesh.reflectance(&scene, triangle, patch), 0.5 * mean));
+        assert!(close(mesh.exitance(&scene, triangle, patch, Side::Front), 0.5 * mean));
+        assert_eq!(mesh.exitance(&scene, triangle, patch, Side::Back), Rgb::ZERO, "its back does not emit");
+        let sum: f64 = scene.triangle_ids().map(|t| mesh.covered_area_of(&scene, t)).sum();
+        assert!((sum - 4.0 * 0.6).abs() < 1e-6);
+    }
+
+    #[test]
+    fn finer_patches_have_the_same_sum() {
+        let scene = square(Opacity::default(), None);
+        for n in [1, 2, 3, 10, 57] {
+            let mesh = PatchMesh::new(&scene, Subdivision::Patches(2 * n * n)).unwrap();
+            let mut sum = Rgb::ZERO;
+            mesh.for_each_side(|t, patch, side, id| {
+                assert_eq!(mesh.patch_of_side(t, id), patch);
+                if side == Side::Front {
+                    sum += mesh.covered_area(t, patch) * mesh.reflectance(&scene, t, patch);
+                }
+            });
+            assert!((sum - (RED + 0.2 * GREEN)).length() < 1e-5, "{n}: {sum}");
+        }
+    }
+
+    #[test]
+    fn a_cutoff_leaves_out_what_is_below_it() {
+        for (cutoff, covered, reflected) in [(0.2, 4.0, RED + GREEN), (0.21, 2.0, RED), (1.5, 0.0, Rgb::ZERO)]
+        {
+            let scene = square(Opacity { cutoff: Some(cutoff), ..Opacity::default() }, None);
+            let mesh = PatchMesh::new(&scene, Subdivision::PerFace).unwrap();
+            let of = |t: TriangleId| {
+                let patch = PatchId(mesh.patches_of(t).start);
+                mesh.covered_area(t, patch) * mesh.reflectance(&scene, t, patch)
+            };
+            let areas: f64 = scene.triangle_ids().map(|t| mesh.covered_area_of(&scene, t)).sum();
+            assert!((areas - covered).abs() < 1e-6, "{cutoff}: {areas}");
+            assert!((scene.triangle_ids().map(of).sum::<Rgb>() - reflected).length() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn corners_tint_what_lies_between_them() {
+        // White in the first corner of each triangle, opaque; black and clear in the others.
+        let tint = Some([Vec4::ONE, Vec4::ZERO, Vec4::ZERO]);
+        let scene = square(Opacity::default(), tint);
+        let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
+        let untinted = PatchMesh::new(&square(Opacity::default(), None), Subdivision::PerTriangle).unwrap();
+        for t in scene.triangle_ids() {
+            let patch = PatchId(t.0);
+            let third = untinted.reflectance(&scene, t, patch) / 3.0;
+            assert!(close(mesh.reflectance(&scene, t, patch), third));
+            assert!((3.0 * mesh.covered_area(t, patch) - untinted.covered_area(t, patch)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn plain_scenes_have_no_paint() {
+        let mut b = SceneBuilder::new();
+        let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+        let v = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| b.add_vertex(p));
+        b.add_polygon(&v, m);
+        let scene = b.build().unwrap().scene;
+        let mesh = PatchMesh::new(&scene, Subdivision::Patches(100)).unwrap();
+        assert!(!mesh.is_varied(TriangleId(0)) && mesh.paint_bytes() == 0);
+    }
+}

@@ -179,6 +179,19 @@ impl PatchMesh {
         area * self.paint.coverage(triangle, patch.0 - first)
     }
 
+    /// Area of a triangle that stops light.
+    #[must_use]
+    pub fn covered_area_of(&self, scene: &Scene, triangle: TriangleId) -> f64 {
+        let area = scene.area(triangle);
+        if !self.is_varied(triangle) {
+            return area;
+        }
+        let (patches, all) = (self.patches_of(triangle), self.patch_area(triangle));
+        // A face that is one patch has several triangles.
+        let part = area / (patches.len() as f64 * all);
+        patches.map(|patch| part * self.covered_area(triangle, PatchId(patch))).sum()
+    }
+
     /// Diffuse reflectance of a patch per band, in `[0, 1)`: with a texture, the mean over the covered area.
     ///
     /// `scene` must be the one that the patches were made of, here and in the functions below.
@@ -214,13 +227,10 @@ impl PatchMesh {
         self.paint.is_painted(triangle)
     }
 
-    /// Memory in use \[bytes\].
+    /// Memory in use for what differs from patch to patch \[bytes\].
     #[must_use]
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.cuts[..])
-            + size_of_val(&self.patches_of[..])
-            + size_of_val(&self.owners[..])
-            + self.paint.bytes()
+    pub fn paint_bytes(&self) -> usize {
+        self.paint.bytes()
     }
 
     /// The patch of a triangle in which a point lies.

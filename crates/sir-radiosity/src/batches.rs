@@ -157,17 +157,18 @@ impl<'m> Batches<'m> {
         let forecast = domain.forecast(lines);
         let (mut area, mut square, mut most, mut brightest) = (0.0, 0.0, 0.0, [0.0; 3]);
         model.mesh.for_each_side(|triangle, _, _, side| {
-            let reflectance = model.scene.material(triangle).reflectance;
+            let reflectance = model.reflectance(triangle, side);
             let unshot = unshot[side.index()];
             source += unshot;
             accounts.push(Account { unshot, noted: unshot.0.map(|q| q as f32), ..Account::default() });
-            let a = model.mesh.patch_area(triangle);
+            let a = model.area(triangle, side);
             (area, square) = (area + a, square + a * a);
             let crossings = forecast.crossings(a);
             most = f64::max(most, crossings);
             for band in 0..3 {
                 // All light that a side reflects, if what it sees is as bright, over all its crossings.
                 let share = unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings;
+                // Not a number, and not counted, for a patch that is all gap.
                 brightest[band] = f64::max(brightest[band], share);
             }
         });
@@ -287,12 +288,13 @@ impl<'m> Batches<'m> {
             return Err(SolveError::Unbalanced { stage: "multipath" });
         }
         let (forecast, stretch) = (domain.forecast(plan.lines), plan.stretch());
-        let factor =
-            |account: &Account, triangle| account.factor(forecast.crossings(model.mesh.patch_area(triangle)));
+        let factor = |account: &Account, triangle, side| {
+            account.factor(forecast.crossings(model.area(triangle, side)))
+        };
         let (mut plain, mut corrected) = ([0.0; 3], [0.0; 3]);
         model.mesh.for_each_side(|triangle, _, _, side| {
             let account = &accounts[side.index()];
-            let factor = factor(account, triangle);
+            let factor = factor(account, triangle, side);
             for band in 0..3 {
                 let [_, _, power] = account.stretched(band, stretch[band]);
                 plain[band] += power;
@@ -304,7 +306,7 @@ impl<'m> Batches<'m> {
         let Received { power, variance } = &mut received;
         model.mesh.for_each_side(|triangle, _, _, side| {
             let (account, squares) = (&accounts[side.index()], ledger.squares(side));
-            let factor = factor(account, triangle);
+            let factor = factor(account, triangle, side);
             let (power, variance) = (&mut power[side.index()], &mut variance[side.index()]);
             let mut sum = Quanta::ZERO;
             for band in 0..3 {
@@ -428,9 +430,9 @@ impl<'a> Part<'a> {
         let withheld = self.plan.withheld();
         let ceased = self.plan.number == self.plan.parts;
         for (triangle, sides) in self.sides() {
-            let expected = forecast.crossings(self.model.mesh.patch_area(triangle));
-            let lines = expected + 1.0 + expected.sqrt() * expected.min(1.0);
             for i in sides {
+                let expected = forecast.crossings(self.model.area(triangle, SideId(i)));
+                let lines = expected + 1.0 + expected.sqrt() * expected.min(1.0);
                 let k = (i - self.first) as usize;
                 let account = &mut self.accounts[k];
                 if ceased {
@@ -447,9 +449,9 @@ impl<'a> Part<'a> {
     pub fn close(&mut self) -> Totals {
         let mut totals = Totals::default();
         for (triangle, sides) in self.sides() {
-            let reflectance = self.model.scene.material(triangle).reflectance;
             for i in sides {
                 let side = SideId(i);
+                let reflectance = self.model.reflectance(triangle, side);
                 let (power, crossings) = self.ledger.take(side);
                 let sent = self.ledger.share(side).times(i64::from(crossings));
                 let reflected = power.scaled(reflectance);

@@ -4,10 +4,11 @@
 
 use glam::DVec3;
 use sir_accel::Ray;
-use sir_geom::{Line, Scene, Side, Sky, Spread, TriangleId};
+use sir_geom::{Barycentric, Line, Scene, Side, Sky, Spread, TriangleId};
 use sir_lines::{
     Domain, ParallelLines, Stream, cosine_direction, point_on_triangle, spot_direction, unit_vector,
 };
+use sir_mesh::PatchId;
 
 /// What a source is.
 ///
@@ -19,6 +20,8 @@ pub enum Emitter {
     Surface {
         /// The triangle.
         triangle: TriangleId,
+        /// The patch of it; `None` for all of it.
+        patch: Option<PatchId>,
         /// Which side of it.
         side: Side,
         /// Corners of the part that emits.
@@ -50,7 +53,7 @@ impl Emitter {
     pub(crate) fn ray(&self, scene: &Scene, stream: &mut Stream) -> Ray {
         match self {
             Self::Surface { triangle, corners, normal, .. } => {
-                let origin = point_on_triangle(stream).point(*corners);
+                let origin = point_on_surface(scene, *triangle, *corners, stream);
                 let line = Line { origin, direction: cosine_direction(*normal, stream) };
                 Ray { line, leaving: Some(*triangle) }
             }
@@ -69,6 +72,29 @@ impl Emitter {
             }
         }
     }
+}
+
+/// How often a point is drawn anew that lies in a gap.
+const TRIES: u32 = 1000;
+
+/// A uniform random point of what a part of a triangle covers.
+pub(crate) fn point_on_surface(
+    scene: &Scene,
+    triangle: TriangleId,
+    part: [DVec3; 3],
+    stream: &mut Stream,
+) -> DVec3 {
+    let mut point = point_on_triangle(stream).point(part);
+    if scene.lets_light_through(triangle) {
+        let corners = scene.corners(triangle);
+        for _ in 0..TRIES {
+            if stream.unit() < scene.opacity_at(triangle, Barycentric::of(point, corners)) {
+                break;
+            }
+            point = point_on_triangle(stream).point(part);
+        }
+    }
+    point
 }
 
 /// A ray from the sky: a uniform one through the box that was kept with the probability `share`.

@@ -41,7 +41,8 @@ impl<'m> SecondShot<'m> {
                     if bright[id.index()] {
                         let corners = model.mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
                         let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
-                        let emitter = Emitter::Surface { triangle, side, corners, normal };
+                        let emitter =
+                            Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
                         sources.push(Source { emitter, power });
                         sides.push(id);
                     }
@@ -85,7 +86,7 @@ fn brightest(model: &Model, unshot: &[Quanta], total: f64) -> Vec<bool> {
     model.mesh.for_each_side(|triangle, _, _, side| {
         let power = unshot[side.index()].total();
         if power > 0.0 {
-            sides.push((power / model.mesh.patch_area(triangle), power, side));
+            sides.push((power / model.area(triangle, side), power, side));
         }
     });
     sides.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)));

@@ -1,5 +1,6 @@
 //! Textures: images that say how a surface's colours vary on it.
 
+mod halved;
 mod sums;
 
 use std::sync::LazyLock;

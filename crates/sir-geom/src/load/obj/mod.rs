@@ -1,9 +1,8 @@
 //! Wavefront OBJ with material libraries (MTL).
 //!
 //! `Kd` is the reflectance, times `map_Kd` and the colours of vertices; `Ke`, times `map_Ke`, the radiance that the
-//! front emits: a file has no notion of sides, so both reflect and only the front emits. `d`, or else `1 − Tr`, times `map_d` is the
-//! opacity. Polygons are cut into
-//! fans from their first corner.
+//! front emits: a file has no notion of sides, so both reflect and only the front emits. `d`, or else `1 − Tr`, times
+//! `map_d` is the opacity.
 
 mod clean;
 mod corners;
