@@ -244,6 +244,29 @@ impl SceneBuilder {
         }
     }
 
+    /// [`set_corners`](Self::set_corners) for all triangles of the polygon that was added last and has these `corners`: each set of
+    /// coordinates has one place for each of them, the tint one colour.
+    pub fn set_polygon_corners(
+        &mut self,
+        corners: &[VertexId],
+        coordinates: &[&[Vec2]],
+        tint: Option<&[Vec4]>,
+    ) {
+        // Polygons of many corners must not take the square of their number.
+        let numbers: HashMap<VertexId, usize> =
+            corners.iter().enumerate().rev().map(|(i, &vertex)| (vertex, i)).collect();
+        let last = self.faces.checked_sub(1);
+        let triangles = self.triangles.iter_mut().rev().take_while(|t| Some(t.face.0) == last);
+        for triangle in triangles {
+            let [Some(a), Some(b), Some(c)] = triangle.vertices.map(|v| numbers.get(&v).copied()) else {
+                continue;
+            };
+            let sets: Vec<[Vec2; 3]> = coordinates.iter().map(|set| [a, b, c].map(|i| set[i])).collect();
+            let tint = tint.map(|tint| [a, b, c].map(|i| tint[i]));
+            triangle.corners = self.appearance.add(&sets, tint.filter(|t| t.iter().all(|c| c.is_finite())));
+        }
+    }
+
     /// Checks everything, welds equal vertices, drops triangles without an area and clamps reflectances.
     ///
     /// # Errors

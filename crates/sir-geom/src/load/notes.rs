@@ -71,6 +71,11 @@ impl Notes {
     }
 }
 
+/// A name from a file in quotes.
+pub(super) fn quoted(name: &str) -> String {
+    format!("\"{name}\"")
+}
+
 /// Leaves the first few of many warnings about clamped reflectances, and counts the others.
 pub(super) fn shorten(warnings: &mut Vec<Warning>) {
     let mut clamped = 0;

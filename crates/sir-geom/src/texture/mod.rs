@@ -162,12 +162,13 @@ impl Wrap {
 /// Decodes an 8-bit value of sRGB (IEC 61966-2-1).
 #[inline]
 pub(crate) fn srgb_to_linear(value: u8) -> f64 {
-    static VALUES: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|value| decode(value as u8)));
+    static VALUES: LazyLock<[f64; 256]> =
+        LazyLock::new(|| std::array::from_fn(|value| srgb_to_linear_at(value as f64 / 255.0)));
     VALUES[usize::from(value)]
 }
 
-fn decode(value: u8) -> f64 {
-    let s = f64::from(value) / 255.0;
+/// Decodes a value of sRGB in `[0, 1]`.
+pub(crate) fn srgb_to_linear_at(s: f64) -> f64 {
     if s <= 0.04045 {
         return s / 12.92;
     }

@@ -9,4 +9,5 @@ mod gltf;
 mod gltf_lights;
 mod gltf_materials;
 mod obj;
+mod textures;
 mod third_party;
