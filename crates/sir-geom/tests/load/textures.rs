@@ -179,7 +179,7 @@ fn alpha_counts_as_its_mode_says() {
 #[test]
 fn colours_of_vertices_multiply_and_are_linear() {
     let half = |alpha: f32| floats(&[1.0, 0.5, 0.0, alpha].repeat(3));
-    let bytes = vec![255, 51, 0, 51].repeat(3);
+    let bytes = [255, 51, 0, 51].repeat(3);
     for (data, component, kind, expected, alpha) in [
         (half(0.5), 5126, "VEC4", Rgb::new(0.5, 0.25, 0.0), 0.5),
         (floats(&[1.0, 0.5, 0.0].repeat(3)), 5126, "VEC3", Rgb::new(0.5, 0.25, 0.0), 1.0),
