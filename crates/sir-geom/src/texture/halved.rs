@@ -59,9 +59,16 @@ impl Covered {
 
 /// The 8-bit value of sRGB nearest to a linear one.
 fn linear_to_srgb(linear: f64) -> u8 {
-    let mut above =
-        (1..=255u8).rev().skip_while(|&v| srgb_to_linear(v) + srgb_to_linear(v - 1) > 2.0 * linear);
-    above.next().unwrap_or(0)
+    let (mut below, mut above) = (0u8, 255u8);
+    while below < above {
+        let middle = below + (above - below) / 2;
+        if srgb_to_linear(middle) + srgb_to_linear(middle + 1) > 2.0 * linear {
+            above = middle;
+        } else {
+            below = middle + 1;
+        }
+    }
+    below
 }
 
 #[cfg(test)]

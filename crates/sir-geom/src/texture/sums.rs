@@ -291,6 +291,8 @@ mod tests {
             prop_assume!(area > 0.2);
             let mean = TextureSums::new(&texture, wrap, |alpha| alpha).mean(corners);
             let expected = sampled(&texture, wrap, corners, 400);
+            // What is clear has no colour.
+            prop_assume!(expected.weight > 0.02);
             prop_assert!((mean.weight - expected.weight).abs() < 4e-3, "{} {}", mean.weight, expected.weight);
             prop_assert!((mean.colour - expected.colour).length() < 8e-3, "{} {}", mean.colour, expected.colour);
         }
