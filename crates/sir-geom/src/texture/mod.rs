@@ -184,10 +184,11 @@ fn fifth_root(x: f64) -> f64 {
     // From above, the iterates fall until rounding stops them.
     loop {
         let next = (4.0 * root + x / (root * root * root * root)) / 5.0;
-        if next >= root {
+        if next < root {
+            root = next;
+        } else {
             return root;
         }
-        root = next;
     }
 }
 

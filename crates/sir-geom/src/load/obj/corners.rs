@@ -23,13 +23,14 @@ pub(super) struct Corners {
 }
 
 impl Corners {
-    /// Takes in the words of a `v` statement: three coordinates, and a colour if there are three more.
+    /// Takes in the words of a `v` statement: three coordinates, and a colour if there are three more. What is no number makes it white.
     pub(super) fn add_vertex<'a>(&mut self, words: impl Iterator<Item = &'a str>) {
         let mut colour = words.skip(3).map(|word| word.parse().unwrap_or(f32::NAN));
         if let (Some(r), Some(g), Some(b)) = (colour.next(), colour.next(), colour.next()) {
             self.colours.resize(self.vertices, [1.0; 3]);
-            self.colours.push([r, g, b]);
-            self.in_bytes |= r > 1.0 || g > 1.0 || b > 1.0;
+            let is_colour = r.is_finite() && g.is_finite() && b.is_finite();
+            self.colours.push(if is_colour { [r, g, b] } else { [1.0; 3] });
+            self.in_bytes |= is_colour && (r > 1.0 || g > 1.0 || b > 1.0);
         }
         self.vertices += 1;
     }
@@ -96,5 +97,18 @@ mod tests {
         let half = srgb_to_linear_at(0.5) as f32;
         assert_eq!(corners.colour(1), Vec4::new(1.0, half, 0.0, 1.0));
         assert_eq!([0, 2, 3, 5].map(|i| corners.colour(i)), [Vec4::ONE; 4]);
+    }
+
+    /// Found by the fuzzer: a colour that is no number was decoded for ever.
+    #[test]
+    fn what_is_no_colour_is_white() {
+        let mut corners = Corners::default();
+        for vertex in ["0 1 0 1 1 1d", "0 0 0 nan 0 0", "0 0 0 inf 0 0", "0 0 0 1 0 0"] {
+            corners.add_vertex(vertex.split(' '));
+        }
+        corners.add_face("1 2 3 4".split(' '));
+        assert_eq!([0, 1, 2].map(|i| corners.colour(i)), [Vec4::ONE; 3]);
+        assert_eq!(corners.colour(3), Vec4::new(1.0, 0.0, 0.0, 1.0));
+        assert!(srgb_to_linear_at(f64::NAN).is_nan());
     }
 }
