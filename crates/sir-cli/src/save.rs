@@ -143,7 +143,7 @@ pub(crate) fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -
 }
 
 /// Whether an output is a picture without noise. Those for measuring show what was computed.
-fn is_calm(output: &Output) -> bool {
+pub(crate) fn is_calm(output: &Output) -> bool {
     matches!(&output.content, Content::Image(image) if image.calm) && !has_extension(&output.path, "exr")
 }
 
