@@ -15,7 +15,7 @@ use crate::memory;
 use crate::pipeline::{Action, Content, Pipeline, Repeat, Until};
 use crate::prepare::{Prepared, chosen_camera, prepare};
 use crate::progress::Progress;
-use crate::save::settings;
+use crate::save::{is_calm, settings};
 use crate::units::Units;
 
 /// How long the lines of a stage are tried to learn their rate.
@@ -113,7 +113,9 @@ fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, us
     // Pictures for measuring have one of standard errors, too.
     let measured =
         pipeline.outputs().any(|o| o.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
-    let displays = usize::from(shown) + usize::from(measured);
+    // Pictures without noise have a mesh of their own; making it takes less than it has itself.
+    let calm = pipeline.outputs().any(is_calm);
+    let displays = usize::from(shown) + usize::from(measured) + usize::from(calm);
     let pixels = pipeline.outputs().filter_map(|o| match &o.content {
         Content::Image(image) => {
             let camera = chosen_camera(&image.camera, scene);

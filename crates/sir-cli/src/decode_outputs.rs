@@ -101,8 +101,8 @@ impl<'a> Decoder<'a> {
     }
 
     fn image(&mut self, node: Node<'a>) -> Option<Output> {
-        let mut fields =
-            self.reader.fields(node, "Image", &["path", "width", "height", "samples", "exposure", "camera"]);
+        const FIELDS: [&str; 7] = ["path", "width", "height", "samples", "exposure", "calm", "camera"];
+        let mut fields = self.reader.fields(node, "Image", &FIELDS);
         let path = self.reader.required(&mut fields, "path", "\"view.png\"");
         let mut whole = |reader: &mut Reader<'a>, name, most, default: Option<u32>| match fields.take(name) {
             Some(node) => {
@@ -130,6 +130,15 @@ impl<'a> Decoder<'a> {
                 None
             }
         };
+        let calm = match fields.take("calm") {
+            None => Some(true),
+            Some(Node { value: Value::Bool(calm), .. }) => Some(calm),
+            Some(node) => {
+                let message = format!("`calm` must be `true` or `false`, but it is {}", node.kind());
+                self.reader.problem(node.text, message, "write `calm: false` to see the noise");
+                None
+            }
+        };
         let camera = match fields.take("camera") {
             Some(node) => self.camera(node),
             None => Some(CameraChoice::Default),
@@ -140,6 +149,7 @@ impl<'a> Decoder<'a> {
             height: height?,
             samples: samples??,
             exposure: exposure?,
+            calm: calm?,
             camera: camera?,
         };
         Some(Output { path: path?, content: Content::Image(image) })

@@ -211,6 +211,8 @@ pub struct Image {
     pub samples: u32,
     /// How bright a PNG picture is made. Default `Auto`.
     pub exposure: Exposure,
+    /// Whether noise is taken out of a PNG picture. Default `true`.
+    pub calm: bool,
     /// From where it is taken.
     pub camera: CameraChoice,
 }

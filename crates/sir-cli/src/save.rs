@@ -30,12 +30,23 @@ pub(crate) fn save(
     let Model { scene, mesh, accel } = &prepared.model;
     let seen = outputs.iter().any(|o| o.content != Content::Table);
     let display = seen.then(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
+    let calm = match &display {
+        Some(display) if outputs.iter().any(is_calm) => display.calm(&solution.error, threads),
+        _ => Vec::new(),
+    };
+    let calm = (!calm.is_empty()).then(|| DisplayMesh::new(scene, mesh, &calm));
     let errors = outputs
         .iter()
         .any(|o| matches!(o.content, Content::Image(_)) && has_extension(&o.path, "exr"))
         .then(|| DisplayMesh::of_errors(scene, mesh, &solution.error));
-    let mut studio =
-        display.as_ref().map(|display| Studio { prepared, display, threads, last: None, default: None });
+    let mut studio = display.as_ref().map(|display| Studio {
+        prepared,
+        display,
+        calm: calm.as_ref(),
+        threads,
+        last: None,
+        default: None,
+    });
     for output in outputs {
         let path = directory.join(&output.path);
         progress.note(&format!("Save: {}", output.path.display()));
@@ -44,7 +55,7 @@ pub(crate) fn save(
         }
         let kind = match (&output.content, &mut studio) {
             (Content::Image(image), Some(studio)) => {
-                let Taken { camera, settings, picture } = studio.take(image)?;
+                let Taken { camera, settings, picture, .. } = studio.take(image, is_calm(output))?;
                 match &errors {
                     Some(errors) if has_extension(&path, "exr") => {
                         let errors = render(errors, accel, camera, *settings)?;
@@ -81,6 +92,8 @@ pub(crate) fn save(
 struct Studio<'a> {
     prepared: &'a Prepared,
     display: &'a DisplayMesh<'a>,
+    /// The same without noise, if a picture is to be without.
+    calm: Option<&'a DisplayMesh<'a>>,
     threads: usize,
     last: Option<Taken>,
     default: Option<Camera>,
@@ -90,18 +103,22 @@ struct Studio<'a> {
 struct Taken {
     camera: Camera,
     settings: PictureSettings,
+    is_calm: bool,
     picture: Picture,
 }
 
 impl Studio<'_> {
-    fn take(&mut self, image: &Image) -> Result<&Taken, Error> {
+    fn take(&mut self, image: &Image, is_calm: bool) -> Result<&Taken, Error> {
         let Model { scene, accel, .. } = &self.prepared.model;
         let chosen = chosen_camera(&image.camera, scene);
         let settings = settings(image, chosen.as_ref(), self.threads);
         let camera = chosen.unwrap_or_else(|| self.default_camera());
         let taken = match self.last.take() {
-            Some(last) if last.camera == camera && last.settings == settings => last,
-            _ => Taken { picture: render(self.display, accel, &camera, settings)?, camera, settings },
+            Some(last) if (&last.camera, last.settings, last.is_calm) == (&camera, settings, is_calm) => last,
+            _ => {
+                let display = self.calm.filter(|_| is_calm).unwrap_or(self.display);
+                Taken { picture: render(display, accel, &camera, settings)?, camera, settings, is_calm }
+            }
         };
         Ok(self.last.insert(taken))
     }
@@ -123,6 +140,11 @@ pub(crate) fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -
         grid: image.samples,
         threads,
     }
+}
+
+/// Whether an output is a picture without noise. Those for measuring show what was computed.
+pub(crate) fn is_calm(output: &Output) -> bool {
+    matches!(&output.content, Content::Image(image) if image.calm) && !has_extension(&output.path, "exr")
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

@@ -69,7 +69,7 @@ fn output(output: &Output) -> String {
 }
 
 fn image_fields(image: &Image) -> String {
-    let Image { width, height, samples, exposure, camera } = image;
+    let Image { width, height, samples, exposure, calm, camera } = image;
     let height = height.map_or(String::new(), |height| format!("height: {height}, "));
     let exposure = match exposure {
         Exposure::Auto => "Auto".into(),
@@ -81,7 +81,9 @@ fn image_fields(image: &Image) -> String {
         CameraChoice::Name { name, .. } => quoted(name),
         CameraChoice::Own(camera) => own_camera(camera),
     };
-    format!("width: {width}, {height}samples: {samples}, exposure: {exposure}, camera: {camera}")
+    format!(
+        "width: {width}, {height}samples: {samples}, exposure: {exposure}, calm: {calm}, camera: {camera}"
+    )
 }
 
 fn own_camera(camera: &Camera) -> String {

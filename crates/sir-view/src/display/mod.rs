@@ -1,5 +1,6 @@
 //! The display mesh: patches cut so that they share all points, with irradiance at the points.
 
+mod calm;
 mod levels;
 mod outline;
 mod points;

@@ -1,0 +1,57 @@
+//! The pipelines for scenes of others.
+//!
+//! Their scenes are no part of the project: where the variable `SIR_TEST_DATA` says, or in a folder `shared` beside
+//! the repository. Without them the pipelines are only parsed, and the test says so.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use sir::cli::pipeline::Pipeline;
+
+fn pipelines() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/third-party");
+    let mut found: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    found.retain(|path| path.extension().is_some_and(|e| e == "ron"));
+    found.sort();
+    assert_eq!(found.len(), 11);
+    found
+}
+
+#[test]
+fn all_are_pipelines_whose_scenes_are_in_data_and_which_the_readme_names() {
+    let readme = fs::read_to_string(pipelines()[0].with_file_name("README.md")).unwrap();
+    for path in pipelines() {
+        let pipeline = Pipeline::read(&path).unwrap_or_else(|error| panic!("{error}"));
+        let data = path.with_file_name("data");
+        assert!(pipeline.scene_path().starts_with(&data), "{}", path.display());
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        assert!(readme.contains(&format!("`{name}`")), "{name} is not in the README");
+    }
+}
+
+#[test]
+fn all_check_where_their_scenes_are() {
+    let data = match std::env::var_os("SIR_TEST_DATA") {
+        Some(folder) => PathBuf::from(folder),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
+    };
+    let scenes = data.join("scenes");
+    let copies = tempfile::tempdir().unwrap();
+    for path in pipelines() {
+        let scene = Pipeline::read(&path).unwrap().scene_path().to_owned();
+        let scene = scenes.join(scene.strip_prefix(path.with_file_name("data")).unwrap());
+        if !scene.is_file() {
+            println!("skipped: no {}", scene.display());
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let text = text.replace("data/", &format!("{}/", scenes.canonicalize().unwrap().display()));
+        let copy = copies.path().join(path.file_name().unwrap());
+        fs::write(&copy, text).unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_sir")).arg("check").arg(&copy).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
