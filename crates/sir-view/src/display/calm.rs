@@ -45,7 +45,7 @@ impl DisplayMesh<'_> {
     /// irradiance as it was computed, and `errors` are its standard errors.
     ///
     /// Neighbours are patches that share a vertex of the mesh, and so belong to one smooth surface. No value moves by
-    /// more than three standard errors. The result is the same for any number of threads.
+    /// more than three standard errors: its own, or that of the grains around it, if that is larger. The result is the same for any number of threads.
     ///
     /// # Panics
     ///
