@@ -24,6 +24,12 @@ impl ParallelLines {
         Self { bounds, direction, areas: bounds.face_areas() * direction.abs() }
     }
 
+    /// Their direction, of unit length.
+    #[must_use]
+    pub fn direction(&self) -> DVec3 {
+        self.direction
+    }
+
     /// Area of the shadow of the box \[m²\].
     #[must_use]
     pub fn area(&self) -> f64 {
