@@ -5,8 +5,9 @@ use std::path::Path;
 
 use glam::DVec3;
 use sir_geom::{Camera, LoadOptions, Scene};
+use sir_lines::Focus;
 use sir_mesh::{MeshError, Subdivision};
-use sir_radiosity::{Model, SolveError, Source, sources};
+use sir_radiosity::{Inside, Model, SolveError, Source, sources};
 use sir_view::guess_up;
 
 use crate::Error;
@@ -29,6 +30,10 @@ pub struct Prepared {
     pub warnings: Vec<String>,
     /// The light sources: at least one.
     pub sources: Vec<Source>,
+    /// What matters, if not everything does.
+    pub focus: Option<Focus>,
+    /// The sides in it.
+    pub inside: Inside,
     /// Where the sensors of each stage `Sensors` are, by the number of the stage.
     pub layouts: BTreeMap<usize, Layout>,
     /// Seconds to read the scene.
@@ -74,14 +79,35 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
         Ok(model) if problems.is_empty() => {
             let build_seconds = watch.seconds();
             let up = up(pipeline.scene_path(), &model.scene);
+            let (focus, inside) =
+                focus(pipeline, &model).map_err(|problem| pipeline.diagnostics(vec![problem]))?;
             let layouts = layouts(pipeline, &model, up).map_err(|problems| pipeline.diagnostics(problems))?;
-            Ok(Prepared { model, up, warnings, sources, layouts, load_seconds, build_seconds })
+            Ok(Prepared { model, up, warnings, sources, focus, inside, layouts, load_seconds, build_seconds })
         }
         outcome => {
             problems.extend(outcome.err().map(|error| mesh_problem(error, span)));
             Err(pipeline.diagnostics(problems).into())
         }
     }
+}
+
+/// The focus, and the sides in it, of which there must be some.
+fn focus(pipeline: &Pipeline, model: &Model) -> Result<(Option<Focus>, Inside), Diagnostic> {
+    for stage in &pipeline.stages {
+        let Action::Focus { bounds, share } = stage.action else { continue };
+        let focus = Focus::new(bounds, share, &model.scene);
+        let inside = Inside::of(model, focus.as_ref());
+        if focus.is_some() && !inside.is_empty() {
+            return Ok((focus, inside));
+        }
+        let scene = model.scene.bounding_box();
+        return Err(Diagnostic {
+            span: stage.span.clone(),
+            message: "no patch of the scene lies in the box of `Focus`".into(),
+            help: format!("the scene reaches from {:.4} to {:.4}, in its own units", scene.min, scene.max),
+        });
+    }
+    Ok((None, Inside::of(model, None)))
 }
 
 /// Where all sensors are, or why they cannot be where they should.
