@@ -81,7 +81,9 @@ fn sky_and_sun_on_a_square_in_a_field() {
             let shot = shoot(&model, LINES, focus, seed);
             assert!(shot.balance.closes());
             let emitted = shot.unit.watts(shot.balance.emitted).x;
-            assert!((emitted / power - 1.0).abs() < 1e-6, "{emitted} of {power}");
+            // Each source has a whole number of lines, and those that pass around the focus carry more.
+            let lines = if focus.is_some() { 2e-4 } else { 1e-6 };
+            assert!((emitted / power - 1.0).abs() < lines, "{emitted} of {power}");
             let solution = shot.solution(&model);
             for (material, exact) in [(0, exact), (1, exact * (3_600.0 - 1.0) / 3_600.0)] {
                 let (value, error) = of_material(&model, &solution.irradiance, &solution.error, material);
