@@ -16,6 +16,14 @@
 //! * Surfaces in contact (a decal on a wall, two sheets back to back) are put in order by a rule that is the same
 //!   in both directions of the line, not by rounding: see [`Hit`].
 //!
+//! # Surfaces with gaps
+//!
+//! A triangle of opacity `α` stops a line with the probability `α`, and a texture may say that `α` differs from place to
+//! place ([`Opacity`](sir_geom::Opacity)). A hash of line and triangle decides, so that a line is a function of nothing
+//! but itself. A line that passes goes straight on, as if the triangle were not there. What closed surfaces promise holds for
+//! what is crossed, and no longer for what is hit: a line may pass the front of a leaf and meet its back. Neighbouring hits
+//! face each other all the same. [`Tracer::all_crossings_each`] passes over nothing, for those who want no chance in it.
+//!
 //! # Speed
 //!
 //! The tree comes from `obvhs` and is cut into nodes of sixteen boxes. It holds the input triangles only, however finely
@@ -58,6 +66,7 @@ mod search;
 mod tracer;
 mod tree;
 mod triangle;
+mod veil;
 
 pub use hit::Hit;
 pub use memory::{collect_in_large_pages, prefetch};
@@ -68,12 +77,15 @@ use sir_geom::Scene;
 use crate::grid::Grid;
 use crate::kits::Kits;
 use crate::tree::Tree;
+use crate::veil::Veil;
 
 /// The triangles of a scene, arranged for lines to be traced.
 #[derive(Clone, Debug)]
 pub struct Accel {
     grid: Grid,
     tree: Tree,
+    /// `None` if all surfaces are opaque.
+    veil: Option<Veil>,
 }
 
 impl Accel {
@@ -82,7 +94,7 @@ impl Accel {
     pub fn new(scene: &Scene) -> Self {
         let grid = Grid::new(scene.bounding_sphere());
         let tree = Tree::new(scene, &grid);
-        Self { grid, tree }
+        Self { grid, tree, veil: Veil::of(scene) }
     }
 
     /// Something to trace lines with; make one per thread.
@@ -91,9 +103,9 @@ impl Accel {
         Tracer::new(self, Kits::best())
     }
 
-    /// Memory in use \[bytes\].
+    /// Memory in use, without textures \[bytes\].
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.tree.bytes()
+        self.tree.bytes() + self.veil.as_ref().map_or(0, Veil::bytes)
     }
 }

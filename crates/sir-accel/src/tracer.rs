@@ -12,6 +12,7 @@ use crate::leaf::Span;
 use crate::search::{AllScratch, ClosestScratch, LINES, Rays};
 use crate::tree::Tree;
 use crate::triangle::{Crossing, GridTriangle};
+use crate::veil::Veil;
 
 /// A ray, and the surface that it leaves.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +45,13 @@ impl<'a> Tracer<'a> {
         Self { accel, kits, closest: ClosestScratch::default(), all: AllScratch::default() }
     }
 
-    /// The first triangle that a ray meets.
+    /// Whether some surfaces let lines pass.
+    #[must_use]
+    pub fn lets_lines_pass(&self) -> bool {
+        self.accel.veil.is_some()
+    }
+
+    /// The first triangle that a ray meets, and that does not let it pass.
     pub fn closest(&mut self, ray: &Ray) -> Option<Hit> {
         let mut first = None;
         self.closest_each(std::slice::from_ref(ray), |_, hit| first = hit);
@@ -59,7 +66,8 @@ impl<'a> Tracer<'a> {
         self.kits.closest(&self.accel.tree, &mut self.closest, &mut search);
     }
 
-    /// All triangles that the infinite line crosses, in order along it, those behind its origin included.
+    /// All triangles that the infinite line crosses, in order along it, those behind its origin included and those that let
+    /// it pass left out.
     pub fn all_hits(&mut self, line: &Line) -> &[Hit] {
         self.all_hits_together(std::slice::from_ref(line));
         self.all.hits()
@@ -75,8 +83,24 @@ impl<'a> Tracer<'a> {
         }
     }
 
+    /// As [`all_hits_each`](Self::all_hits_each), but triangles that let lines pass are among the hits: their opacity there
+    /// is for the caller to find ([`Scene::opacity_at`](sir_geom::Scene::opacity_at)).
+    pub fn all_crossings_each(&mut self, lines: &[Line], mut visit: impl FnMut(&LineHits<'_>)) {
+        for lines in lines.chunks(LINES) {
+            self.all_crossings_together(lines);
+            visit(&LineHits { starts: &self.all.starts[..=lines.len()], hits: self.all.hits() });
+        }
+    }
+
     fn all_hits_together(&mut self, lines: &[Line]) {
-        let Self { accel: Accel { grid, tree }, kits, all, .. } = self;
+        self.all_crossings_together(lines);
+        if let Some(veil) = &self.accel.veil {
+            pass(veil, lines, &mut self.all);
+        }
+    }
+
+    fn all_crossings_together(&mut self, lines: &[Line]) {
+        let Self { accel: Accel { grid, tree, .. }, kits, all, .. } = self;
         kits.all(grid, tree, lines, all);
         for (line, _) in all.close.iter().enumerate().filter(|(_, close)| **close) {
             let hits = &mut all.hits[all.starts[line] as usize..all.starts[line + 1] as usize];
@@ -172,7 +196,8 @@ impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
             Some(id) => is_ahead(id, &crossing, line, tree),
             None => crossing.t + line.start >= 0.0,
         };
-        if begins {
+        let stops = |veil: &Veil| veil.stops_at(&self.rays[ray.index].line, &crossing);
+        if begins && self.accel.veil.as_ref().is_none_or(stops) {
             if let Some(best) = ray.best
                 && (crossing.t - best.t).abs() <= SLACK
             {
@@ -207,7 +232,7 @@ impl<F> ClosestHits<'_, F> {
     /// The first, by their rule, of hits that are close together.
     #[cold]
     fn first_of_close(&mut self, index: usize, best: Crossing, line: &GridLine) -> Hit {
-        let Accel { grid, tree } = self.accel;
+        let Accel { grid, tree, .. } = self.accel;
         let mut hits = vec![best.hit(grid, line)];
         self.close.retain(|(of_ray, crossing)| {
             if *of_ray == index
@@ -259,6 +284,24 @@ fn sort_contacts(hits: &mut [Hit], contact: f64, tree: &Tree) {
             hits.swap(j - 1, j);
         }
     }
+}
+
+/// Leaves out the hits that let their lines pass.
+#[cold]
+fn pass(veil: &Veil, lines: &[Line], all: &mut AllScratch) {
+    let AllScratch { starts, hits, .. } = all;
+    let (mut from, mut kept) = (0, 0);
+    for (line, start) in lines.iter().zip(1..) {
+        let to = starts[start] as usize;
+        for i in from..to {
+            let hit = hits[i];
+            hits[kept] = hit;
+            kept += usize::from(veil.stops(line, &hit));
+        }
+        from = to;
+        starts[start] = kept as u32;
+    }
+    starts[lines.len()..=LINES].fill(kept as u32);
 }
 
 /// Whether two triangles are parallel: the squared sine of their angle is small.

@@ -124,9 +124,9 @@ fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, us
         _ => None,
     });
     let memory = vec![
-        ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles())),
+        ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles()) + scene.appearance_bytes()),
         // See `PatchMesh`: 28 bytes per triangle.
-        ("patches", 28 * scene.triangles().len()),
+        ("patches", 28 * scene.triangles().len() + mesh.paint_bytes()),
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing),
         (

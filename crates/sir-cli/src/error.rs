@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use sir_geom::LoadError;
+use sir_mesh::MeshError;
 use sir_parallel::{ConnectError, RunError};
 use sir_radiosity::SolveError;
 use sir_view::ViewError;
@@ -21,6 +22,9 @@ pub enum Error {
     /// The pipeline file has problems.
     #[error(transparent)]
     Pipeline(#[from] Diagnostics),
+    /// The scene cannot be cut into patches.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// The pipeline file cannot be read.
     #[error("cannot read the pipeline {}", path.display())]
     ReadPipeline {

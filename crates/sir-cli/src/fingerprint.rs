@@ -1,7 +1,7 @@
 //! A number that tells scenes, pipelines and programs apart.
 
 use sha2::{Digest, Sha256};
-use sir_geom::Sides;
+use sir_geom::{Material, Sides};
 use sir_radiosity::{Grouping, Model, ViewFactorSettings};
 
 use crate::pipeline::{Action, Pipeline};
@@ -50,7 +50,14 @@ pub(crate) fn of_scene(model: &Model) -> Fingerprint {
         colours.iter().flat_map(|c| c.to_array()).for_each(|x| number(x.to_bits()));
         number(u64::from(material.sides == Sides::Both) + 2 * u64::from(material.back_emits));
     }
+    scene.hash_appearance(&mut number);
     number(mesh.patch_count() as u64);
+    // What most scenes do not have changes nothing for them.
+    for Material { reflectance_map, exitance_map, opacity, .. } in
+        scene.materials().iter().filter(|m| !m.is_plain())
+    {
+        hash.update(format!("{reflectance_map:?} {exitance_map:?} {opacity:?}"));
+    }
     // Every number is written with all of its digits.
     hash.update(format!("{:?} {:?}", scene.lights(), scene.sky()));
     hash.finalize().into()

@@ -7,7 +7,7 @@ use glam::DVec3;
 use sir_geom::{Camera, LoadOptions, Scene};
 use sir_lines::Focus;
 use sir_mesh::{MeshError, Subdivision};
-use sir_radiosity::{Inside, Model, SolveError, Source, sources};
+use sir_radiosity::{Inside, Model, SolveError, Source, emits, sources};
 use sir_view::guess_up;
 
 use crate::Error;
@@ -68,8 +68,7 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
     progress.warn(&warnings);
 
-    let sources = sources(&built.scene);
-    if sources.is_empty() {
+    if !emits(&built.scene) {
         return Err(SolveError::NoLight.into());
     }
     let mut problems = camera_problems(pipeline, &built.scene);
@@ -78,6 +77,10 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     match Model::new(built.scene, how) {
         Ok(model) if problems.is_empty() => {
             let build_seconds = watch.seconds();
+            let sources = sources(&model.scene, &model.mesh);
+            if sources.is_empty() {
+                return Err(SolveError::NoLight.into());
+            }
             let up = up(pipeline.scene_path(), &model.scene);
             let (focus, inside) =
                 focus(pipeline, &model).map_err(|problem| pipeline.diagnostics(vec![problem]))?;

@@ -316,7 +316,7 @@ pub(crate) fn relative_error(model: &Model, inside: &Inside, solution: &Solution
         if !inside.has(side) {
             return;
         }
-        let a = model.mesh.patch_area(triangle);
+        let a = model.area(triangle, side);
         let error = solution.error[side.index()];
         area += a;
         sum += a * solution.irradiance[side.index()];

@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use glam::DVec3;
+use glam::{DVec3, Vec2, Vec4};
 use thiserror::Error;
 
+use crate::appearance::{Appearance, Corners};
 use crate::{
-    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Light, MAX_REFLECTANCE, Material, MaterialId, Rgb,
-    Scene, Sky, Triangle, VertexId,
+    BoundingBox, BoundingSphere, Camera, ColourMap, FaceId, GroupId, Light, MAX_REFLECTANCE, Material,
+    MaterialId, Rgb, Scene, Sky, Texture, TextureId, Triangle, VertexId, polygon,
 };
 
 /// Why a scene cannot be built.
@@ -43,7 +44,7 @@ pub enum SceneError {
     BadMaterial {
         /// Name of the material.
         name: String,
-        /// `reflectance` or `exitance`.
+        /// `reflectance`, `exitance` or `opacity`.
         what: &'static str,
         /// The value found.
         value: Rgb,
@@ -70,6 +71,11 @@ pub enum Warning {
         /// How many.
         count: u64,
     },
+    /// Polygons whose outlines cross themselves, or have more than 4,096 corners and are not convex, were cut into fans.
+    CrossedPolygons {
+        /// How many.
+        count: u64,
+    },
     /// A material reflected as much light as it gets, or more: its reflectance was set to [`MAX_REFLECTANCE`].
     ClampedReflectance {
         /// Name of the material.
@@ -89,6 +95,12 @@ impl fmt::Display for Warning {
         match self {
             Self::DroppedTriangles { count } => {
                 write!(f, "{count} triangles without an area or with infinite coordinates were left out")
+            }
+            Self::CrossedPolygons { count } => {
+                write!(
+                    f,
+                    "{count} polygons cross themselves, or have too many corners for another way, and were cut from their first corner"
+                )
             }
             Self::ClampedReflectance { material, asked } => write!(
                 f,
@@ -135,6 +147,9 @@ pub struct SceneBuilder {
     /// Numbers of the groups by name: from 1, since number 0 has no name.
     groups: HashMap<String, GroupId>,
     group: u32,
+    /// Polygons that cross themselves.
+    crossed: u64,
+    appearance: Appearance,
     warnings: Vec<Warning>,
 }
 
@@ -155,6 +170,12 @@ impl SceneBuilder {
     pub fn add_material(&mut self, material: Material) -> MaterialId {
         self.materials.push(material);
         MaterialId::new(self.materials.len() - 1)
+    }
+
+    /// Adds an image for the maps of materials.
+    pub fn add_texture(&mut self, texture: Texture) -> TextureId {
+        self.appearance.textures.push(texture);
+        TextureId::new(self.appearance.textures.len() - 1)
     }
 
     /// Adds a camera.
@@ -187,11 +208,17 @@ impl SceneBuilder {
         group
     }
 
-    /// Adds a polygon, counter-clockwise seen from its front. It is cut into the fan of triangles
-    /// `(0, 1, 2), (0, 2, 3), …`; with fewer than three corners it adds nothing.
+    /// Adds a polygon, counter-clockwise seen from its front; with fewer than three corners it adds nothing. It is cut into the fan of
+    /// triangles `(0, 1, 2), (0, 2, 3), …` if that is right, as it is for convex ones, else into as many others. One that crosses
+    /// itself, or has more than 4,096 corners, is cut into the fan with a warning.
     pub fn add_polygon(&mut self, corners: &[VertexId], material: MaterialId) -> FaceId {
-        let fan: Vec<_> = (2..corners.len()).map(|i| [corners[0], corners[i - 1], corners[i]]).collect();
-        self.add_face(&fan, material)
+        // Vertices that were not added are an error when the scene is built.
+        let places: Option<Vec<DVec3>> =
+            corners.iter().map(|v| self.vertices.get(v.index()).copied()).collect();
+        let cut = polygon::cut(&places.unwrap_or_else(|| vec![DVec3::ZERO; corners.len()]));
+        self.crossed += u64::from(!cut.right);
+        let triangles: Vec<_> = cut.triangles.iter().map(|t| t.map(|i| corners[i])).collect();
+        self.add_face(&triangles, material)
     }
 
     /// Adds triangles that belong together, counter-clockwise seen from their fronts.
@@ -201,9 +228,43 @@ impl SceneBuilder {
         for &vertices in triangles {
             let source = self.triangles.len() as u32;
             let group = GroupId(self.group);
-            self.triangles.push(Triangle { vertices, material, face, group, source });
+            let corners = Corners::PLAIN;
+            self.triangles.push(Triangle { vertices, material, face, group, source, corners });
         }
         face
+    }
+
+    /// Gives the triangle that was added last what varies over it, corner by corner: as many sets of texture coordinates as the maps
+    /// of its material use ([`Material::coordinate_sets`]), and a colour with opacity that multiplies those of the
+    /// material. Coordinates that are not finite are ignored, and the triangle has the mean colour of its texture.
+    pub fn set_corners(&mut self, coordinates: &[[Vec2; 3]], tint: Option<[Vec4; 3]>) {
+        if let Some(triangle) = self.triangles.last_mut() {
+            let tint = tint.filter(|tint| tint.iter().all(|corner| corner.is_finite()));
+            triangle.corners = self.appearance.add(coordinates, tint);
+        }
+    }
+
+    /// [`set_corners`](Self::set_corners) for all triangles of the polygon that was added last and has these `corners`: each set of
+    /// coordinates has one place for each of them, the tint one colour.
+    pub fn set_polygon_corners(
+        &mut self,
+        corners: &[VertexId],
+        coordinates: &[&[Vec2]],
+        tint: Option<&[Vec4]>,
+    ) {
+        // Polygons of many corners must not take the square of their number.
+        let numbers: HashMap<VertexId, usize> =
+            corners.iter().enumerate().rev().map(|(i, &vertex)| (vertex, i)).collect();
+        let last = self.faces.checked_sub(1);
+        let triangles = self.triangles.iter_mut().rev().take_while(|t| Some(t.face.0) == last);
+        for triangle in triangles {
+            let [Some(a), Some(b), Some(c)] = triangle.vertices.map(|v| numbers.get(&v).copied()) else {
+                continue;
+            };
+            let sets: Vec<[Vec2; 3]> = coordinates.iter().map(|set| [a, b, c].map(|i| set[i])).collect();
+            let tint = tint.map(|tint| [a, b, c].map(|i| tint[i]));
+            triangle.corners = self.appearance.add(&sets, tint.filter(|t| t.iter().all(|c| c.is_finite())));
+        }
     }
 
     /// Checks everything, welds equal vertices, drops triangles without an area and clamps reflectances.
@@ -216,6 +277,9 @@ impl SceneBuilder {
         self.check_indices()?;
         self.check_materials()?;
         self.check_lights()?;
+        if self.crossed > 0 {
+            self.warnings.push(Warning::CrossedPolygons { count: self.crossed });
+        }
         self.drop_degenerate_triangles();
         if self.triangles.is_empty() {
             let dropped = self.warnings.iter().map(|w| match w {
@@ -241,6 +305,7 @@ impl SceneBuilder {
             cameras: self.cameras,
             lights: self.lights,
             sky: self.sky,
+            appearance: self.appearance.into(),
             bounding_box,
             bounding_sphere,
         };
@@ -279,7 +344,14 @@ impl SceneBuilder {
 
     fn check_materials(&mut self) -> Result<(), SceneError> {
         for m in &mut self.materials {
-            for (what, value) in [("reflectance", m.reflectance), ("exitance", m.exitance)] {
+            let factor = |map: &Option<ColourMap>| map.map_or(Rgb::ZERO, |map| map.factor);
+            for (what, value) in [
+                ("reflectance", m.reflectance),
+                ("exitance", m.exitance),
+                ("reflectance", factor(&m.reflectance_map)),
+                ("exitance", factor(&m.exitance_map)),
+                ("opacity", Rgb::splat(m.opacity.factor)),
+            ] {
                 if !value.is_finite() || value.min_element() < 0.0 {
                     return Err(SceneError::BadMaterial { name: m.name.clone(), what, value });
                 }
@@ -312,7 +384,7 @@ impl SceneBuilder {
             let longest = ab.length_squared().max(bc.length_squared()).max(ca.length_squared());
             let doubled_area = ab.cross(ca).length();
             // Also false for NaN and infinite coordinates.
-            doubled_area.is_finite() && doubled_area > 1e-12 * longest
+            doubled_area.is_finite() && doubled_area > polygon::FLAT * longest
         });
         let count = (before - self.triangles.len()) as u64;
         if count > 0 {

@@ -2,7 +2,7 @@
 //!
 //! # Design
 //!
-//! A light-transport solver asks little of a scene: flat triangles, one diffuse material each, and the
+//! A light-transport solver asks little of a scene: flat triangles, one diffuse material each, textures that vary it, and the
 //! knowledge of which side of a triangle is its *front*. [`Scene`] holds exactly that, in double precision
 //! and in world space, with the node trees and file formats already resolved. It is immutable: a scene is
 //! put together by a [`SceneBuilder`], which is the one place where geometry is checked, so that every later
@@ -38,6 +38,7 @@
 //! # Ok::<(), sir_geom::SceneError>(())
 //! ```
 
+mod appearance;
 mod bounds;
 mod builder;
 mod camera;
@@ -47,10 +48,13 @@ mod light;
 mod line;
 mod load;
 mod material;
+mod polygon;
 mod scene;
 pub mod shapes;
 mod sky;
+mod texture;
 
+pub use appearance::Opacities;
 pub use bounds::{BoundingBox, BoundingSphere};
 pub use builder::{Built, SceneBuilder, SceneError, Warning};
 pub use camera::{Camera, Projection};
@@ -59,9 +63,10 @@ pub use index::{FaceId, GroupId, MaterialId, TriangleId, VertexId};
 pub use light::{Arrival, Light, LightKind, Spread};
 pub use line::{Barycentric, Line};
 pub use load::{LoadError, LoadOptions, SidesPolicy, load, load_with};
-pub use material::{MAX_REFLECTANCE, Material, Sides};
+pub use material::{MAX_REFLECTANCE, Material, Opacity, Sides};
 pub use scene::{Scene, Side, Triangle};
 pub use sky::{Sky, SkyModel};
+pub use texture::{ColourMap, Texture, TextureId, TextureMap, TextureMean, TextureSums, Wrap};
 
 /// A colour or a spectral quantity in three bands: linear Rec. 709 red, green and blue.
 ///

@@ -1,6 +1,10 @@
 //! The scene: what light can meet.
 
+use std::sync::Arc;
+
 use glam::DVec3;
+
+use crate::appearance::{Appearance, Corners};
 
 use crate::{
     BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Light, Material, MaterialId, Sides, Sky,
@@ -41,6 +45,8 @@ pub struct Triangle {
     pub group: GroupId,
     /// Its number, from 0, among all triangles of the file in file order, those that were dropped included.
     pub source: u32,
+    /// What varies over it.
+    pub(crate) corners: Corners,
 }
 
 /// Triangles, materials, lights and cameras in world space.
@@ -57,6 +63,7 @@ pub struct Scene {
     pub(crate) lights: Vec<Light>,
     pub(crate) sky: Option<Sky>,
     pub(crate) groups: Vec<String>,
+    pub(crate) appearance: Arc<Appearance>,
     pub(crate) bounding_box: BoundingBox,
     pub(crate) bounding_sphere: BoundingSphere,
 }
@@ -155,7 +162,7 @@ impl Scene {
         side == Side::Front || self.material(id).sides == Sides::Both
     }
 
-    /// Emitted exitance `M` \[W/m²\] of a side of a triangle.
+    /// Emitted exitance `M` \[W/m²\] of a side of a triangle; with a texture, its mean over the image.
     #[must_use]
     pub fn exitance(&self, id: TriangleId, side: Side) -> crate::Rgb {
         let material = self.material(id);

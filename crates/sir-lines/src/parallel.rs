@@ -24,6 +24,12 @@ impl ParallelLines {
         Self { bounds, direction, areas: bounds.face_areas() * direction.abs() }
     }
 
+    /// The box that they meet.
+    #[must_use]
+    pub fn bounds(&self) -> BoundingBox {
+        self.bounds
+    }
+
     /// Their direction, of unit length.
     #[must_use]
     pub fn direction(&self) -> DVec3 {

@@ -10,6 +10,9 @@
 //! Power lives on *sides* ([`SideId`]): a patch of a one-sided triangle has one, of a two-sided triangle two.
 //! The sides of one triangle are consecutive numbers.
 //!
+//! Where a texture lies on a triangle, each of its patches has its own reflectance, exitance and covered share: the means over its
+//! area.
+//!
 //! Instead of cutting, [`Subdivision::PerFace`] makes one patch of all triangles of a flat polygon, as the classic
 //! radiosity systems with one element per rectangle have it.
 //!
@@ -36,6 +39,7 @@
 
 mod barycentric;
 mod divisions;
+mod paint;
 mod patches;
 
 pub use divisions::Subdivision;

@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use sir_geom::{Barycentric, FaceId, Scene, Side, Sides, TriangleId, typed_index};
+use sir_geom::{Barycentric, FaceId, Rgb, Scene, Side, Sides, TriangleId, typed_index};
 use thiserror::Error;
 
 use crate::barycentric;
 use crate::divisions::Subdivision;
+use crate::paint::Paint;
 
 typed_index!(
     /// A patch of a [`PatchMesh`].
@@ -62,7 +63,7 @@ struct Patches {
     area: f64,
 }
 
-/// All patches of a scene. Uses 28 bytes per *triangle* and nothing per patch.
+/// All patches of a scene. Uses 28 bytes per *triangle*, and nothing per patch but where it has a texture.
 #[derive(Clone, Debug)]
 pub struct PatchMesh {
     cuts: Vec<Cut>,
@@ -71,6 +72,7 @@ pub struct PatchMesh {
     owners: Vec<TriangleId>,
     patches: u32,
     sides: u32,
+    paint: Paint,
 }
 
 impl PatchMesh {
@@ -87,6 +89,7 @@ impl PatchMesh {
             owners: scene.triangle_ids().collect(),
             patches: 0,
             sides: 0,
+            paint: Paint::default(),
         };
         for (t, &n) in scene.triangle_ids().zip(&divisions) {
             let per_triangle = n.checked_mul(n).ok_or(MeshError::TooMany)?;
@@ -106,6 +109,7 @@ impl PatchMesh {
         if subdivision == Subdivision::PerFace {
             mesh.merge_faces(scene);
         }
+        mesh.paint = Paint::new(scene, &mesh);
         Ok(mesh)
     }
 
@@ -160,11 +164,73 @@ impl PatchMesh {
         self.cuts[triangle.index()].divisions()
     }
 
-    /// Area of each patch of a triangle; of a merged face, the area of the whole face.
+    /// Area of each patch of a triangle, its gaps included; of a merged face, the area of the whole face.
     #[inline]
     #[must_use]
     pub fn patch_area(&self, triangle: TriangleId) -> f64 {
         self.patches_of[triangle.index()].area
+    }
+
+    /// Area of a patch that stops light: that of the patch without its gaps. It may be zero.
+    #[inline]
+    #[must_use]
+    pub fn covered_area(&self, triangle: TriangleId, patch: PatchId) -> f64 {
+        let Patches { first, area } = self.patches_of[triangle.index()];
+        area * self.paint.coverage(triangle, patch.0 - first)
+    }
+
+    /// Area of a triangle that stops light.
+    #[must_use]
+    pub fn covered_area_of(&self, scene: &Scene, triangle: TriangleId) -> f64 {
+        let area = scene.area(triangle);
+        if !self.is_varied(triangle) {
+            return area;
+        }
+        let (patches, all) = (self.patches_of(triangle), self.patch_area(triangle));
+        // A face that is one patch has several triangles.
+        let part = area / (patches.len() as f64 * all);
+        patches.map(|patch| part * self.covered_area(triangle, PatchId(patch))).sum()
+    }
+
+    /// Diffuse reflectance of a patch per band, in `[0, 1)`: with a texture, the mean over the covered area.
+    ///
+    /// `scene` must be the one that the patches were made of, here and in the functions below.
+    #[inline]
+    #[must_use]
+    pub fn reflectance(&self, scene: &Scene, triangle: TriangleId, patch: PatchId) -> Rgb {
+        let within = patch.0 - self.patches_of[triangle.index()].first;
+        let own = self.paint.reflectance(triangle, within);
+        own.unwrap_or_else(|| scene.material(triangle).reflectance)
+    }
+
+    /// Emitted exitance `M` \[W/m²\] of a side of a patch: with a texture, the mean over the covered area.
+    #[inline]
+    #[must_use]
+    pub fn exitance(&self, scene: &Scene, triangle: TriangleId, patch: PatchId, side: Side) -> Rgb {
+        let of_triangle = scene.exitance(triangle, side);
+        let within = patch.0 - self.patches_of[triangle.index()].first;
+        let own = self.paint.exitance(triangle, within).filter(|_| of_triangle != Rgb::ZERO);
+        own.unwrap_or(of_triangle)
+    }
+
+    /// The largest reflectance of a patch in any band.
+    #[must_use]
+    pub fn largest_reflectance(&self, scene: &Scene) -> f64 {
+        let plain = scene.materials().iter().map(|m| m.reflectance.max_element());
+        plain.fold(self.paint.brightest(), f64::max)
+    }
+
+    /// Whether patches of a triangle may differ in reflectance, exitance or covered area.
+    #[inline]
+    #[must_use]
+    pub fn is_varied(&self, triangle: TriangleId) -> bool {
+        self.paint.is_painted(triangle)
+    }
+
+    /// Memory in use for what differs from patch to patch \[bytes\].
+    #[must_use]
+    pub fn paint_bytes(&self) -> usize {
+        self.paint.bytes()
     }
 
     /// The patch of a triangle in which a point lies.
@@ -186,6 +252,14 @@ impl PatchMesh {
             Side::Back if cut.sides == 2 => Some(SideId(cut.first_side + within + 1)),
             Side::Back => None,
         }
+    }
+
+    /// The patch of a triangle to which a side belongs.
+    #[inline]
+    #[must_use]
+    pub fn patch_of_side(&self, triangle: TriangleId, side: SideId) -> PatchId {
+        let cut = self.cuts[triangle.index()];
+        PatchId(self.patches_of[triangle.index()].first + (side.0 - cut.first_side) / cut.sides())
     }
 
     /// The given side of the patch in which a point of a triangle lies.
@@ -237,7 +311,7 @@ impl PatchMesh {
     }
 
     /// The active sides whose numbers lie in `sides`, in order: a triangle and the consecutive numbers of sides of
-    /// its patches, all of the same area and material.
+    /// its patches, all of the same material and, gaps included, of the same area.
     pub fn sides_within(&self, sides: Range<u32>) -> impl Iterator<Item = (TriangleId, Range<u32>)> {
         let of = |triangle: TriangleId| {
             let (cut, n) = (self.cuts[triangle.index()], self.divisions(triangle));

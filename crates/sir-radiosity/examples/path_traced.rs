@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let paths: u64 = paths.parse()?;
     let wanted: Vec<u32> = arguments.map(|number| number.parse()).collect::<Result<_, _>>()?;
     let model = Model::new(load(Path::new(&path), &LoadOptions::default())?.scene, Subdivision::PerTriangle)?;
-    let sources = sources(&model.scene);
+    let sources = sources(&model.scene, &model.mesh);
     if sources.iter().any(|source| !matches!(source.emitter, Emitter::Surface { .. })) {
         return Err("the scene has lights that are no surfaces, which this example does not know".into());
     }
@@ -165,7 +165,7 @@ fn wave(
         let mut reflected = Vec::new();
         for (mut walk, hit) in walks.into_iter().zip(hits) {
             let Some(hit) = hit.filter(|hit| model.scene.is_active(hit.triangle, hit.side)) else { continue };
-            let reflectance = model.scene.material(hit.triangle).reflectance;
+            let reflectance = model.scene.reflectance_at(hit.triangle, hit.point);
             // Russian roulette with the largest band.
             let survival = reflectance.max_element();
             if walk.stream.unit() < survival {

@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     multipath.trace(0, &mut multipath.replica(0), lines, &mut books);
     let done = multipath.finish(books)?;
 
-    let power: f64 = sources(&model.scene).iter().map(|s| s.power.x).sum();
+    let power: f64 = sources(&model.scene, &model.mesh).iter().map(|s| s.power.x).sum();
     let exact = power / (model.scene.total_area() * (1.0 - reflectance));
     let sides = model.mesh.side_count() as f64;
     let mean = done.solution.irradiance.iter().map(|e| e.x).sum::<f64>() / sides;

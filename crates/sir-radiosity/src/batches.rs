@@ -213,12 +213,12 @@ impl<'m> Batches<'m> {
         let forecast = through.forecast(lines);
         let (mut area, mut square, mut most, mut brightest) = (0.0, 0.0, 0.0, [0.0; 3]);
         model.mesh.for_each_side(|triangle, _, _, side| {
-            let reflectance = model.scene.material(triangle).reflectance;
+            let reflectance = model.reflectance(triangle, side);
             let unshot = unshot[side.index()];
             let is_inside = inside.has(side);
             source.add(unshot, is_inside);
             accounts.push(Account { unshot, noted: unshot.0.map(|q| q as f32), ..Account::default() });
-            let a = model.mesh.patch_area(triangle);
+            let a = model.area(triangle, side);
             let crossings = forecast.crossings(a);
             let weight = if is_inside { 1.0 } else { f64::from(through.weight()) };
             if is_inside || inside.is_empty() {
@@ -229,6 +229,7 @@ impl<'m> Batches<'m> {
             for band in 0..3 {
                 // All light that a side reflects, if what it sees is as bright, over all its crossings.
                 let share = weight * (unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings);
+                // Not a number, and not counted, for a patch that is all gap.
                 brightest[band] = f64::max(brightest[band], share);
             }
         });
@@ -352,15 +353,16 @@ impl<'m> Batches<'m> {
         }
         let (forecast, stretches) =
             (lines.forecast(plan.lines), [false, true].map(|inside| plan.stretch(inside)));
-        let factor =
-            |account: &Account, triangle| account.factor(forecast.crossings(model.mesh.patch_area(triangle)));
+        let factor = |account: &Account, triangle, side| {
+            account.factor(forecast.crossings(model.area(triangle, side)))
+        };
         let (mut plain, mut corrected) = ([0.0; 3], [0.0; 3]);
         model.mesh.for_each_side(|triangle, _, _, side| {
             if !inside.has(side) {
                 return;
             }
             let (account, [_, stretch]) = (&accounts[side.index()], stretches);
-            let factor = factor(account, triangle);
+            let factor = factor(account, triangle, side);
             for band in 0..3 {
                 let [_, _, power] = account.stretched(band, stretch[band]);
                 plain[band] += power;
@@ -374,7 +376,7 @@ impl<'m> Batches<'m> {
             let (account, squares) = (&accounts[side.index()], ledger.squares(side));
             // Where lines have different weights, they are not corrected.
             let is_inside = inside.has(side);
-            let factor = if is_inside { factor(account, triangle) } else { 1.0 };
+            let factor = if is_inside { factor(account, triangle, side) } else { 1.0 };
             let stretch = stretches[usize::from(is_inside)];
             let (power, variance) = (&mut power[side.index()], &mut variance[side.index()]);
             let mut sum = Quanta::ZERO;
@@ -526,16 +528,12 @@ impl<'a> Part<'a> {
         let withheld = self.plan.withheld();
         let ceased = self.plan.number == self.plan.parts;
         for (triangle, sides) in self.sides() {
-            let expected = forecast.crossings(self.model.mesh.patch_area(triangle));
-            let lines_of = |weight: f64| {
-                let expected = expected / weight;
-                weight * (expected + 1.0 + expected.sqrt() * expected.min(1.0))
-            };
-            let both = [lines_of(heavy), lines_of(1.0)];
             for i in sides {
+                let weight = if self.inside.has(SideId(i)) { 1.0 } else { heavy };
+                let expected = forecast.crossings(self.model.area(triangle, SideId(i))) / weight;
+                let lines = weight * (expected + 1.0 + expected.sqrt() * expected.min(1.0));
                 let k = (i - self.first) as usize;
                 let account = &mut self.accounts[k];
-                let lines = both[usize::from(self.inside.has(SideId(i)))];
                 if ceased {
                     account.noted = account.brought.0.map(|q| q as f32);
                 }
@@ -550,9 +548,9 @@ impl<'a> Part<'a> {
     pub fn close(&mut self) -> Totals {
         let mut totals = Totals::default();
         for (triangle, sides) in self.sides() {
-            let reflectance = self.model.scene.material(triangle).reflectance;
             for i in sides {
                 let side = SideId(i);
+                let reflectance = self.model.reflectance(triangle, side);
                 let (power, crossings) = self.ledger.take(side);
                 let sent = self.ledger.share(side).times(i64::from(crossings));
                 let reflected = power.scaled(reflectance);

@@ -4,10 +4,11 @@
 
 use glam::DVec3;
 use sir_accel::Ray;
-use sir_geom::{BoundingBox, Line, Scene, Side, Sky, Spread, TriangleId};
+use sir_geom::{Barycentric, BoundingBox, Line, Scene, Side, Sky, Spread, TriangleId};
 use sir_lines::{
     Domain, ParallelLines, Stream, cosine_direction, point_on_triangle, spot_direction, unit_vector,
 };
+use sir_mesh::PatchId;
 
 /// What a source is.
 ///
@@ -20,6 +21,8 @@ pub enum Emitter {
     Surface {
         /// The triangle.
         triangle: TriangleId,
+        /// The patch of it; `None` for all of it.
+        patch: Option<PatchId>,
         /// Which side of it.
         side: Side,
         /// Corners of the part that emits.
@@ -65,7 +68,7 @@ impl Emitter {
     pub(crate) fn ray(&self, scene: &Scene, stream: &mut Stream) -> Ray {
         match self {
             Self::Surface { triangle, corners, normal, .. } => {
-                let origin = point_on_triangle(stream).point(*corners);
+                let origin = point_on_surface(scene, *triangle, *corners, stream);
                 let line = Line { origin, direction: cosine_direction(*normal, stream) };
                 Ray { line, leaving: Some(*triangle) }
             }
@@ -80,7 +83,7 @@ impl Emitter {
             Self::Distant { lines, around } => loop {
                 let line = lines.sample(stream);
                 if !around.is_some_and(|bounds| bounds.meets(&line)) {
-                    break from_outside(scene, line);
+                    break from_outside(scene, lines.bounds(), line);
                 }
             },
             Self::Dome(opening) => from_sky(scene, opening, stream, Sky::share),
@@ -89,6 +92,29 @@ impl Emitter {
             }),
         }
     }
+}
+
+/// How often a point is drawn anew that lies in a gap.
+const TRIES: u32 = 1000;
+
+/// A uniform random point of what a part of a triangle covers.
+pub(crate) fn point_on_surface(
+    scene: &Scene,
+    triangle: TriangleId,
+    part: [DVec3; 3],
+    stream: &mut Stream,
+) -> DVec3 {
+    let mut point = point_on_triangle(stream).point(part);
+    if scene.lets_light_through(triangle) {
+        let corners = scene.corners(triangle);
+        for _ in 0..TRIES {
+            if stream.unit() < scene.opacity_at(triangle, Barycentric::of(point, corners)) {
+                break;
+            }
+            point = point_on_triangle(stream).point(part);
+        }
+    }
+    point
 }
 
 /// A ray from the sky: a uniform one through an opening that was kept with the probability `share`.
@@ -106,16 +132,22 @@ fn from_sky(
         }
         // Only a scene with a sky has such sources.
         if scene.sky().is_none_or(|sky| stream.unit() < share(sky, -line.direction)) {
-            break from_outside(scene, line);
+            break from_outside(scene, opening.through, line);
         }
     }
 }
 
-/// The ray of a line through the box of the scene, or a part of it.
-fn from_outside(scene: &Scene, line: Line) -> Ray {
+/// The ray of a line that begins where it enters a box: that of the scene, or one in it.
+fn from_outside(scene: &Scene, through: BoundingBox, line: Line) -> Ray {
     let bounds = scene.bounding_box();
-    // How far it is back to where the line has entered the box: nothing, if it begins there.
-    let entry = |axis: usize| {
+    let entry = if through == bounds { 0.0 } else { entry(bounds, &line) };
+    let back = entry + OUTSIDE * scene.bounding_sphere().radius;
+    Line { origin: line.origin - back * line.direction, ..line }.into()
+}
+
+/// How far it is from a point in a box back to where its line has entered the box.
+fn entry(bounds: BoundingBox, line: &Line) -> f64 {
+    let of = |axis: usize| {
         let (to_min, to_max) = (line.origin[axis] - bounds.min[axis], line.origin[axis] - bounds.max[axis]);
         match line.direction[axis] {
             d if d > 0.0 => to_min / d,
@@ -123,7 +155,5 @@ fn from_outside(scene: &Scene, line: Line) -> Ray {
             _ => f64::INFINITY,
         }
     };
-    let entry = entry(0).min(entry(1)).min(entry(2)).max(0.0);
-    let back = entry + OUTSIDE * scene.bounding_sphere().radius;
-    Line { origin: line.origin - back * line.direction, ..line }.into()
+    of(0).min(of(1)).min(of(2)).max(0.0)
 }

@@ -63,7 +63,7 @@ impl Shot {
     pub fn unshot(&self, model: &Model) -> Vec<Quanta> {
         let mut unshot = Vec::with_capacity(model.mesh.side_count());
         model.mesh.for_each_side(|triangle, _, _, side| {
-            let reflectance = model.scene.material(triangle).reflectance;
+            let reflectance = model.reflectance(triangle, side);
             unshot.push(self.received.power[side.index()].scaled(reflectance));
         });
         for &(side, sent) in &self.sent {
@@ -112,13 +112,13 @@ impl<'m> FirstShot<'m> {
     /// If nothing emits.
     pub fn new(model: &'m Model, lines: impl Into<LocalLines>, seed: u64) -> Result<Self, SolveError> {
         let LocalLines { count: lines, focus } = lines.into();
-        let sources = Aimed::new(&model.scene, focus.as_ref());
+        let sources = Aimed::new(model, focus.as_ref());
         let total = sources.sources.iter().fold(Rgb::ZERO, |sum, s| sum + s.power);
         if total.max_element() <= 0.0 {
             return Err(SolveError::NoLight);
         }
-        let reflectance = model.scene.materials().iter().map(|m| m.reflectance.max_element());
-        let unit = PowerUnit::for_total(total.max_element(), reflectance.fold(0.0, f64::max));
+        let reflectance = model.mesh.largest_reflectance(&model.scene);
+        let unit = PowerUnit::for_total(total.max_element(), reflectance);
         Ok(Self::of(model, sources, unit, lines, seed, Stage::FIRST_SHOT))
     }
 
@@ -246,7 +246,7 @@ impl<'m> FirstShot<'m> {
         let lines = counts.lines.max(1) as f64;
         self.model.mesh.for_each_side(|triangle, _, _, side| {
             let power = tally.ledger.power(side);
-            let reflected = power.scaled(self.model.scene.material(triangle).reflectance);
+            let reflected = power.scaled(self.model.reflectance(triangle, side));
             balance.unshot += reflected;
             balance.absorbed += power - reflected;
             received.power[side.index()] += power;

@@ -1,6 +1,7 @@
 //! Groups of surfaces between which view factors are asked for.
 
 use sir_geom::{Scene, Side, Triangle, TriangleId};
+use sir_mesh::PatchMesh;
 
 /// Which group each triangle of a scene is in. Every group has a triangle, hence an area.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,21 +64,22 @@ impl Grouping {
         self.of[triangle.index()] as usize
     }
 
-    /// Areas of the groups, in the square of the scene's unit of length. Of a two-sided surface both sides count.
+    /// Areas of the groups, in the square of the scene's unit of length. Of a two-sided surface both sides count, of one with gaps
+    /// what is covered.
     #[must_use]
-    pub fn areas(&self, scene: &Scene) -> Vec<f64> {
+    pub fn areas(&self, scene: &Scene, mesh: &PatchMesh) -> Vec<f64> {
         let mut areas = vec![0.0; self.names.len()];
         for triangle in scene.triangle_ids() {
-            areas[self.group_of(triangle)] += active_area(scene, triangle);
+            areas[self.group_of(triangle)] += active_area(scene, mesh, triangle);
         }
         areas
     }
 }
 
-/// Area of a triangle, counted for each of its active sides.
-pub(crate) fn active_area(scene: &Scene, triangle: TriangleId) -> f64 {
+/// Area of a triangle that stops light, counted for each of its active sides.
+pub(crate) fn active_area(scene: &Scene, mesh: &PatchMesh, triangle: TriangleId) -> f64 {
     let sides = [Side::Front, Side::Back].into_iter().filter(|&side| scene.is_active(triangle, side)).count();
-    sides as f64 * scene.area(triangle)
+    sides as f64 * mesh.covered_area_of(scene, triangle)
 }
 
 #[cfg(test)]
@@ -85,6 +87,7 @@ mod tests {
     use super::*;
     use glam::DVec3;
     use sir_geom::{Material, Rgb, SceneBuilder, Sides};
+    use sir_mesh::Subdivision;
 
     #[test]
     fn groups_have_triangles_and_both_sides_count() {
@@ -99,12 +102,13 @@ mod tests {
             b.add_polygon(&corners, material);
         }
         let scene = b.build().unwrap().scene;
+        let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
         let materials = Grouping::by_material(&scene);
         assert_eq!(materials.names(), ["one", "both"]);
-        assert_eq!(materials.areas(&scene), [1.0, 1.0]);
+        assert_eq!(materials.areas(&scene, &mesh), [1.0, 1.0]);
         let parts = Grouping::by_part(&scene);
         assert_eq!(parts.names(), ["", "part", "other"]);
-        assert_eq!(parts.areas(&scene), [1.0, 0.5, 0.5]);
+        assert_eq!(parts.areas(&scene, &mesh), [1.0, 0.5, 0.5]);
         assert!(scene.triangle_ids().map(|t| parts.group_of(t)).eq(0..3));
     }
 }

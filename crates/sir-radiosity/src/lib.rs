@@ -96,7 +96,7 @@ pub use second_shot::SecondShot;
 pub use segments::{End, Segment, Segments};
 pub use sensors::{LIFT, Measurement, REPLICATIONS, Sensor, SensorSettings, Sensors};
 pub use solution::Solution;
-pub use sources::{Source, sources};
+pub use sources::{Source, emits, sources};
 pub use state::Visitor;
 pub use view_factors::{
     Accuracy, Closed, ClosureError, MAX_GROUPS, Receiver, Residual, Share, ViewFactorLines,

@@ -2,7 +2,7 @@
 
 use sir_accel::Accel;
 use sir_geom::{Rgb, Scene, Side, TriangleId};
-use sir_mesh::{MeshError, PatchMesh, Subdivision};
+use sir_mesh::{MeshError, PatchId, PatchMesh, SideId, Subdivision};
 
 /// A scene, cut into patches and ready for lines. Immutable, and shared by all who trace.
 #[derive(Clone, Debug)]
@@ -27,9 +27,38 @@ impl Model {
         Ok(Self { scene, mesh, accel })
     }
 
-    /// The radiosity `B = M + ρ E` \[W/m²\] of a side of a triangle under the irradiance `E` \[W/m²\].
+    /// Reflectance of the patch to which a side belongs; `id` must be a side of a patch of `triangle`, here and in the functions below.
+    #[inline]
     #[must_use]
-    pub fn radiosity(&self, triangle: TriangleId, side: Side, irradiance: Rgb) -> Rgb {
-        self.scene.exitance(triangle, side) + self.scene.material(triangle).reflectance * irradiance
+    pub fn reflectance(&self, triangle: TriangleId, id: SideId) -> Rgb {
+        if self.mesh.is_varied(triangle) {
+            self.mesh.reflectance(&self.scene, triangle, self.mesh.patch_of_side(triangle, id))
+        } else {
+            self.scene.material(triangle).reflectance
+        }
+    }
+
+    /// Area of the patch to which a side belongs, without its gaps: what power is divided by. It may be zero.
+    #[inline]
+    #[must_use]
+    pub fn area(&self, triangle: TriangleId, id: SideId) -> f64 {
+        if self.mesh.is_varied(triangle) {
+            self.mesh.covered_area(triangle, self.mesh.patch_of_side(triangle, id))
+        } else {
+            self.mesh.patch_area(triangle)
+        }
+    }
+
+    /// The exitance `M` \[W/m²\] of a side of a patch.
+    #[must_use]
+    pub fn exitance(&self, triangle: TriangleId, patch: PatchId, side: Side) -> Rgb {
+        self.mesh.exitance(&self.scene, triangle, patch, side)
+    }
+
+    /// The radiosity `B = M + ρ E` \[W/m²\] under the irradiance `E` \[W/m²\]; `side` must be the one with the number `id`.
+    #[must_use]
+    pub fn radiosity(&self, triangle: TriangleId, side: Side, id: SideId, irradiance: Rgb) -> Rgb {
+        let patch = self.mesh.patch_of_side(triangle, id);
+        self.exitance(triangle, patch, side) + self.reflectance(triangle, id) * irradiance
     }
 }

@@ -120,9 +120,10 @@ impl<'m> Multipath<'m> {
         let mut shares = Vec::with_capacity(model.mesh.side_count());
         let (mut largest, mut most) = ([0.0; 3], 0.0);
         model.mesh.for_each_side(|triangle, _, _, side| {
-            let reflectance = model.scene.material(triangle).reflectance;
-            let crossings = forecast.crossings(model.mesh.patch_area(triangle));
-            let share = unshot[side.index()].0.map(|q| q as f64 / crossings);
+            let reflectance = model.reflectance(triangle, side);
+            let crossings = forecast.crossings(model.area(triangle, side));
+            // A patch that is all gap holds nothing.
+            let share = unshot[side.index()].0.map(|q| if q == 0 { 0.0 } else { q as f64 / crossings });
             for band in 0..3 {
                 largest[band] = f64::max(largest[band], share[band] / (1.0 - reflectance[band]));
             }
@@ -260,7 +261,7 @@ fn give(
     power: Quanta,
 ) {
     page.give(side, power);
-    let reflected = power.scaled(model.scene.material(triangle).reflectance);
+    let reflected = power.scaled(model.reflectance(triangle, side));
     unshot[side.index()] += reflected;
     balance.absorbed += power - reflected;
 }

@@ -29,7 +29,7 @@ impl<'m> SecondShot<'m> {
         let LocalLines { count: lines, focus } = lines.into();
         let unshot = shot.unshot(model);
         let total = shot.balance.emitted.total() * lines as f64 / shot.counts.lines.max(1) as f64;
-        let share = focus.map_or(1.0, |focus| Aimed::new(&model.scene, Some(&focus)).inner_share());
+        let share = focus.map_or(1.0, |focus| Aimed::new(model, Some(&focus)).inner_share());
         let bright = brightest(model, &unshot, &Inside::of(model, focus.as_ref()), total * share);
         let (mut sources, mut sides) = (Vec::new(), Vec::new());
         for triangle in model.scene.triangle_ids() {
@@ -43,7 +43,8 @@ impl<'m> SecondShot<'m> {
                     if bright[id.index()] {
                         let corners = model.mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
                         let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
-                        let emitter = Emitter::Surface { triangle, side, corners, normal };
+                        let emitter =
+                            Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
                         sources.push(Source { emitter, power });
                         sides.push(id);
                     }
@@ -87,7 +88,7 @@ fn brightest(model: &Model, unshot: &[Quanta], inside: &Inside, total: f64) -> V
     model.mesh.for_each_side(|triangle, _, _, side| {
         let power = unshot[side.index()].total();
         if power > 0.0 && inside.has(side) {
-            sides.push((power / model.mesh.patch_area(triangle), power, side));
+            sides.push((power / model.area(triangle, side), power, side));
         }
     });
     sides.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)));

@@ -15,13 +15,15 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Irradiance is received power over area; `unit` is that of the power.
+    /// Irradiance is received power over covered area; `unit` is that of the power.
     #[must_use]
     pub fn new(model: &Model, received: &Received, unit: PowerUnit) -> Self {
         let sides = model.mesh.side_count();
         let mut solution = Self { irradiance: Vec::with_capacity(sides), error: Vec::with_capacity(sides) };
         model.mesh.for_each_side(|triangle, _, _, side| {
-            let per_area = 1.0 / model.mesh.patch_area(triangle);
+            let area = model.area(triangle, side);
+            // No line ends on a patch that is all gap.
+            let per_area = if area > 0.0 { 1.0 / area } else { 0.0 };
             solution.irradiance.push(unit.watts(received.power[side.index()]) * per_area);
             let deviation = received.variance[side.index()].map(|v| f64::from(v).sqrt() * unit.quantum());
             solution.error.push(Rgb::from_array(deviation) * per_area);
@@ -32,12 +34,12 @@ impl Solution {
     /// Radiosity `B = M + ρ E` \[W/m²\]; `side` must be the given side of a patch of `triangle`.
     #[must_use]
     pub fn radiosity(&self, model: &Model, triangle: TriangleId, side: Side, id: SideId) -> Rgb {
-        model.radiosity(triangle, side, self.irradiance[id.index()])
+        model.radiosity(triangle, side, id, self.irradiance[id.index()])
     }
 
     /// Standard error of the radiosity \[W/m²\]; `id` must be a side of a patch of `triangle`.
     #[must_use]
     pub fn standard_error(&self, model: &Model, triangle: TriangleId, id: SideId) -> Rgb {
-        model.scene.material(triangle).reflectance * self.error[id.index()]
+        model.reflectance(triangle, id) * self.error[id.index()]
     }
 }

@@ -2,7 +2,9 @@
 
 use sir_geom::{LightKind, Rgb, Scene, Side};
 use sir_lines::{DENSEST, Focus, ParallelLines};
+use sir_mesh::{PatchId, PatchMesh};
 
+use crate::Model;
 use crate::emitter::{Emitter, Opening};
 
 /// Something that emits.
@@ -14,11 +16,12 @@ pub struct Source {
     pub power: Rgb,
 }
 
-/// All sources of a scene: surfaces in the order of their triangles, front before back, then lights in their order, then the sky and
+/// All sources of a scene: surfaces in the order of their triangles, front before back, patch by patch where a texture makes them
+/// differ (a source is then a patch, evenly bright where it is covered), then lights in their order, then the sky and
 /// its ground.
 #[must_use]
-pub fn sources(scene: &Scene) -> Vec<Source> {
-    let mut sources = surfaces(scene);
+pub fn sources(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
+    let mut sources = surfaces(scene, mesh);
     let bounds = scene.bounding_box();
     for light in scene.lights() {
         sources.push(match light.kind {
@@ -42,19 +45,43 @@ pub fn sources(scene: &Scene) -> Vec<Source> {
     sources
 }
 
-fn surfaces(scene: &Scene) -> Vec<Source> {
+/// Whether anything emits.
+#[must_use]
+pub fn emits(scene: &Scene) -> bool {
+    let has_sky = scene.sky().is_some_and(|sky| {
+        let areas = scene.bounding_box().face_areas();
+        sky.dome_through(areas) + sky.ground_through(areas) != Rgb::ZERO
+    });
+    let lamps = || scene.materials().iter().any(|material| material.exitance != Rgb::ZERO);
+    has_sky || !scene.lights().is_empty() || lamps()
+}
+
+fn surfaces(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
     let mut sources = Vec::new();
     for triangle in scene.triangle_ids() {
         for side in [Side::Front, Side::Back] {
             let exitance = scene.exitance(triangle, side);
-            if exitance != Rgb::ZERO {
-                let normal = match side {
-                    Side::Front => scene.normal(triangle),
-                    Side::Back => -scene.normal(triangle),
-                };
-                let corners = scene.corners(triangle);
-                let emitter = Emitter::Surface { triangle, side, corners, normal };
-                sources.push(Source { emitter, power: exitance * scene.area(triangle) });
+            if exitance == Rgb::ZERO {
+                continue;
+            }
+            let normal = match side {
+                Side::Front => scene.normal(triangle),
+                Side::Back => -scene.normal(triangle),
+            };
+            let (corners, area) = (scene.corners(triangle), scene.area(triangle));
+            if !mesh.is_varied(triangle) {
+                let emitter = Emitter::Surface { triangle, patch: None, side, corners, normal };
+                sources.push(Source { emitter, power: exitance * area });
+                continue;
+            }
+            let patches = mesh.patches_of(triangle);
+            // A face that is one patch has several triangles.
+            let part = area / (patches.len() as f64 * mesh.patch_area(triangle));
+            for patch in patches.map(PatchId) {
+                let corners = mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
+                let emitter = Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
+                let exitance = mesh.exitance(scene, triangle, patch, side);
+                sources.push(Source { emitter, power: exitance * mesh.covered_area(triangle, patch) * part });
             }
         }
     }
@@ -79,8 +106,9 @@ pub(crate) struct Aimed {
 impl Aimed {
     /// The sources of a scene, with so many lines for those in the focus that they have the share of all that it asks for. Within both kinds lines
     /// are in proportion to power. Where sources in the focus have that share of the power, all lines are alike.
-    pub(crate) fn new(scene: &Scene, focus: Option<&Focus>) -> Self {
-        let all = sources(scene);
+    pub(crate) fn new(model: &Model, focus: Option<&Focus>) -> Self {
+        let scene = &model.scene;
+        let all = sources(scene, &model.mesh);
         let Some(focus) = focus else { return Self::plain(all) };
         let (mut cut, mut inside) = (Vec::with_capacity(all.len() + 8), Vec::new());
         for source in &all {

@@ -60,7 +60,7 @@ fn of_material(model: &Model, irradiance: &[Rgb], error: &[Rgb], material: usize
     let (mut area, mut sum, mut square) = (0.0, 0.0, 0.0);
     model.mesh.for_each_side(|triangle, _, _, side| {
         if model.scene.triangle(triangle).material.index() == material {
-            let a = model.mesh.patch_area(triangle);
+            let a = model.area(triangle, side);
             area += a;
             sum += a * irradiance[side.index()].x;
             square += (a * error[side.index()].x).powi(2);
@@ -73,7 +73,7 @@ fn of_material(model: &Model, irradiance: &[Rgb], error: &[Rgb], material: usize
 fn sky_and_sun_on_a_square_in_a_field() {
     const LINES: u64 = 100_000;
     let (model, focus, exact) = square();
-    let power: f64 = sources(&model.scene).iter().map(|source| source.power.x).sum();
+    let power: f64 = sources(&model.scene, &model.mesh).iter().map(|source| source.power.x).sum();
     let mut errors = Vec::new();
     for focus in [None, Some(focus)] {
         let (mut squares, mut stated) = (0.0, 0.0);

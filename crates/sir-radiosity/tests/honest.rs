@@ -61,7 +61,8 @@ fn lamp_in_a_sphere() -> Exact {
     let [wall, lamp] = [0.0, 10.0].map(|exitance| b.add_material(grey(exitance, reflectance)));
     shapes::sphere(&mut b, DVec3::ZERO, 1.0, 3, Facing::Inward, |to| if to.z > 0.9 { lamp } else { wall });
     let model = Model::new(scene(b), Subdivision::PerTriangle).unwrap();
-    let power: Rgb = sir_radiosity::sources(&model.scene).iter().map(|source| source.power).sum();
+    let power: Rgb =
+        sir_radiosity::sources(&model.scene, &model.mesh).iter().map(|source| source.power).sum();
     let direct = power / model.scene.total_area();
     Exact { name: "lamp in a sphere", model, direct, all: direct / (1.0 - reflectance), per_patch: 60 }
 }

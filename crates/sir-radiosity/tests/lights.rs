@@ -55,7 +55,7 @@ fn compare(model: &Model, exact: &[f64], what: &str) -> Shot {
     let shot = shoot(model, LINES, 7);
     assert!(shot.balance.closes());
     let emitted = shot.unit.watts(shot.balance.emitted).x;
-    let total: f64 = sources(&model.scene).iter().map(|s| s.power.x).sum();
+    let total: f64 = sources(&model.scene, &model.mesh).iter().map(|s| s.power.x).sum();
     assert!((emitted / total - 1.0).abs() < 1e-9, "{what}: {emitted} of {total}");
     for (k, (found, exact)) in received(model, &shot).into_iter().zip(exact).enumerate() {
         let share = exact / total;
@@ -284,6 +284,6 @@ fn lights_without_power_are_no_sources() {
     b.add_light(point(DVec3::Z, 0.0, Spread::Isotropic));
     b.set_sky(Sky::new(DVec3::Z, SkyModel::Uniform, Rgb::ZERO, Rgb::ZERO).unwrap());
     let model = model(b, Subdivision::PerTriangle);
-    assert!(sources(&model.scene).is_empty());
+    assert!(sources(&model.scene, &model.mesh).is_empty());
     assert!(sir_radiosity::FirstShot::new(&model, 10, 1).is_err());
 }

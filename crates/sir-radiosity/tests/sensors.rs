@@ -84,6 +84,37 @@ fn points() -> impl Iterator<Item = Sensor> {
     wall.chain((0..8).map(|i| at(v(2.0, 0.25 + 0.5 * f64::from(i), 0.0), DVec3::Z)))
 }
 
+/// The same square in 1,250 triangles, each square of two as bright as it happens to be: more than sensors tell apart, and one of
+/// them a hundred times as bright as the others.
+#[test]
+fn a_thousand_lamps_are_measured_as_one_by_one() {
+    const CELLS: u32 = 25;
+    let mut b = SceneBuilder::new();
+    black_room(&mut b);
+    let brightness: Vec<f64> = (0..9).map(|k| 100.0 + 200.0 * f64::from(k)).chain([80_000.0]).collect();
+    let lamps: Vec<_> = brightness.iter().map(|m| b.add_material(grey(*m, 0.0))).collect();
+    let edge = 1.0 / f64::from(CELLS);
+    let mut cells = Vec::new();
+    for i in 0..CELLS * CELLS {
+        let corner = v(1.5 + edge * f64::from(i % CELLS), 1.5 + edge * f64::from(i / CELLS), 3.0);
+        let cell = [corner + edge * DVec3::Y, corner + v(edge, edge, 0.0), corner + edge * DVec3::X, corner];
+        let kind = if i == 137 { 9 } else { (7 * i % 9) as usize };
+        shapes::quad(&mut b, cell, lamps[kind]);
+        cells.push((cell, brightness[kind]));
+    }
+    let model = model(b);
+    // No cell is partly behind a sensor.
+    let before = |s: &Sensor, p: DVec3| (p - s.position()).dot(s.direction()) > -1e-9;
+    let exact = |s: &Sensor| -> f64 {
+        let seen = cells.iter().filter(|(cell, _)| cell.iter().all(|&p| before(s, p)));
+        seen.map(|(cell, m)| m * factor(s, cell)).sum()
+    };
+    let upwards = [at(v(1.75, 1.7, 2.9), DVec3::Z), at(v(2.0, 2.0, 2.5), v(0.5, 0.2, 1.0))];
+    let close = upwards.into_iter().chain([at(v(1.5 + 12.0 * edge, 2.0, 2.5), DVec3::X)]);
+    let cases: Vec<_> = points().chain(close).map(|s| (s, exact(&s))).collect();
+    assert_exact("1,250", &Sensors::new(&model, &uniform(&model, 0.0), RAYS, 1), &cases, 0.003);
+}
+
 /// CIE 171:2006, 5.3: a luminous square in the ceiling.
 #[test]
 fn a_luminous_square_is_measured_to_a_thousandth() {

@@ -84,7 +84,7 @@ pub(crate) fn means(model: &Model, solution: &Solution) -> Vec<Mean> {
     let mut means = vec![Mean::default(); model.scene.materials().len()];
     model.mesh.for_each_side(|triangle, _, side, id| {
         if side == Side::Front {
-            let area = model.mesh.patch_area(triangle);
+            let area = model.area(triangle, id);
             let mean = &mut means[model.scene.triangle(triangle).material.index()];
             mean.irradiance += solution.irradiance[id.index()] * area;
             mean.radiosity += solution.radiosity(model, triangle, side, id) * area;

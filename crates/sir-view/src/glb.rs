@@ -8,7 +8,7 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3, Vec3};
 use serde_json::{Value, json};
-use sir_geom::{Camera, Projection, TriangleId};
+use sir_geom::{Barycentric, Camera, Projection, TriangleId};
 
 use crate::picture::camera_axes;
 use crate::tone::{rgb, tone_map};
@@ -24,7 +24,8 @@ const UNSIGNED_INT: u32 = 5125;
 /// * `COLOR_0`: linear Rec. 709 in `[0, 1]`, exposure and tone curve applied;
 /// * `_RADIOSITY`: radiosity `B` \[W/m²\] in three linear bands, as computed;
 ///
-/// and the given cameras. `up` is the direction that becomes the file's +y, as glTF wants it: the node that holds
+/// and the given cameras. Textures are in the colours of the vertices, each the mean over about a patch; surfaces with gaps are whole,
+/// but for patches that are all gap. `up` is the direction that becomes the file's +y, as glTF wants it: the node that holds
 /// everything turns it there, while the positions in the file are those of the scene.
 ///
 /// # Errors
@@ -46,6 +47,15 @@ pub fn write_glb(
     file.write(path, &json)
 }
 
+/// The point of a triangle that lies at, or nearly at, a position on it.
+fn nearest_point([a, b, c]: [DVec3; 3], position: DVec3) -> Barycentric {
+    let normal = (b - a).cross(c - a);
+    let v = (position - a).cross(c - a).dot(normal) / normal.length_squared();
+    let w = (b - a).cross(position - a).dot(normal) / normal.length_squared();
+    let v = v.clamp(0.0, 1.0);
+    Barycentric { v, w: w.clamp(0.0, 1.0 - v) }
+}
+
 #[derive(Default)]
 struct Contents {
     binary: Vec<u8>,
@@ -62,24 +72,40 @@ impl Contents {
         let scene = display.scene;
         let mut order: Vec<TriangleId> = scene.triangle_ids().collect();
         order.sort_by_key(|&t| scene.triangle(t).material);
-        let mut numbers: Vec<Option<(u32, u32)>> = vec![None; display.vertices().len()];
+        // For whom vertices were last written, and their numbers: for all triangles of a material, or for one with a texture,
+        // since its neighbour may have another colour where they meet.
+        let mut numbers = vec![None; display.vertices().len()];
         for of_material in order.chunk_by(|&s, &t| scene.triangle(s).material == scene.triangle(t).material) {
             let material = scene.material(of_material[0]);
             let mark = self.materials.len() as u32;
             let (mut positions, mut colours, mut radiosities) = (Vec::new(), Vec::new(), Vec::new());
             let mut indices: Vec<u32> = Vec::new();
             for piece in of_material.iter().flat_map(|&t| display.pieces_of(t)) {
+                let t = piece.triangle;
+                let patch = display.mesh.patch_of_side(t, piece.id);
+                if display.mesh.covered_area(t, patch) == 0.0 {
+                    continue;
+                }
+                let is_varied = display.mesh.is_varied(t);
+                let owner = (mark, is_varied.then_some(t));
+                let width = display.mesh.patch_area(t).sqrt();
                 for &v in piece.triangles.iter().flatten() {
                     let number = match numbers[v as usize] {
-                        Some((m, number)) if m == mark => number,
+                        Some((last, number)) if last == owner => number,
                         _ => {
                             let vertex = display.vertices()[v as usize];
                             let e = rgb(&vertex.irradiance);
-                            let b = display.radiosity(piece.triangle, piece.side, e);
-                            positions.push(display.positions()[vertex.position as usize].as_vec3());
+                            let position = display.positions()[vertex.position as usize];
+                            let b = if is_varied {
+                                let point = nearest_point(scene.corners(t), position);
+                                display.radiosity_at(t, point, piece.side, e, width)
+                            } else {
+                                display.radiosity_of(&piece, e)
+                            };
+                            positions.push(position.as_vec3());
                             colours.push(tone_map(factor / std::f64::consts::PI * b).as_vec3());
                             radiosities.push(b.as_vec3());
-                            numbers[v as usize] = Some((mark, positions.len() as u32 - 1));
+                            numbers[v as usize] = Some((owner, positions.len() as u32 - 1));
                             positions.len() as u32 - 1
                         }
                     };

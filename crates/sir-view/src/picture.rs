@@ -57,6 +57,9 @@ impl PictureSettings {
 ///
 /// Backs of one-sided surfaces are transparent to the camera, though they are opaque to light: one looks into a
 /// closed room from outside as if the walls in front were cut away. Where a ray meets nothing it sees the sky of the scene, or black.
+/// Surfaces with gaps are seen through without noise: each shows its share of what those before it let through. Textures are
+/// shown as fine as pixels are. A picture of errors adds up those of all that is seen.
+///
 /// The camera's vertical field of view is kept whatever the shape of the picture.
 ///
 /// # Errors
@@ -122,45 +125,97 @@ impl Shader<'_> {
         let index = u64::from(y) * u64::from(width) + u64::from(x);
         let mut stream = Streams::new(0, Stage::PICTURE).line(index);
         let grid = grid.max(1);
-        let (mut sum, mut weighted, mut weights, mut met) = (Rgb::ZERO, Rgb::ZERO, 0.0, 0u16);
-        let rays: Vec<Ray> = (0..grid * grid)
+        let (mut sum, mut weighted, mut weights, mut met) = (Rgb::ZERO, Rgb::ZERO, 0.0, 0.0);
+        let rays: Vec<Line> = (0..grid * grid)
             .map(|cell| {
                 let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
                 let right = (f64::from(x) + within(cell % grid, stream.unit())) / f64::from(width);
                 let down = (f64::from(y) + within(cell / grid, stream.unit())) / f64::from(height);
-                self.rays.ray(right, down).into()
+                self.rays.ray(right, down)
             })
             .collect();
-        let mut firsts = vec![None; rays.len()];
-        tracer.closest_each(&rays, |i, first| firsts[i] = first);
-        for (ray, first) in rays.iter().zip(firsts) {
-            let on_surface = radiance_along(self.display, tracer, &ray.line, first);
-            met += u16::from(on_surface.is_some());
-            let sky = || self.display.scene.sky().map_or(Rgb::ZERO, |sky| sky.radiance(ray.line.direction));
-            let radiance = on_surface.unwrap_or_else(sky);
+        self.see(tracer, &rays, |ray, Seen { radiance, stopped }| {
+            met += stopped;
+            let sky = || self.display.scene.sky().map_or(Rgb::ZERO, |sky| sky.radiance(ray.direction));
+            let radiance = if stopped < 1.0 { radiance + (1.0 - stopped) * sky() } else { radiance };
             sum += radiance;
             let weight = 1.0 / (1.0 + luminance(radiance) / self.knee);
             weighted += weight * radiance;
             weights += weight;
-        }
+        });
         Pixel {
             radiance: (sum / f64::from(grid * grid)).as_vec3().to_array(),
             shown: (weighted / weights).as_vec3().to_array(),
-            surface: f32::from(met) / (grid * grid) as f32,
+            surface: (met / f64::from(grid * grid)) as f32,
         }
     }
 }
 
-/// Radiance `B/π` that comes in along a ray from a surface, given its first hit; `None` if it sees none.
-fn radiance_along(
-    display: &DisplayMesh<'_>,
-    tracer: &mut Tracer<'_>,
-    ray: &Line,
-    first: Option<Hit>,
-) -> Option<Rgb> {
-    let hit = first_visible(display.scene, tracer, ray, first)?;
-    let Some(e) = display.irradiance_at(hit.triangle, hit.point, hit.side) else { return Some(Rgb::ZERO) };
-    Some(display.radiosity(hit.triangle, hit.side, e) / std::f64::consts::PI)
+/// What a ray sees of surfaces.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// Radiance \[W/(m² sr)\].
+    radiance: Rgb,
+    /// The share of the ray that ends at one of them.
+    stopped: f64,
+}
+
+/// As many surfaces with gaps are seen through one another.
+const LAYERS: usize = 64;
+
+impl Shader<'_> {
+    /// Looks along rays, in order.
+    fn see(&self, tracer: &mut Tracer<'_>, rays: &[Line], mut visit: impl FnMut(&Line, Seen)) {
+        if tracer.lets_lines_pass() {
+            let mut next = 0;
+            tracer.all_crossings_each(rays, |crossings| {
+                for (range, ray) in crossings.lines().zip(&rays[next..]) {
+                    visit(ray, self.through(ray, &crossings.hits()[range]));
+                    next += 1;
+                }
+            });
+            return;
+        }
+        let from: Vec<Ray> = rays.iter().map(|&ray| ray.into()).collect();
+        let mut firsts = vec![None; rays.len()];
+        tracer.closest_each(&from, |i, first| firsts[i] = first);
+        for (ray, first) in rays.iter().zip(firsts) {
+            let hit = first_visible(self.display.scene, tracer, ray, first);
+            let radiance = hit.map(|hit| self.radiance(ray, &hit));
+            visit(
+                ray,
+                Seen { radiance: radiance.unwrap_or(Rgb::ZERO), stopped: f64::from(u8::from(hit.is_some())) },
+            );
+        }
+    }
+
+    /// Looks through the gaps of surfaces: each shows its share of what the ones before it let through.
+    fn through(&self, ray: &Line, crossings: &[Hit]) -> Seen {
+        let scene = self.display.scene;
+        let visible = |hit: &&Hit| hit.t >= 0.0 && scene.is_active(hit.triangle, hit.side);
+        let opacity = |hit: &Hit| scene.opacity_at(hit.triangle, hit.point);
+        let layers = crossings.iter().filter(visible).map(|hit| (hit, opacity(hit)));
+        let (mut radiance, mut left) = (Rgb::ZERO, 1.0);
+        for (hit, opacity) in layers.filter(|layer| layer.1 > 0.0).take(LAYERS) {
+            radiance += left * opacity * self.radiance(ray, hit);
+            left *= 1.0 - opacity;
+            if left == 0.0 {
+                break;
+            }
+        }
+        Seen { radiance, stopped: 1.0 - left }
+    }
+
+    /// Radiance `B/π` of a side that a ray meets.
+    fn radiance(&self, ray: &Line, hit: &Hit) -> Rgb {
+        let Self { display, rays, settings, .. } = self;
+        let Hit { t, triangle, point, side } = *hit;
+        let Some(e) = display.irradiance_at(triangle, point, side) else { return Rgb::ZERO };
+        let slant = display.scene.normal(triangle).dot(ray.direction).abs().max(1e-3);
+        // The root of the area that the ray stands for.
+        let width = rays.spacing(t) / f64::from(settings.height * settings.grid.max(1)) / slant.sqrt();
+        display.radiosity_at(triangle, point, side, e, width) / std::f64::consts::PI
+    }
 }
 
 /// The first side along a ray that is not the back of a one-sided surface, given its first hit.
@@ -209,6 +264,11 @@ impl CameraRays {
         } else {
             Line { origin: self.eye, direction: (self.forward + shift).normalize() }
         }
+    }
+
+    /// How far apart two rays are at a distance along them, if one is at the upper edge of the picture and one at the lower.
+    fn spacing(&self, t: f64) -> f64 {
+        2.0 * self.up.length() * if self.is_parallel { 1.0 } else { t }
     }
 }
 

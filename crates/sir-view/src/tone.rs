@@ -46,7 +46,7 @@ impl Exposure {
                     let v = t.map(|i| display.vertices()[i as usize]);
                     let [a, b, c] = v.map(|v| display.positions()[v.position as usize]);
                     let e = v.iter().map(|v| rgb(&v.irradiance)).sum::<Rgb>() / 3.0;
-                    let radiance = display.radiosity(piece.triangle, piece.side, e) / std::f64::consts::PI;
+                    let radiance = display.radiosity_of(&piece, e) / std::f64::consts::PI;
                     samples.push((luminance(radiance), (b - a).cross(c - a).length()));
                 }
             }

@@ -135,7 +135,8 @@ impl<'a> Judge<'a> {
         let (mut sum, mut area) = (0.0, 0.0);
         for piece in display.pieces() {
             if scene.exitance(piece.triangle, piece.side) == DVec3::ZERO {
-                let part = display.mesh.patch_area(piece.triangle);
+                let patch = display.mesh.patch_of_side(piece.triangle, piece.id);
+                let part = display.mesh.covered_area(piece.triangle, patch);
                 sum += part * luminance(display.own_radiosity(&piece)).sqrt();
                 area += part;
             }
@@ -162,7 +163,8 @@ impl<'a> Judge<'a> {
                 let ray = rays.ray(middle(x, RAYS.0), middle(y, RAYS.1));
                 let Some(hit) = tracer.closest(&ray.into()) else { continue };
                 let Some(e) = self.display.irradiance_at(hit.triangle, hit.point, hit.side) else { continue };
-                let b = luminance(self.display.radiosity(hit.triangle, hit.side, e));
+                let patch = self.display.mesh.patch_at(hit.triangle, hit.point);
+                let b = luminance(self.display.radiosity(hit.triangle, patch, hit.side, e));
                 lit += if self.bright > 0.0 { (b / self.bright).min(1.0) } else { 1.0 };
                 let far = hit.t / self.diagonal;
                 near += f64::from(u8::from(far < 0.06));

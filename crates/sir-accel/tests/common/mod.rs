@@ -3,13 +3,18 @@
 
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
-use sir_geom::{Line, Material, Rgb, Scene, SceneBuilder};
+use sir_geom::{Line, Material, Opacity, Rgb, Scene, SceneBuilder};
 use sir_lines::{Stream, unit_vector};
 
 /// A room with two spheres, overlapping boxes and a box that touches floor and wall: all closed.
 pub(crate) fn furnished_room() -> Scene {
+    furnished_room_of(Opacity::default())
+}
+
+/// The same with surfaces of this opacity.
+pub(crate) fn furnished_room_of(opacity: Opacity) -> Scene {
     let mut b = SceneBuilder::new();
-    let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+    let m = b.add_material(Material { opacity, ..Material::diffuse("m", Rgb::splat(0.5)) });
     let at = |x, y, z| DVec3::new(x, y, z);
     shapes::cuboid(&mut b, at(-3.0, 0.0, -2.0), at(3.0, 2.5, 2.0), [m; 6], Facing::Inward);
     shapes::cuboid(&mut b, at(-3.0, 0.0, -1.0), at(-2.0, 0.75, 1.0), [m; 6], Facing::Outward);

@@ -97,6 +97,12 @@ impl Target {
                 "Ke ",
                 "map_Kd ",
                 "map_Ke ",
+                "map_d ",
+                "d ",
+                "Tr ",
+                "vt ",
+                "-clamp on ",
+                "-o 1e30 ",
                 "\\\n",
                 "#",
                 "-s 1 1 1 ",
@@ -107,9 +113,29 @@ impl Target {
                 "t.png",
                 "\n",
             ],
-            Self::Gltf | Self::Glb => {
-                &["{", "}", "[", "]", ",", ":", "null", "\"", "\\u0000", "data:", ";base64,", "KHR_", "t.png"]
-            }
+            Self::Gltf | Self::Glb => &[
+                "{",
+                "}",
+                "[",
+                "]",
+                ",",
+                ":",
+                "null",
+                "\"",
+                "\\u0000",
+                "data:",
+                ";base64,",
+                "KHR_",
+                "t.png",
+                "MASK",
+                "BLEND",
+                "alphaCutoff",
+                "33071",
+                "33648",
+                "TEXCOORD_1",
+                "COLOR_0",
+                "VEC4",
+            ],
         });
         words
     }
@@ -150,9 +176,8 @@ Pipeline(
 "#;
 
 const OBJ: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0 # c\nv 1 1 0\nv 0 1 0 1 1 1\nv 0 0 1\nvt 0 0\nvn 0 0 1\no thing\nusemtl a\n\
-    f 1/1/1 2/1 3//1\ng x\ns 1\nf -4 -3 -2 -1\nl 1 2 3\np 1\nusemtl b\nf 1 2 \\\n 5\nf 2 3 5\n";
-const MTL: &str =
-    "# m\nnewmtl a\nKd 0.5 0.5 0.5\nKe 1 1 1\nNs 10\nmap_Kd -s 1 1 1 t.png\nnewmtl b\nKd 0.5\nmap_Ke t.png\n";
+    f 1/1/1 2/1 3//1\ng x\ns 1\nf -4 -3 -2 -1\nl 1 2 3\np 1\nusemtl b\nf 1/1 2/-1 \\\n 5/1\nf 2 3 5\n";
+const MTL: &str = "# m\nnewmtl a\nKd 0.5 0.5 0.5\nKe 1 1 1\nNs 10\nmap_Kd -s 1 1 1 t.png\nd 0.5\nnewmtl b\nKd 0.5\nTr 0.1\nmap_d t.png\nmap_Ke t.png\n";
 
 /// A PNG image of one grey pixel.
 const PNG: &[u8] = &[
@@ -175,15 +200,18 @@ pub(crate) fn document(uri: Option<&str>) -> Value {
         ],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1, "aspectRatio": 1.5}}],
         "meshes": [{"primitives": [
-            {"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1, "mode": 5, "material": 0},
-            {"attributes": {"POSITION": 0}, "material": 1},
+            {"attributes": {"POSITION": 0, "NORMAL": 0, "COLOR_0": 0, "TEXCOORD_0": 2}, "indices": 1, "mode": 5, "material": 0},
+            {"attributes": {"POSITION": 0, "TEXCOORD_0": 2}, "material": 1},
         ]}],
         "materials": [
             {"name": "m", "emissiveFactor": [1, 0.5, 0], "emissiveTexture": {"index": 0}, "doubleSided": true,
              "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 3}}},
-            {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "baseColorTexture": {"index": 0, "texCoord": 0}}},
+            {"alphaMode": "MASK", "alphaCutoff": 0.5, "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1],
+                "baseColorTexture": {"index": 0, "texCoord": 0, "extensions":
+                    {"KHR_texture_transform": {"offset": [0, 1], "rotation": 1, "scale": [2, 3], "texCoord": 0}}}}},
         ],
-        "textures": [{"source": 0}, {"source": 1}],
+        "textures": [{"source": 0, "sampler": 0}, {"source": 1}],
+        "samplers": [{"wrapS": 33071, "wrapT": 33648}],
         "images": [{"bufferView": 4, "mimeType": "image/png"}, {"uri": "t.png"}],
         "accessors": [
             {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 4, "byteOffset": 0,
@@ -191,6 +219,7 @@ pub(crate) fn document(uri: Option<&str>) -> Value {
                 "indices": {"bufferView": 2, "componentType": 5123, "byteOffset": 0},
                 "values": {"bufferView": 3, "byteOffset": 0}}},
             {"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 4},
+            {"bufferView": 0, "componentType": 5126, "type": "VEC2", "count": 4},
         ],
         "bufferViews": [
             {"buffer": 0, "byteOffset": 0, "byteLength": 48, "byteStride": 12, "target": 34962},

@@ -6,6 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 use serde::Serialize;
 use sir_geom::{LoadOptions, Scene, Sides, Warning};
+use sir_mesh::{PatchMesh, Subdivision};
 use sir_radiosity::{Source, sources};
 
 use super::advice::{self, Setting};
@@ -113,7 +114,8 @@ pub struct Lights {
 pub fn inspect(path: &Path) -> Result<Info, Error> {
     let built = sir_geom::load(path, &LoadOptions::default())?;
     let scene = &built.scene;
-    let sources = sources(scene);
+    let mesh = PatchMesh::new(scene, Subdivision::PerTriangle)?;
+    let sources = sources(scene, &mesh);
     let dropped = built.warnings.iter().map(|warning| match warning {
         Warning::DroppedTriangles { count } => *count,
         _ => 0,

@@ -100,10 +100,12 @@ pub enum LoadError {
         limit: usize,
     },
     /// The file could be read, but does not describe a scene.
-    #[error("{}: no scene can be made of this file", path.display())]
+    #[error("{}: no scene can be made of this file{}", path.display(), if skipped.is_empty() { String::new() } else { format!(", in which {skipped}") })]
     Scene {
         /// The scene file.
         path: PathBuf,
+        /// What geometry was passed over, if any: `4 mesh primitives of points or lines were skipped`.
+        skipped: String,
         /// What is wrong with it.
         source: SceneError,
     },

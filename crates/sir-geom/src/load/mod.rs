@@ -62,21 +62,22 @@ impl SidesPolicy {
 
 /// Reads a scene file; the extension of its name (`gltf`, `glb` or `obj`, in any case) tells the format.
 ///
-/// Textures are replaced by their mean linear colour. Only materials that a triangle uses are taken in. What the
+/// Textures are kept as they are, up to 2²⁸ texels in all; triangles without coordinates have their mean linear colours. Only materials that a triangle uses are taken in. What the
 /// file has beyond a scene is passed over with one warning per kind.
 ///
 /// # glTF 2.0
 ///
 /// The default scene, else the first one, else all nodes; triangles in the order of a walk through the nodes,
-/// parents before children. Base colour is the reflectance, also of metals; the emitted colour times its strength
+/// parents before children. Base colour, times the colours of vertices, is the reflectance, also of metals and unlit materials, its alpha the opacity as `alphaMode` says; the emitted colour times its strength
 /// is a radiance `L`, which gives the exitance `π L`. Groups have the names of nodes, or else of meshes. Cameras and punctual lights
 /// (`KHR_lights_punctual`) are taken in; the numbers of the latter, in cd and lx, are taken for W/sr and W/m², their range is ignored. Buffers and images may be embedded
 /// or lie in files in the scene's folder or below it.
 ///
 /// # OBJ
 ///
-/// Triangles in the order of the faces, polygons cut into fans from their first corner. `Kd` times the mean of
-/// `map_Kd` is the reflectance; `Ke` times the mean of `map_Ke` a radiance that gives the exitance `π Ke`. Groups have the
+/// Triangles in the order of the faces, polygons cut into fans from their first corner, or into other triangles where that would be wrong. `Kd` times
+/// `map_Kd` and the colours of vertices, taken for sRGB, is the reflectance; `Ke` times `map_Ke` a radiance that gives the exitance `π Ke`; `d` (else
+/// `1 − Tr`) times the alpha, or brightness, of `map_d` the opacity. Groups have the
 /// names in `o` and `g` statements, of which the last before a face counts.
 ///
 /// # Errors
@@ -104,9 +105,11 @@ pub fn load_with(
         Some("obj") => obj::read(path, *options, &mut builder, &mut notes)?,
         _ => return Err(LoadError::UnknownFormat { path: path.to_owned(), extension }),
     }
+    let skipped = notes.skipped();
     notes.warn(&mut builder);
     add(&mut builder);
-    let mut built = builder.build().map_err(|source| LoadError::Scene { path: path.to_owned(), source })?;
+    let mut built =
+        builder.build().map_err(|source| LoadError::Scene { path: path.to_owned(), skipped, source })?;
     notes::shorten(&mut built.warnings);
     Ok(built)
 }

@@ -50,6 +50,12 @@ impl Notes {
         &mut self.kinds[i]
     }
 
+    /// What geometry was passed over, which is what somebody wants to know whose scene turns out to be empty.
+    pub(super) fn skipped(&self) -> String {
+        let skipped = self.kinds.iter().filter(|note| note.what.ends_with("were skipped"));
+        skipped.map(|note| format!("{} {}", note.count, note.what)).collect::<Vec<_>>().join(" and ")
+    }
+
     /// Passes everything on as warnings.
     pub(super) fn warn(self, builder: &mut SceneBuilder) {
         for Note { what, count, names, .. } in self.kinds {
@@ -63,6 +69,11 @@ impl Notes {
             builder.warn(Warning::Ignored { what: line });
         }
     }
+}
+
+/// A name from a file in quotes.
+pub(super) fn quoted(name: &str) -> String {
+    format!("\"{name}\"")
 }
 
 /// Leaves the first few of many warnings about clamped reflectances, and counts the others.

@@ -1,79 +1,192 @@
-//! The one thing that a texture is asked for: its mean colour.
+//! Images of surfaces: decoding, and a bound on all of them together.
 
 use std::io::Cursor;
 
-use image::{DynamicImage, ImageReader, Limits};
+use glam::{DVec2, Vec2};
+use image::{ImageReader, Limits};
 
-use crate::Rgb;
+use super::notes::Notes;
+use crate::{ColourMap, Opacity, Rgb, SceneBuilder, Texture, TextureId, TextureMap, Wrap};
 
-/// The kind of warning about textures whose mean is not known.
+/// The kind of warning about textures of which nothing is known.
 pub(super) const UNREADABLE: &str = "textures cannot be read, and their colour factor alone is used";
+
+/// The kind of warning about textures for which there is no room.
+const TOO_MANY: &str =
+    "textures are beyond the 268 million texels of a scene, and were replaced by their mean colours";
 
 /// The most memory for a decoded image, in bytes.
 const MAX_MEMORY: u64 = 512 << 20;
+
+/// The most texels that stay in memory, 1 GiB.
+const MAX_TEXELS: u64 = 1 << 28;
+
+/// The most texels that are decoded at all: images that have the same bytes in many ways would take time without end.
+const MAX_DECODED: u64 = 1 << 30;
 
 /// The most bytes of pixels that a byte of a file can stand for. PNG packs 1,032 into one (the limit of deflate); JPEG needs a
 /// bit for each of the six blocks that 256 pixels have at least, which makes 1,024. Sixteen bits per channel may need
 /// room for two copies.
 const EXPANSION: u64 = 2200;
 
-/// The mean linear colour of a PNG or JPEG image, its 8-bit values read as sRGB and its alpha ignored.
+/// What is known of an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Image {
+    /// Its texels, unless they are all alike or there is no room for them.
+    texels: Option<TextureId>,
+    /// The means of colour and alpha.
+    colour: Rgb,
+    alpha: f64,
+    /// Whether alpha is the same everywhere.
+    even_alpha: bool,
+}
+
+impl Image {
+    /// Whether it is less than opaque anywhere.
+    pub(super) fn has_alpha(&self) -> bool {
+        self.alpha < 1.0
+    }
+}
+
+/// The images of a scene, as far as their number goes.
+#[derive(Debug)]
+pub(super) struct Images {
+    /// How many texels there still is room for.
+    room: u64,
+    /// How many texels may still be decoded.
+    patience: u64,
+}
+
+impl Default for Images {
+    fn default() -> Self {
+        Self { room: MAX_TEXELS, patience: MAX_DECODED }
+    }
+}
+
+impl Images {
+    /// Decodes an image.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be read.
+    pub(super) fn decode(&mut self, bytes: &[u8]) -> Result<Texture, String> {
+        if self.patience == 0 {
+            return Err("the images of this scene have more than a billion texels".to_owned());
+        }
+        let texture = decode(bytes)?;
+        self.patience = self.patience.saturating_sub(texture.texels().len() as u64);
+        Ok(texture)
+    }
+
+    /// Adds an image to a scene, unless its means say all about it.
+    pub(super) fn add(
+        &mut self,
+        texture: Texture,
+        name: &str,
+        builder: &mut SceneBuilder,
+        notes: &mut Notes,
+    ) -> Image {
+        let texels = texture.texels();
+        let is_even = texels.iter().all(|texel| *texel == texels[0]);
+        let even_alpha = texels.iter().all(|texel| texel[3] == texels[0][3]);
+        let count = texels.len() as u64;
+        let (colour, alpha) = (texture.mean_colour(), texture.mean_alpha());
+        let fits = count <= self.room;
+        if !is_even && !fits {
+            notes.name(TOO_MANY, name);
+        }
+        let texels = (!is_even && fits).then(|| {
+            self.room -= count;
+            builder.add_texture(texture)
+        });
+        Image { texels, colour, alpha, even_alpha }
+    }
+}
+
+/// An image on a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Layer {
+    pub(super) image: Image,
+    pub(super) wrap: [Wrap; 2],
+    /// Which set of coordinates of its material it uses.
+    pub(super) coordinates: u8,
+}
+
+impl Layer {
+    /// An image whose coordinates are found as `place` says; these get their number among the `sets` of a material.
+    pub(super) fn new<S: PartialEq>(image: Image, wrap: [Wrap; 2], place: S, sets: &mut Vec<S>) -> Self {
+        let number = image.texels.map_or(0, |_| {
+            sets.iter().position(|set| *set == place).unwrap_or_else(|| {
+                sets.push(place);
+                sets.len() - 1
+            })
+        });
+        Self { image, wrap, coordinates: number as u8 }
+    }
+
+    fn map(&self) -> Option<TextureMap> {
+        let texture = self.image.texels?;
+        Some(TextureMap { texture, wrap: self.wrap, coordinates: self.coordinates })
+    }
+}
+
+/// A colour, times the mean of an image if there is one; and what it is from place to place.
+pub(super) fn colour(factor: Rgb, layer: Option<&Layer>) -> (Rgb, Option<ColourMap>) {
+    let mean = layer.map_or(Rgb::ONE, |layer| layer.image.colour);
+    let map = layer.and_then(Layer::map).filter(|_| factor != Rgb::ZERO);
+    (factor * mean, map.map(|map| ColourMap { map, factor }))
+}
+
+/// An opacity, times the alpha of an image if there is one.
+pub(super) fn opacity(factor: f64, layer: Option<&Layer>, cutoff: Option<f64>) -> Opacity {
+    let plain = |factor| Opacity { factor, map: None, cutoff };
+    match layer {
+        None => plain(factor),
+        Some(layer) if layer.image.even_alpha => plain(factor * layer.image.alpha),
+        Some(layer) => match layer.map() {
+            Some(map) => Opacity { factor, map: Some(map), cutoff },
+            // A mean beside a threshold says nothing.
+            None if cutoff.is_some() => plain(factor),
+            None => plain(factor * layer.image.alpha),
+        },
+    }
+}
+
+/// An affine map of texture coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Placement {
+    pub(super) x_axis: DVec2,
+    pub(super) y_axis: DVec2,
+    pub(super) offset: DVec2,
+}
+
+impl Placement {
+    /// The coordinates as they are.
+    pub(super) const PLAIN: Self = Self { x_axis: DVec2::X, y_axis: DVec2::Y, offset: DVec2::ZERO };
+
+    /// Where a place comes to lie.
+    pub(super) fn apply(&self, place: Vec2) -> Vec2 {
+        let place = place.as_dvec2();
+        (place.x * self.x_axis + place.y * self.y_axis + self.offset).as_vec2()
+    }
+}
+
+/// A PNG or JPEG image, its values read as sRGB with 8 bits.
 ///
 /// Decoders may use as much memory as a file of this size can need, 512 MiB at most.
 ///
 /// # Errors
 ///
 /// The message of the decoder.
-pub(super) fn mean_colour(bytes: &[u8]) -> Result<Rgb, String> {
+fn decode(bytes: &[u8]) -> Result<Texture, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_MEMORY.min(EXPANSION.saturating_mul(bytes.len() as u64) + (1 << 20)));
     reader.limits(limits);
-    let pixels = match reader.decode().map_err(|e| e.to_string())? {
-        DynamicImage::ImageRgb8(pixels) => pixels,
-        other => other.into_rgb8(),
-    };
-    // Whole numbers add up to the same sum in any order.
-    let mut histogram = [[0u64; 3]; 256];
-    for pixel in pixels.pixels() {
-        for (channel, &value) in pixel.0.iter().enumerate() {
-            histogram[usize::from(value)][channel] += 1;
-        }
-    }
-    let count = pixels.pixels().len() as f64;
-    if count == 0.0 {
-        return Err("the image has no pixels".to_owned());
-    }
-    let mut sum = Rgb::ZERO;
-    for (value, counts) in (0u8..=255).zip(histogram) {
-        sum += srgb_to_linear(value) * Rgb::from_array(counts.map(|n| n as f64));
-    }
-    Ok(sum / count)
-}
-
-/// Decodes an 8-bit value of sRGB (IEC 61966-2-1).
-fn srgb_to_linear(value: u8) -> f64 {
-    let s = f64::from(value) / 255.0;
-    if s <= 0.04045 {
-        return s / 12.92;
-    }
-    let x = (s + 0.055) / 1.055;
-    x * x * fifth_root(x * x)
-}
-
-/// The fifth root of a number in `(0, 1]` by Newton's iteration.
-///
-/// `powf` may differ in the last bits from one machine to another, and reflectances decide tallies.
-fn fifth_root(x: f64) -> f64 {
-    let mut root = 1.0;
-    // From above, the iterates fall until rounding stops them.
-    loop {
-        let next = (4.0 * root + x / (root * root * root * root)) / 5.0;
-        if next >= root {
-            return root;
-        }
-        root = next;
-    }
+    let pixels = reader.decode().map_err(|e| e.to_string())?.into_rgba8();
+    let (width, height) = pixels.dimensions();
+    let (texels, _) = pixels.as_chunks::<4>();
+    Texture::new(width, height, texels.to_vec()).ok_or_else(|| "the image has no pixels".to_owned())
 }
 
 #[cfg(test)]
@@ -88,27 +201,55 @@ mod tests {
     }
 
     #[test]
-    fn srgb_agrees_with_its_formula() {
-        for value in 0..=255u8 {
-            let s = f64::from(value) / 255.0;
-            let expected = if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
-            assert!((srgb_to_linear(value) - expected).abs() < 1e-14, "{value}");
-        }
-    }
-
-    #[test]
-    fn the_mean_is_taken_of_linear_colours() {
-        let image =
-            RgbaImage::from_fn(4, 2, |x, _| Rgba(if x < 1 { [255, 0, 128, 0] } else { [0, 0, 128, 255] }));
-        let mean = mean_colour(&png(&image)).unwrap();
-        assert!((mean - Rgb::new(0.25, 0.0, 0.215_860_500_113_899_26)).length() < 1e-14, "{mean}");
+    fn images_are_read_as_they_are() {
+        let image = RgbaImage::from_fn(4, 2, |x, y| Rgba([x as u8, y as u8, 128, 255 - x as u8]));
+        let texture = decode(&png(&image)).unwrap();
+        assert_eq!(texture.size(), [4, 2]);
+        assert_eq!(texture.texels()[6], [2, 1, 128, 253]);
     }
 
     #[test]
     fn broken_images_are_errors() {
         let whole = png(&RgbaImage::from_pixel(64, 64, Rgba([1, 2, 3, 4])));
         for bytes in [&b""[..], b"no image", &whole[..whole.len() / 2], &whole[..20]] {
-            assert!(mean_colour(bytes).is_err());
+            assert!(decode(bytes).is_err());
         }
+    }
+
+    /// Two columns, black and open, white and closed.
+    fn halves() -> Vec<u8> {
+        png(&RgbaImage::from_fn(2, 3, |x, _| Rgba([255 * x as u8, 0, 0, 255 * x as u8])))
+    }
+
+    #[test]
+    fn images_without_room_are_means() {
+        let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
+        let mut images = Images { room: 10, patience: 13 };
+        let mut found = Vec::new();
+        for _ in 0..3 {
+            let texture = images.decode(&halves()).unwrap();
+            found.push(images.add(texture, "halves", &mut builder, &mut notes));
+        }
+        assert_eq!(found[0].texels, Some(TextureId::new(0)));
+        assert_eq!((found[1].texels, found[1].colour, found[1].alpha), (None, Rgb::X / 2.0, 0.5));
+        assert!(images.decode(&halves()).unwrap_err().contains("billion"));
+        // Where the mask cannot be kept, there is a surface: whether half of it is more than the threshold says nothing.
+        let layer = Layer { image: found[1], wrap: [Wrap::Repeat; 2], coordinates: 0 };
+        assert_eq!(opacity(0.5, Some(&layer), Some(0.4)).factor, 0.5);
+        assert_eq!(opacity(0.5, Some(&layer), None).factor, 0.25);
+        assert_eq!(colour(Rgb::ONE, Some(&layer)), (Rgb::X / 2.0, None));
+    }
+
+    #[test]
+    fn images_of_one_colour_need_no_texels() {
+        let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
+        let mut images = Images::default();
+        let texture = images.decode(&png(&RgbaImage::from_pixel(64, 64, Rgba([255, 0, 0, 51])))).unwrap();
+        let image = images.add(texture, "", &mut builder, &mut notes);
+        let mut sets = Vec::new();
+        let layer = Layer::new(image, [Wrap::Repeat; 2], (), &mut sets);
+        assert_eq!(colour(Rgb::splat(0.5), Some(&layer)), (Rgb::X / 2.0, None));
+        assert_eq!(opacity(0.5, Some(&layer), None), Opacity { factor: 0.1, ..Opacity::default() });
+        assert!(sets.is_empty() && images.room == MAX_TEXELS);
     }
 }

@@ -220,16 +220,19 @@ fn what_is_ignored_is_named_once() {
     gltf.json["skins"] = json!([{}]);
     gltf.json["nodes"][0]["skin"] = json!(0);
     for _ in 0..2 {
-        gltf.primitive(json!({"attributes": {"POSITION": 0, "COLOR_0": 0}, "targets": [{"POSITION": 0}]}));
+        gltf.primitive(
+            json!({"attributes": {"POSITION": 0, "COLOR_0": 0, "COLOR_1": 0}, "targets": [{"POSITION": 0}]}),
+        );
     }
     assert_eq!(
         warnings(&gltf.load().unwrap()),
         [
-            "2 glTF extensions have no meaning here and were ignored: KHR_materials_sheen, EXT_mine",
+            "1 glTF extensions describe gloss, which diffuse surfaces lack, and were ignored: KHR_materials_sheen",
+            "1 glTF extensions have no meaning here and were ignored: EXT_mine",
             "1 skinned meshes are read in the pose of their nodes",
-            "3 mesh primitives have no material, and are made grey",
+            "1 mesh primitives have no material, and are made grey",
             "2 mesh primitives have morph targets, and are read in their basic shape",
-            "2 mesh primitives have vertex colours, which were ignored",
+            "2 mesh primitives have more than one set of colours, of which the first is used",
         ]
     );
 }

@@ -2,10 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "these are tests")]
 
+mod as_it_comes;
 mod broken;
 mod files;
 mod gltf;
 mod gltf_lights;
 mod gltf_materials;
 mod obj;
+mod textures;
 mod third_party;

@@ -1,22 +1,29 @@
 //! Which emitting surfaces a point aims at.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use glam::DVec3;
-use sir_geom::{Rgb, Scene, Side, TriangleId};
+use sir_geom::{Rgb, Side, TriangleId};
+use sir_mesh::PatchId;
 
 use super::Sensor;
-use crate::{Emitter, sources};
+use super::tree::{Leaf, MOST_GROUPS, Tree};
+use crate::{Emitter, Model, sources};
 
 /// All emitting surfaces of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Emitters {
     lamps: Vec<Lamp>,
+    /// Groups of them, if there are many.
+    tree: Option<Tree>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Lamp {
     triangle: TriangleId,
+    /// The patch of it, if its patches differ.
+    patch: Option<PatchId>,
     side: Side,
     corners: [DVec3; 3],
     normal: DVec3,
@@ -30,7 +37,9 @@ pub(super) struct Choice<'e> {
     emitters: &'e Emitters,
     origin: DVec3,
     normal: DVec3,
-    /// Running sums of the probabilities; empty if the sensor sees no emitter.
+    /// What is told apart: ranges in the order of the tree; without a tree, nothing, since then it is the lamps themselves.
+    groups: Vec<Range<u32>>,
+    /// Running sums of the probabilities of groups, or of lamps; empty if the sensor sees no emitter.
     ends: Vec<f64>,
 }
 
@@ -48,23 +57,44 @@ pub(super) struct Aim {
 }
 
 impl Emitters {
-    pub(super) fn of(scene: &Scene) -> Self {
-        let lamps = sources(scene).into_iter().filter_map(|source| match source.emitter {
-            Emitter::Surface { triangle, side, corners, normal } => {
-                let (exitance, area) = (scene.exitance(triangle, side), scene.area(triangle));
-                Some(Lamp { triangle, side, corners, normal, exitance, area })
+    pub(super) fn of(model: &Model) -> Self {
+        let Model { scene, mesh, .. } = model;
+        let lamps = sources(scene, mesh).into_iter().filter_map(|source| match source.emitter {
+            Emitter::Surface { triangle, patch, side, corners, normal } => {
+                let exitance = match patch {
+                    Some(patch) => model.exitance(triangle, patch, side),
+                    None => scene.exitance(triangle, side),
+                };
+                // Gaps included: rays that are aimed at them meet something else.
+                let [a, b, c] = corners;
+                let area = 0.5 * (b - a).cross(c - a).length();
+                Some(Lamp { triangle, patch, side, corners, normal, exitance, area })
             }
             // Lights without a surface are measured by themselves, and the sky is what no ray meets.
             _ => None,
         });
-        Self { lamps: lamps.collect() }
+        let lamps: Vec<Lamp> = lamps.collect();
+        let tree = (lamps.len() > MOST_GROUPS).then(|| {
+            let leaf = |&Lamp { corners, normal, exitance, area, .. }: &Lamp| Leaf {
+                corners,
+                normal,
+                power: exitance.element_sum() * area,
+                area,
+            };
+            Tree::new(&lamps.iter().map(leaf).collect::<Vec<_>>())
+        });
+        Self { lamps, tree }
     }
 
     /// How often each is to be aimed at from a point that looks in the direction `normal`: in proportion to an estimate of the
     /// irradiance that it brings.
     pub(super) fn from(&self, origin: DVec3, sensor: &Sensor) -> Choice<'_> {
         let normal = sensor.direction;
-        let weights: Vec<f64> = self.lamps.iter().map(|lamp| weight(lamp, origin, normal)).collect();
+        let of_lamp = |k: usize| weight(&self.lamps[k], origin, normal);
+        let (groups, weights): (Vec<_>, Vec<f64>) = match &self.tree {
+            Some(tree) => tree.cut(origin, normal, of_lamp).into_iter().unzip(),
+            None => (Vec::new(), (0..self.lamps.len()).map(of_lamp).collect()),
+        };
         let total: f64 = weights.iter().sum();
         let mut sum = 0.0;
         let mut ends = Vec::new();
@@ -74,7 +104,7 @@ impl Emitters {
                 sum
             }));
         }
-        Choice { emitters: self, origin, normal, ends }
+        Choice { emitters: self, origin, normal, groups, ends }
     }
 }
 
@@ -103,7 +133,15 @@ impl Choice<'_> {
         self.ends.is_empty()
     }
 
+    /// How often emitter `k` is aimed at.
     fn probability(&self, k: usize) -> f64 {
+        let Some(tree) = &self.emitters.tree else { return self.of_group(k) };
+        let place = tree.place(k);
+        let group = self.groups.partition_point(|group| group.end <= place);
+        self.groups.get(group).map_or(0.0, |range| self.of_group(group) * tree.share(range, place))
+    }
+
+    fn of_group(&self, k: usize) -> f64 {
         match (self.ends.get(k), k.checked_sub(1).and_then(|before| self.ends.get(before))) {
             (Some(end), Some(start)) => end - start,
             (Some(end), None) => *end,
@@ -127,19 +165,32 @@ impl Choice<'_> {
         exitance * (cosine / (aimed + cosine))
     }
 
-    /// What a ray of the cosine distribution brings that has met this side at this distance.
-    pub(super) fn met(&self, triangle: TriangleId, side: Side, direction: DVec3, distance: f64) -> Rgb {
-        let found = self.emitters.lamps.binary_search_by_key(&(triangle, side), |s| (s.triangle, s.side));
+    /// What a ray of the cosine distribution brings that has met this side at this distance; `patch` is where, if the patches of
+    /// the triangle differ.
+    pub(super) fn met(
+        &self,
+        triangle: TriangleId,
+        patch: Option<PatchId>,
+        side: Side,
+        direction: DVec3,
+        distance: f64,
+    ) -> Rgb {
+        let key = |lamp: &Lamp| (lamp.triangle, lamp.side, lamp.patch);
+        let found = self.emitters.lamps.binary_search_by_key(&(triangle, side, patch), key);
         found.map_or(Rgb::ZERO, |k| self.brings(k, direction, distance))
     }
 
     /// Aims at the point that belongs to one of the unit square; `None` if it brings nothing.
     pub(super) fn aim(&self, [u, v]: [f64; 2]) -> Option<Aim> {
         // The emitters share the first coordinate; what is left of it is a coordinate on the emitter.
-        let k = self.ends.partition_point(|&end| end <= u).min(self.ends.len().checked_sub(1)?);
-        let probability = self.probability(k);
-        let start = self.ends[k] - probability;
+        let group = self.ends.partition_point(|&end| end <= u).min(self.ends.len().checked_sub(1)?);
+        let probability = self.of_group(group);
+        let start = self.ends[group] - probability;
         let within = ((u - start) / probability).clamp(0.0, 1.0);
+        let (k, within) = match (&self.emitters.tree, self.groups.get(group)) {
+            (Some(tree), Some(range)) => tree.choose(range, within),
+            _ => (group, within),
+        };
         let Lamp { triangle, side, corners, .. } = self.emitters.lamps[k];
         let to = sir_lines::point_on_triangle_of([within, v]).point(corners) - self.origin;
         let (distance, direction) = (to.length(), to.try_normalize()?);

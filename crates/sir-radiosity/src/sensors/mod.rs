@@ -8,6 +8,7 @@
 mod emitters;
 mod measurement;
 mod replication;
+mod tree;
 
 use glam::DVec3;
 use sir_accel::{Ray, Tracer};
@@ -90,7 +91,7 @@ impl<'s> Sensors<'s> {
             model,
             solution,
             settings,
-            emitters: Emitters::of(&model.scene),
+            emitters: Emitters::of(model),
             streams: Streams::new(seed, Stage::SENSORS),
             lift: LIFT * model.scene.bounding_sphere().radius,
         }
@@ -126,7 +127,7 @@ impl<'s> Sensors<'s> {
 
     /// The irradiance by lights without a surface.
     fn lights(&self, sensor: &Sensor, origin: DVec3, tracer: &mut Tracer<'_>) -> Rgb {
-        let mut sum = Rgb::ZERO;
+        let (mut rays, mut brings) = (Vec::new(), Vec::new());
         for light in self.model.scene.lights() {
             // What arrives at the sensor itself; only the shadow ray starts above it.
             let Some(arrival) = light.kind.arrival(sensor.position) else { continue };
@@ -134,14 +135,13 @@ impl<'s> Sensors<'s> {
             if cosine <= 0.0 {
                 continue;
             }
-            let line = Line { origin, direction: arrival.towards };
+            rays.push(Ray::from(Line { origin, direction: arrival.towards }));
             // A light that lies on a surface is in front of it, as sensors are.
-            let seen =
-                tracer.closest(&Ray::from(line)).is_none_or(|hit| hit.t >= arrival.distance - self.lift);
-            if seen {
-                sum += cosine * arrival.irradiance;
-            }
+            brings.push((cosine * arrival.irradiance, arrival.distance - self.lift));
         }
-        sum
+        let mut seen = vec![false; rays.len()];
+        tracer.closest_each(&rays, |i, hit| seen[i] = hit.is_none_or(|hit| hit.t >= brings[i].1));
+        // Rays are done in any order, but floats have to be added up in always the same.
+        brings.iter().zip(seen).filter(|(_, seen)| *seen).fold(Rgb::ZERO, |sum, (brought, _)| sum + brought.0)
     }
 }

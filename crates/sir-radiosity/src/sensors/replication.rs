@@ -97,8 +97,9 @@ impl Replication {
             return;
         };
         let Some(side) = mesh.side_at(hit.triangle, hit.point, hit.side) else { return };
-        self.direct += choice.met(hit.triangle, hit.side, direction, hit.t);
-        let reflectance = scene.material(hit.triangle).reflectance;
+        let patch = mesh.is_varied(hit.triangle).then(|| mesh.patch_at(hit.triangle, hit.point));
+        self.direct += choice.met(hit.triangle, patch, hit.side, direction, hit.t);
+        let reflectance = sensors.model.reflectance(hit.triangle, side);
         if reflectance != Rgb::ZERO {
             self.reflected += reflectance * sensors.solution.irradiance[side.index()];
             met.0.push((side, hit.triangle));

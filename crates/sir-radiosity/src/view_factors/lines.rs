@@ -5,10 +5,11 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use sir_accel::Ray;
 use sir_geom::{Line, Side, TriangleId};
-use sir_lines::{Allocation, Stage, Streams, cosine_direction, point_on_triangle};
+use sir_lines::{Allocation, Stage, Streams, cosine_direction};
 
 use super::ViewFactors;
 use super::effort::{Next, ViewFactorSettings};
+use crate::emitter::point_on_surface;
 use crate::grouping::active_area;
 use crate::{Books, Grouping, Model, SolveError, Visitor};
 
@@ -66,7 +67,7 @@ impl<'m> ViewFactorLines<'m> {
         for triangle in model.scene.triangle_ids() {
             let Sender { triangles, ends } = &mut senders[grouping.group_of(triangle)];
             triangles.push(triangle);
-            ends.push(ends.last().unwrap_or(&0.0) + active_area(&model.scene, triangle));
+            ends.push(ends.last().unwrap_or(&0.0) + active_area(&model.scene, &model.mesh, triangle));
         }
         let (lines, counts) = (vec![0; groups], vec![0; groups * (groups + 2)]);
         let next = settings.next(&lines, &counts);
@@ -112,7 +113,7 @@ impl<'m> ViewFactorLines<'m> {
         let triangle = triangles[ends.partition_point(|&end| end <= place).min(last)];
         let back = scene.is_active(triangle, Side::Back) && stream.unit() < 0.5;
         let normal = if back { -scene.normal(triangle) } else { scene.normal(triangle) };
-        let origin = point_on_triangle(&mut stream).point(scene.corners(triangle));
+        let origin = point_on_surface(scene, triangle, scene.corners(triangle), &mut stream);
         let line = Line { origin, direction: cosine_direction(normal, &mut stream) };
         Ray { line, leaving: Some(triangle) }
     }
@@ -197,7 +198,7 @@ impl<'m> ViewFactorLines<'m> {
     pub fn finish(self) -> ViewFactors {
         ViewFactors {
             names: self.grouping.names().to_vec(),
-            areas: self.grouping.areas(&self.model.scene),
+            areas: self.grouping.areas(&self.model.scene, &self.model.mesh),
             lines: self.lines,
             counts: self.counts,
         }

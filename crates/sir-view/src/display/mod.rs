@@ -1,14 +1,18 @@
 //! The display mesh: patches cut so that they share all points, with irradiance at the points.
 
+mod levels;
 mod outline;
 mod points;
 mod seams;
 mod smooth;
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 use sir_geom::{Barycentric, Rgb, Scene, Side, TriangleId};
 use sir_mesh::{PatchId, PatchMesh, SideId};
 
+use levels::Levels;
 use outline::{Corner, Outline};
 use seams::Seams;
 use smooth::{Groups, RimPiece};
@@ -45,7 +49,7 @@ pub struct Piece<'a> {
 /// that continue each other across an edge with nothing between them, bent by less than 30°. The mean is weighted by the angle at the vertex over
 /// the distance to the patch's centre. On a regular subdivision it reproduces a linear field. It is the
 /// irradiance that is averaged and not the radiosity, so that colours do not run into each other where materials
-/// change: `B = M + ρE` is evaluated with the material of each triangle.
+/// change: `B = M + ρE` is evaluated with the material, and the texture, of each triangle.
 #[derive(Clone, Debug)]
 pub struct DisplayMesh<'a> {
     pub(crate) scene: &'a Scene,
@@ -61,6 +65,8 @@ pub struct DisplayMesh<'a> {
     piece_starts: Vec<u32>,
     /// Where the pieces of each triangle begin; one more than there are triangles.
     first_pieces: Vec<u32>,
+    /// Made when a picture first needs them.
+    levels: OnceLock<Levels>,
 }
 
 impl<'a> DisplayMesh<'a> {
@@ -87,6 +93,7 @@ impl<'a> DisplayMesh<'a> {
             triangles: Vec::with_capacity(mesh.side_count()),
             piece_starts: Vec::with_capacity(mesh.side_count() + 1),
             first_pieces: Vec::with_capacity(scene.triangles().len() + 1),
+            levels: OnceLock::new(),
         };
         display.emit(&seams, &mut rims);
         display
@@ -171,16 +178,45 @@ impl<'a> DisplayMesh<'a> {
         Some((weighted(0) + weighted(1) + weighted(2)) / (w[0] + w[1] + w[2]))
     }
 
-    /// Radiosity `B = M + ρE` \[W/m²\] of a side of a triangle of the scene on which `irradiance` falls; of a mesh of errors `ρE`.
+    /// Radiosity `B = M + ρE` \[W/m²\] of a side of a patch of a triangle on which `irradiance` falls, on the mean over the
+    /// patch; of a mesh of errors `ρE`.
     #[must_use]
-    pub fn radiosity(&self, triangle: TriangleId, side: Side, irradiance: Rgb) -> Rgb {
-        let emitted = if self.emits { self.scene.exitance(triangle, side) } else { Rgb::ZERO };
-        emitted + self.scene.material(triangle).reflectance * irradiance
+    pub fn radiosity(&self, triangle: TriangleId, patch: PatchId, side: Side, irradiance: Rgb) -> Rgb {
+        let emitted =
+            if self.emits { self.mesh.exitance(self.scene, triangle, patch, side) } else { Rgb::ZERO };
+        emitted + self.mesh.reflectance(self.scene, triangle, patch) * irradiance
+    }
+
+    /// The same about a point of a triangle, whose textures are shown as the mean over `width` \[m\]; with 0 as they are at the
+    /// point.
+    #[must_use]
+    pub fn radiosity_at(
+        &self,
+        triangle: TriangleId,
+        point: Barycentric,
+        side: Side,
+        irradiance: Rgb,
+        width: f64,
+    ) -> Rgb {
+        let Self { scene, mesh, .. } = self;
+        if !mesh.is_varied(triangle) {
+            return self.radiosity(triangle, mesh.patch_at(triangle, point), side, irradiance);
+        }
+        let levels = self.levels.get_or_init(|| Levels::of(scene));
+        let emitted =
+            if self.emits { levels.exitance(scene, triangle, side, point, width) } else { Rgb::ZERO };
+        emitted + levels.reflectance(scene, triangle, point, width) * irradiance
+    }
+
+    /// Radiosity \[W/m²\] of a piece with this irradiance.
+    pub(crate) fn radiosity_of(&self, piece: &Piece<'_>, irradiance: Rgb) -> Rgb {
+        let patch = self.mesh.patch_of_side(piece.triangle, piece.id);
+        self.radiosity(piece.triangle, patch, piece.side, irradiance)
     }
 
     /// Radiosity \[W/m²\] of a piece as it was solved, not interpolated.
     pub(crate) fn own_radiosity(&self, piece: &Piece<'_>) -> Rgb {
-        self.radiosity(piece.triangle, piece.side, self.irradiance[piece.id.index()])
+        self.radiosity_of(piece, self.irradiance[piece.id.index()])
     }
 
     fn triangles_of(&self, triangle: TriangleId, patch: PatchId, side: Side) -> &[[u32; 3]] {

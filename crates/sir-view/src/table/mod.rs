@@ -23,13 +23,13 @@ pub struct Row {
     pub patch: u32,
     /// Number of its triangle in the scene's file, from 0.
     pub triangle: u32,
-    /// Area \[m²\].
+    /// Area \[m²\], gaps included.
     pub area: f64,
     /// Centre of area \[m\].
     pub centre: DVec3,
     /// Unit normal on this side.
     pub normal: DVec3,
-    /// Radiosity `B` \[W/m²\].
+    /// Radiosity `B` \[W/m²\] of what is not gap; with a texture, its mean.
     pub radiosity: Rgb,
     /// Irradiance `E` \[W/m²\].
     pub irradiance: Rgb,
@@ -96,14 +96,14 @@ impl Table {
         let mut rows: Vec<Row> = Vec::with_capacity(mesh.side_count());
         mesh.for_each_side(|t, patch, side, id| {
             let (e, se) = (irradiance[id.index()], error[id.index()]);
-            let reflectance = scene.material(t).reflectance;
+            let reflectance = mesh.reflectance(scene, t, patch);
             rows.push(Row {
                 patch: patch.0,
                 triangle: scene.triangle(t).source,
                 area: mesh.patch_area(t),
                 centre: DVec3::ZERO,
                 normal: DVec3::ZERO,
-                radiosity: scene.exitance(t, side) + reflectance * e,
+                radiosity: mesh.exitance(scene, t, patch, side) + reflectance * e,
                 irradiance: e,
                 error: reflectance * se,
             });

@@ -43,8 +43,13 @@ pub(super) fn open(path: &Path) -> Result<(Root, Option<Vec<u8>>), LoadError> {
 /// scene may leave out, but not for the crate `gltf`.
 fn forget_unused(document: &mut Value) {
     let Some(members) = document.as_object_mut() else { return };
-    for unused in ["animations", "samplers", "skins"] {
+    for unused in ["animations", "skins"] {
         members.remove(unused);
+    }
+    for sampler in members.get_mut("samplers").and_then(Value::as_array_mut).into_iter().flatten() {
+        if let Some(sampler) = sampler.as_object_mut() {
+            sampler.retain(|name, _| name == "wrapS" || name == "wrapT");
+        }
     }
     for scene in members.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
         if let Some(scene) = scene.as_object_mut() {

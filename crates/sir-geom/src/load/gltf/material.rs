@@ -2,15 +2,19 @@
 
 use std::f64::consts::PI;
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use ::gltf::json::Index;
-use ::gltf::json::material::Material as Source;
-use ::gltf::json::texture::Info;
+use ::gltf::json::material::{AlphaMode, Material as Source};
+use ::gltf::json::texture::{Info, WrappingMode};
+use ::gltf::json::validation::Checked;
+use glam::DVec2;
 
 use super::super::files::{self, Reference};
-use super::super::{DEFAULT_REFLECTANCE, texture};
+use super::super::texture::{self, Image, Layer, Placement};
+use super::super::{DEFAULT_REFLECTANCE, notes};
 use super::{LoadError, Reader, lookup};
-use crate::{Material, MaterialId, Rgb, Sides};
+use crate::{MAX_REFLECTANCE, Material, MaterialId, Opacity, Rgb, Sides, Wrap};
 
 /// Where the encoded bytes of an image lie. Images may share them, and large ones take time to decode.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
@@ -23,42 +27,94 @@ pub(super) enum Pixels {
     Own(usize),
 }
 
+/// Where the coordinates of a texture come from: the number of an attribute, and what becomes of its numbers.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Coordinates {
+    pub(super) set: u32,
+    pub(super) placement: Placement,
+}
+
+/// What a primitive must know about its material.
+#[derive(Clone)]
+pub(super) struct Known {
+    pub(super) id: MaterialId,
+    /// The sets of coordinates that its textures use.
+    pub(super) sets: Rc<[Coordinates]>,
+    pub(super) alpha: Alpha,
+}
+
+/// What becomes of the alpha of vertex colours.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Alpha {
+    /// It has no meaning.
+    Opaque,
+    /// It should decide where there is a surface, but is not asked.
+    Mask,
+    /// It is a share of the light.
+    Blend,
+}
+
 impl Reader<'_> {
-    /// The material at an index of the file, added when it is first used; `None` is the default material.
-    pub(super) fn material(&mut self, index: Option<Index<Source>>) -> Result<MaterialId, LoadError> {
-        let key = index.map(|i| i.value());
-        if key.is_none() {
+    /// The material at an index of the file, added when it is first used; `None` is the default material, which is white
+    /// under colours of vertices.
+    pub(super) fn material(
+        &mut self,
+        index: Option<Index<Source>>,
+        is_coloured: bool,
+    ) -> Result<Known, LoadError> {
+        let key = (index.map(|i| i.value()), index.is_none() && is_coloured);
+        if key == (None, false) {
             self.notes.count("mesh primitives have no material, and are made grey", 1);
         }
-        if let Some(&id) = self.materials.get(&key) {
-            return Ok(id);
+        if let Some(known) = self.materials.get(&key) {
+            return Ok(known.clone());
         }
-        let material = match index {
+        let mut sets = Vec::new();
+        let (material, alpha) = match index {
             Some(index) => {
-                self.convert(lookup(self.path, self.root, index, "a mesh primitive: material")?)?
+                let source = lookup(self.path, self.root, index, "a mesh primitive: material")?;
+                (self.convert(source, &mut sets)?, alpha(source))
             }
-            None => Material::diffuse("", Rgb::splat(DEFAULT_REFLECTANCE)),
+            None => {
+                let reflectance = if is_coloured { MAX_REFLECTANCE } else { DEFAULT_REFLECTANCE };
+                (Material::diffuse("", Rgb::splat(reflectance)), Alpha::Opaque)
+            }
         };
         let id = self.builder.add_material(self.options.sides.apply(material));
-        self.materials.insert(key, id);
-        Ok(id)
+        let known = Known { id, sets: sets.into(), alpha };
+        self.materials.insert(key, known.clone());
+        Ok(known)
     }
 
     /// Base colour to reflectance, emitted radiance `L` to exitance `π L` (the emitted light of glTF is a
     /// radiance in cd/m²; specification, section 3.9.3).
-    fn convert(&mut self, source: &Source) -> Result<Material, LoadError> {
-        let pbr = &source.pbr_metallic_roughness;
-        let [r, g, b, _] = pbr.base_color_factor.0.map(f64::from);
-        let reflectance = Rgb::new(r, g, b) * self.mean(pbr.base_color_texture.as_ref())?;
+    ///
+    /// The base colour of a metal is what it reflects as a mirror. As a diffuse reflectance it sends the right amount of light into
+    /// the wrong directions, while none would make metals black.
+    fn convert(&mut self, source: &Source, sets: &mut Vec<Coordinates>) -> Result<Material, LoadError> {
+        let name = source.name.as_deref().unwrap_or_default();
+        self.note_ignored(source, name);
+        let ([r, g, b, a], info) = base_colour(source);
+        let base = self.layer(info, sets)?;
         let mut radiance = Rgb::from_array(source.emissive_factor.0.map(f64::from));
-        if radiance != Rgb::ZERO {
-            radiance *= self.mean(source.emissive_texture.as_ref())?;
-        }
+        let emissive = match radiance == Rgb::ZERO {
+            true => None,
+            false => self.layer(source.emissive_texture.as_ref(), sets)?,
+        };
         if let Some(strength) = source.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref()) {
             radiance *= f64::from(strength.emissive_strength.0);
         }
-        let name = source.name.as_deref().unwrap_or_default();
-        let mut material = Material::diffuse(name, reflectance).emitting(PI * radiance);
+        let mut material = Material::diffuse(name, Rgb::ZERO);
+        (material.reflectance, material.reflectance_map) = texture::colour(Rgb::new(r, g, b), base.as_ref());
+        (material.exitance, material.exitance_map) = texture::colour(PI * radiance, emissive.as_ref());
+        material.opacity = match alpha(source) {
+            Alpha::Opaque => Opacity::default(),
+            Alpha::Mask => {
+                let cutoff = source.alpha_cutoff.map_or(0.5, |cutoff| as_written(cutoff.0));
+                texture::opacity(a, base.as_ref(), Some(cutoff))
+            }
+            Alpha::Blend => texture::opacity(a, base.as_ref(), None),
+        };
         if source.double_sided {
             material.sides = Sides::Both;
             material.back_emits = true;
@@ -66,23 +122,62 @@ impl Reader<'_> {
         Ok(material)
     }
 
-    /// Mean colour of a texture; one where there is none or it cannot be read.
-    fn mean(&mut self, info: Option<&Info>) -> Result<Rgb, LoadError> {
-        let Some(info) = info else {
-            return Ok(Rgb::ONE);
+    fn note_ignored(&mut self, source: &Source, name: &str) {
+        let name = notes::quoted(name);
+        if source.extensions.as_ref().is_some_and(|e| e.unlit.is_some()) {
+            self.notes.name(
+                "materials are unlit, which has no meaning here: they reflect their base colour",
+                &name,
+            );
+        }
+        if source.normal_texture.is_some()
+            || source.occlusion_texture.is_some()
+            || source.pbr_metallic_roughness.metallic_roughness_texture.is_some()
+        {
+            self.notes
+                .name("materials have textures of bumps, gloss or baked shadow, which were ignored", &name);
+        }
+        if !matches!(source.alpha_mode, Checked::Valid(_)) {
+            self.notes.name("materials have an unknown alpha mode, and were made opaque", &name);
+        }
+    }
+
+    /// A texture on a surface; `None` where there is none or it cannot be read.
+    fn layer(
+        &mut self,
+        info: Option<&Info>,
+        sets: &mut Vec<Coordinates>,
+    ) -> Result<Option<Layer>, LoadError> {
+        let Some(info) = info else { return Ok(None) };
+        let source = lookup(self.path, self.root, info.index, "a material: texture")?;
+        let wrap = match source.sampler {
+            Some(index) => {
+                let sampler = lookup(self.path, self.root, index, "a texture: sampler")?;
+                [sampler.wrap_s, sampler.wrap_t].map(wrap)
+            }
+            None => [Wrap::Repeat; 2],
         };
-        let image = lookup(self.path, self.root, info.index, "a material: texture")?.source.value();
-        let pixels = self.pixels(image);
-        let mean = match self.textures.get(&pixels) {
-            Some(&mean) => mean,
-            None => {
-                let mean = self.image(image, &pixels).and_then(|bytes| texture::mean_colour(&bytes));
-                let mean = mean
-                    .inspect_err(|e| self.notes.name(texture::UNREADABLE, format!("image {image} ({e})")));
-                *self.textures.entry(pixels).or_insert(mean.ok())
+        let image = self.decoded(source.source.value());
+        Ok(image.map(|image| Layer::new(image, wrap, coordinates(info), sets)))
+    }
+
+    /// An image of the file, read when it is first asked for.
+    fn decoded(&mut self, index: usize) -> Option<Image> {
+        let pixels = self.pixels(index);
+        if let Some(&image) = self.textures.get(&pixels) {
+            return image;
+        }
+        let name = format!("image {index}");
+        let texture = self.image(index, &pixels).and_then(|bytes| self.images.decode(&bytes));
+        let image = match texture {
+            Ok(texture) => Some(self.images.add(texture, &name, self.builder, self.notes)),
+            Err(e) => {
+                self.notes.name(texture::UNREADABLE, format!("{name} ({e})"));
+                None
             }
         };
-        Ok(mean.unwrap_or(Rgb::ONE))
+        self.textures.insert(pixels, image);
+        image
     }
 
     fn pixels(&self, index: usize) -> Pixels {
@@ -116,4 +211,64 @@ impl Reader<'_> {
             (_, None, None) => Err("it has no data".to_owned()),
         }
     }
+}
+
+/// Base colour with alpha, and its texture.
+///
+/// Of a material with `KHR_materials_pbrSpecularGlossiness` it is the diffuse colour; where this is black, as that of metals
+/// is, the specular one.
+fn base_colour(source: &Source) -> ([f64; 4], Option<&Info>) {
+    let glossy = source.extensions.as_ref().and_then(|e| e.pbr_specular_glossiness.as_ref());
+    let (factor, info) = match glossy {
+        Some(glossy) if glossy.diffuse_factor.0[..3] == [0.0; 3] => {
+            let [r, g, b] = glossy.specular_factor.0;
+            // The alpha of this texture is something else.
+            let info = glossy.specular_glossiness_texture.as_ref();
+            ([r, g, b, glossy.diffuse_factor.0[3]], info.filter(|_| alpha(source) == Alpha::Opaque))
+        }
+        Some(glossy) => (glossy.diffuse_factor.0, glossy.diffuse_texture.as_ref()),
+        None => {
+            let pbr = &source.pbr_metallic_roughness;
+            (pbr.base_color_factor.0, pbr.base_color_texture.as_ref())
+        }
+    };
+    (factor.map(f64::from), info)
+}
+
+fn alpha(source: &Source) -> Alpha {
+    match source.alpha_mode {
+        Checked::Valid(AlphaMode::Mask) => Alpha::Mask,
+        Checked::Valid(AlphaMode::Blend) => Alpha::Blend,
+        _ => Alpha::Opaque,
+    }
+}
+
+/// The number with the fewest digits that is this one in single precision. Values of alpha that are as large as a threshold must
+/// pass it: 51/255 is 0.2, but not the 0.2 of single precision.
+fn as_written(x: f32) -> f64 {
+    x.to_string().parse().unwrap_or_else(|_| f64::from(x))
+}
+
+fn wrap(mode: Checked<WrappingMode>) -> Wrap {
+    match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    }
+}
+
+/// Coordinates are scaled, then turned, then moved (`KHR_texture_transform`).
+///
+/// The turn is counter-clockwise in the plane of the image, whose second axis points down; the matrix in the text of the extension has
+/// the other sign, which its authors and all readers take for a mistake (Khronos' glTF issue 1563).
+fn coordinates(info: &Info) -> Coordinates {
+    let plain = Coordinates { set: info.tex_coord, placement: Placement::PLAIN };
+    let Some(transform) = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref()) else {
+        return plain;
+    };
+    let [x, y] = transform.scale.0.map(f64::from);
+    let (sin, cos) = libm::sincos(f64::from(transform.rotation.0));
+    let offset = DVec2::from_array(transform.offset.0.map(f64::from));
+    let placement = Placement { x_axis: x * DVec2::new(cos, -sin), y_axis: y * DVec2::new(sin, cos), offset };
+    Coordinates { set: transform.tex_coord.unwrap_or(plain.set), placement }
 }

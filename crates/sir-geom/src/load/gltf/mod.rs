@@ -7,6 +7,7 @@
 mod access;
 mod camera;
 mod container;
+mod corners;
 mod light;
 mod material;
 mod primitive;
@@ -19,16 +20,34 @@ use std::rc::Rc;
 use ::gltf::json::{Index, Root, root::Get};
 
 use super::notes::Notes;
+use super::texture::{Image, Images};
 use super::{LoadError, LoadOptions, files};
-use crate::{MaterialId, Rgb, SceneBuilder};
+use crate::SceneBuilder;
 
 /// Extensions whose meaning is taken in, or does not change a diffuse scene.
-const KNOWN_EXTENSIONS: [&str; 4] = [
+const KNOWN_EXTENSIONS: [&str; 6] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
+
+/// Extensions about gloss, without which materials are what they are to this program anyway.
+const GLOSS_EXTENSIONS: [&str; 7] = [
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_dispersion",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+];
+
+/// Extensions about light in materials.
+const GLASS_EXTENSIONS: [&str; 3] =
+    ["KHR_materials_diffuse_transmission", "KHR_materials_transmission", "KHR_materials_volume"];
 
 /// The most unknown extensions that are named.
 const MOST_NAMES: usize = 8;
@@ -53,7 +72,9 @@ pub(super) fn read(
         notes,
         materials: BTreeMap::new(),
         textures: BTreeMap::new(),
+        images: Images::default(),
         vertices: 0,
+        coordinates: 0,
         triangles: 0,
         primitives: 0,
     };
@@ -68,12 +89,15 @@ struct Reader<'a> {
     options: LoadOptions,
     builder: &'a mut SceneBuilder,
     notes: &'a mut Notes,
-    /// Materials met so far by their index in the file; `None` stands for the default one.
-    materials: BTreeMap<Option<usize>, MaterialId>,
-    /// Mean colours of images; `None` for one that cannot be read.
-    textures: BTreeMap<material::Pixels, Option<Rgb>>,
+    /// Materials met so far by their index in the file; no index stands for the default one, which comes in two colours.
+    materials: BTreeMap<(Option<usize>, bool), material::Known>,
+    /// Images met so far; `None` for one that cannot be read.
+    textures: BTreeMap<material::Pixels, Option<Image>>,
+    images: Images,
     /// How many were added so far.
     vertices: usize,
+    /// Coordinates of textures and colours.
+    coordinates: usize,
     triangles: usize,
     primitives: usize,
 }
@@ -120,7 +144,16 @@ fn check_extensions(path: &Path, root: &Root, notes: &mut Notes) -> Result<(), L
         return Err(LoadError::RequiredExtensions { path: path.to_owned(), names });
     }
     for name in unknown(&root.extensions_used) {
-        notes.name("glTF extensions have no meaning here and were ignored", name);
+        let what = match &*name {
+            name if GLOSS_EXTENSIONS.contains(&name) => {
+                "glTF extensions describe gloss, which diffuse surfaces lack, and were ignored"
+            }
+            name if GLASS_EXTENSIONS.contains(&name) => {
+                "glTF extensions describe light in materials, and were ignored: light passes only where alpha lets it"
+            }
+            _ => "glTF extensions have no meaning here and were ignored",
+        };
+        notes.name(what, name);
     }
     Ok(())
 }

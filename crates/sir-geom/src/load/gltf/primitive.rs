@@ -2,18 +2,24 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::rc::Rc;
 
 use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Vec2};
 
 use super::super::MAX_ELEMENTS;
+use super::corners::{Attributes, MOST_SETS, Values};
 use super::{LoadError, Reader};
 use crate::VertexId;
 
-/// Vertices of one instance of a mesh by their position accessor, which primitives often share.
-pub(super) type Shared = HashMap<usize, Vec<VertexId>>;
+/// What the primitives of one instance of a mesh share, by the number of its accessor.
+#[derive(Default)]
+pub(super) struct Shared {
+    vertices: HashMap<usize, Rc<[VertexId]>>,
+    pub(super) attributes: Attributes,
+}
 
 impl Reader<'_> {
     /// Adds a primitive in world space. `shared` has the vertices that other primitives of this mesh instance
@@ -35,9 +41,6 @@ impl Reader<'_> {
         if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
             self.notes.count("mesh primitives have morph targets, and are read in their basic shape", 1);
         }
-        if primitive.attributes.keys().any(|k| matches!(k, Checked::Valid(Semantic::Colors(_)))) {
-            self.notes.count("mesh primitives have vertex colours, which were ignored", 1);
-        }
         let Some(vertices) = self.vertices_of(primitive, to_world, shared, what)? else {
             self.notes.count("mesh primitives without positions were skipped", 1);
             return Ok(());
@@ -46,33 +49,46 @@ impl Reader<'_> {
         let triangles = Triangles { mode, corners: corners.len() };
         self.triangles += triangles.count();
         self.check_size("triangles", self.triangles)?;
-        let material = self.material(primitive.material)?;
+        let is_coloured = primitive.attributes.contains_key(&Checked::Valid(Semantic::Colors(0)));
+        let material = self.material(primitive.material, is_coloured)?;
+        let Values { coordinates, colours } =
+            self.values(primitive, &material, vertices.len(), &mut shared.attributes, what)?;
+        self.coordinates += triangles.count() * (coordinates.len() + usize::from(colours.is_some()));
+        self.check_size("texture coordinates and colours", self.coordinates)?;
         // A mirror image turns fronts into backs unless the order of the corners is turned, too.
         let mirrored = to_world.matrix3.determinant() < 0.0;
         for i in 0..triangles.count() {
-            let mut triangle = triangles.get(i).map(|c| vertices[corners[c]]);
+            let mut triangle = triangles.get(i).map(|c| corners[c]);
             if mirrored {
                 triangle.swap(1, 2);
             }
-            self.builder.add_polygon(&triangle, material);
+            self.builder.add_polygon(&triangle.map(|v| vertices[v]), material.id);
+            if !coordinates.is_empty() || colours.is_some() {
+                let mut sets = [[Vec2::ZERO; 3]; MOST_SETS];
+                for (set, (places, placement)) in sets.iter_mut().zip(&coordinates) {
+                    *set = triangle.map(|v| placement.apply(places[v]));
+                }
+                let tint = colours.as_ref().map(|colours| triangle.map(|v| colours[v]));
+                self.builder.set_corners(&sets[..coordinates.len().min(MOST_SETS)], tint);
+            }
         }
         Ok(())
     }
 
     /// The vertices of a primitive, which are added to `shared` if they are not there yet.
-    fn vertices_of<'s>(
+    fn vertices_of(
         &mut self,
         primitive: &Primitive,
         to_world: &DAffine3,
-        shared: &'s mut Shared,
+        shared: &mut Shared,
         what: &str,
-    ) -> Result<Option<&'s [VertexId]>, LoadError> {
+    ) -> Result<Option<Rc<[VertexId]>>, LoadError> {
         use ComponentType::{F32, I8, I16, U8, U16};
         let Some(&accessor) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
             return Ok(None);
         };
-        let vacant = match shared.entry(accessor.value()) {
-            Entry::Occupied(known) => return Ok(Some(known.into_mut())),
+        let vacant = match shared.vertices.entry(accessor.value()) {
+            Entry::Occupied(known) => return Ok(Some(Rc::clone(known.get()))),
             Entry::Vacant(vacant) => vacant,
         };
         // Whole numbers are those of KHR_mesh_quantization.
@@ -80,7 +96,7 @@ impl Reader<'_> {
         self.vertices += positions.len();
         self.check_size("vertices", self.vertices)?;
         let add = |p| self.builder.add_vertex(to_world.transform_point3(DVec3::from_array(p)));
-        Ok(Some(vacant.insert(positions.into_iter().map(add).collect())))
+        Ok(Some(Rc::clone(vacant.insert(positions.into_iter().map(add).collect()))))
     }
 
     /// Numbers of the vertices of a primitive in the order of its corners.

@@ -54,7 +54,7 @@ impl Reader<'_> {
             // Also those without triangles take time, and a small file can ask for many.
             self.primitives += mesh.primitives.len();
             self.check_size("mesh primitives", self.primitives)?;
-            let mut shared = Shared::new();
+            let mut shared = Shared::default();
             for (i, primitive) in mesh.primitives.iter().enumerate() {
                 let what = format!("mesh {}, primitive {i}", index.value());
                 self.primitive(primitive, to_world, &mut shared, &what)?;

@@ -8,16 +8,19 @@ use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use super::super::files::shortened;
+use super::corners::Corners;
 
 /// An OBJ file in plain form.
 #[derive(Debug, Default)]
 pub(super) struct Obj {
-    /// Statements `v`, `f`, `o` and `usemtl`, without texture coordinates and normals.
+    /// Statements `v`, `f`, `o` and `usemtl`, with positions alone.
     pub(super) text: String,
     /// What stands behind each `mtllib`.
     pub(super) libraries: Vec<String>,
     /// What stands behind each `usemtl`.
     pub(super) used_materials: BTreeSet<String>,
+    /// Texture coordinates and colours.
+    pub(super) corners: Corners,
     /// Statements `p` and `l`, and faces with one or two corners.
     pub(super) points_and_lines: usize,
 }
@@ -30,8 +33,13 @@ pub(super) fn obj(text: &str) -> Obj {
         let (keyword, rest) = split_word(&statement);
         pad_to(&mut plain.text, &mut lines, line);
         match keyword {
-            "v" => push_words(&mut plain.text, "v", rest.split_whitespace().take(3).map(coordinate)),
+            "v" => {
+                push_words(&mut plain.text, "v", rest.split_whitespace().take(3).map(coordinate));
+                plain.corners.add_vertex(rest.split_whitespace());
+            }
+            "vt" => plain.corners.add_place(rest.split_whitespace()),
             "f" if rest.split_whitespace().nth(2).is_some() => {
+                plain.corners.add_face(rest.split_whitespace());
                 push_words(&mut plain.text, "f", rest.split_whitespace().map(position));
             }
             "f" | "l" | "p" => plain.points_and_lines += 1,
@@ -49,34 +57,52 @@ pub(super) fn obj(text: &str) -> Obj {
     plain
 }
 
+/// A material library in plain form.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Mtl {
+    /// Statements `newmtl`, `Kd`, `Ke`, `d`, `Tr`, and their `map_…`.
+    pub(super) text: String,
+    /// Other statements that would change what is seen, but have no meaning for diffuse surfaces.
+    pub(super) ignored: BTreeSet<String>,
+}
+
+/// Statements about gloss, refraction and ambient light, which most libraries have and nobody would miss.
+const USUAL: [&str; 8] = ["illum", "ka", "ks", "ni", "ns", "tf", "map_ka", "sharpness"];
+
 /// Takes from MTL text the names and diffuse properties of materials.
 ///
 /// # Errors
 ///
 /// The line and what is wrong with it.
-pub(super) fn mtl(text: &str) -> Result<String, (usize, String)> {
-    let mut plain = String::new();
+pub(super) fn mtl(text: &str) -> Result<Mtl, (usize, String)> {
+    let mut plain = Mtl::default();
     let mut lines = 0;
     for (line, statement) in statements(text) {
         let (keyword, rest) = split_word(&statement);
-        pad_to(&mut plain, &mut lines, line);
-        for known in ["newmtl", "Kd", "Ke", "map_Kd", "map_Ke"] {
-            if keyword.eq_ignore_ascii_case(known) {
-                match (known, rest.split_whitespace().count()) {
-                    // One number stands for three (the MTL specification has this for all colours).
-                    ("Kd" | "Ke", 1) => push_words(&mut plain, known, [rest; 3].into_iter()),
-                    ("Kd" | "Ke", 0 | 2) => {
-                        let start = shortened(&statement, 80);
-                        return Err((line, format!("\"{start}\" must have one or three numbers")));
-                    }
-                    ("newmtl", 0) => return Err((line, "a material has no name".to_owned())),
-                    ("map_Kd" | "map_Ke", 0) => {}
-                    _ => push_words(&mut plain, known, [rest].into_iter()),
-                }
+        pad_to(&mut plain.text, &mut lines, line);
+        let known = ["newmtl", "Kd", "Ke", "d", "Tr", "map_Kd", "map_Ke", "map_d"];
+        let Some(known) = known.into_iter().find(|known| keyword.eq_ignore_ascii_case(known)) else {
+            if !keyword.is_empty() && !USUAL.contains(&&*keyword.to_ascii_lowercase()) {
+                plain.ignored.insert(shortened(keyword, 40));
             }
+            continue;
+        };
+        let text = &mut plain.text;
+        match (known, rest.split_whitespace().count()) {
+            // One number stands for three (the MTL specification has this for all colours).
+            ("Kd" | "Ke", 1) => push_words(text, known, [rest; 3].into_iter()),
+            ("Kd" | "Ke", 0 | 2) => {
+                let start = shortened(&statement, 80);
+                return Err((line, format!("\"{start}\" must have one or three numbers")));
+            }
+            ("newmtl", 0) => return Err((line, "a material has no name".to_owned())),
+            ("map_Kd" | "map_Ke" | "map_d" | "d" | "Tr", 0) => {}
+            // There may be an option `-halo` before the number.
+            ("d" | "Tr", _) => push_words(text, known, rest.split_whitespace().last().into_iter()),
+            _ => push_words(text, known, [rest].into_iter()),
         }
     }
-    plain.push('\n');
+    plain.text.push('\n');
     Ok(plain)
 }
 
@@ -155,7 +181,9 @@ mod tests {
 
     #[test]
     fn colours_have_three_numbers() {
-        assert_eq!(mtl("newmtl  a\n\tkd 0.5\nKe 1 2 3 # x").unwrap(), "newmtl a\nKd 0.5 0.5 0.5\nKe 1 2 3\n");
+        let plain = mtl("newmtl  a\n\tkd 0.5\nKe 1 2 3 # x\nD -halo 0.3\nillum 2\nbump x.png").unwrap();
+        assert_eq!(plain.text, "newmtl a\nKd 0.5 0.5 0.5\nKe 1 2 3\nd 0.3\n\n\n");
+        assert_eq!(plain.ignored, ["bump".to_owned()].into());
         assert_eq!(mtl("newmtl a\n\nKd 0.5 1").unwrap_err().0, 3);
     }
 }

@@ -1,19 +1,23 @@
 //! Wavefront OBJ with material libraries (MTL).
 //!
-//! `Kd` is the reflectance, times the mean of `map_Kd`; `Ke`, times the mean of `map_Ke`, the radiance that the
-//! front emits: a file has no notion of sides, so both reflect and only the front emits. Polygons are cut into
-//! fans from their first corner.
+//! `Kd` is the reflectance, times `map_Kd` and the colours of vertices; `Ke`, times `map_Ke`, the radiance that the
+//! front emits: a file has no notion of sides, so both reflect and only the front emits. `d`, or else `1 − Tr`, times
+//! `map_d` is the opacity.
 
 mod clean;
+mod corners;
+mod map;
 mod mtl;
 
 use std::path::Path;
 
-use glam::DVec3;
+use glam::{DVec3, Vec2, Vec4};
 
 use super::notes::Notes;
+use super::texture::Placement;
 use super::{DEFAULT_REFLECTANCE, LoadError, LoadOptions, files};
-use crate::{Material, MaterialId, Rgb, SceneBuilder, Sides, VertexId};
+use crate::{MAX_REFLECTANCE, Material, Rgb, SceneBuilder, Sides, VertexId};
+use corners::Corners;
 
 /// A statement that makes `tobj` ask for materials, which all are at hand by then.
 const ALL_LIBRARIES: &str = "mtllib *\n";
@@ -30,7 +34,7 @@ pub(super) fn read(
 ) -> Result<(), LoadError> {
     let obj = clean::obj(&String::from_utf8_lossy(&files::read_scene(path)?));
     notes.count("points and lines were skipped", obj.points_and_lines);
-    let mut library = mtl::Library::new(&obj.used_materials, options);
+    let mut library = mtl::Library::new(&obj.used_materials, obj.corners.has_colours(), options, builder);
     for names in &obj.libraries {
         library.add(path, names, notes)?;
     }
@@ -38,7 +42,8 @@ pub(super) fn read(
         notes.name("materials are in no library, and are made grey", name);
     }
     let models = parse(path, &obj.text, &library)?;
-    add(&models, library.materials, options, builder, notes);
+    let materials = library.finish();
+    add(&models, &obj.corners, &materials, options, builder, notes);
     Ok(())
 }
 
@@ -90,35 +95,69 @@ fn no_such_vertex(path: &Path, text: &str) -> LoadError {
 
 fn add(
     models: &[tobj::Model],
-    materials: Vec<Material>,
+    corners: &Corners,
+    materials: &[mtl::Known],
     options: LoadOptions,
     builder: &mut SceneBuilder,
     notes: &mut Notes,
 ) {
-    let materials: Vec<MaterialId> = materials.into_iter().map(|m| builder.add_material(m)).collect();
     let mut default = None;
+    let mut first = 0;
     for tobj::Model { mesh, name } in models.iter().filter(|model| !model.mesh.indices.is_empty()) {
         builder.begin_group(if name == NO_OBJECT { "" } else { name });
-        let material = mesh.material_id.map(|i| materials[i]).unwrap_or_else(|| {
-            let grey = Material::diffuse("", Rgb::splat(DEFAULT_REFLECTANCE)).with_sides(Sides::Both);
-            *default.get_or_insert_with(|| builder.add_material(options.sides.apply(grey)))
+        let known = mesh.material_id.map(|i| &materials[i]);
+        let material = known.map(|known| known.id).unwrap_or_else(|| {
+            let reflectance = if corners.has_colours() { MAX_REFLECTANCE } else { DEFAULT_REFLECTANCE };
+            let plain = Material::diffuse("", Rgb::splat(reflectance)).with_sides(Sides::Both);
+            *default.get_or_insert_with(|| builder.add_material(options.sides.apply(plain)))
         });
+        let placements = known.map_or(&[][..], |known| &known.placements);
         let vertices: Vec<VertexId> =
             mesh.positions.chunks_exact(3).map(|p| builder.add_vertex(DVec3::from_slice(p))).collect();
-        let corners: Vec<VertexId> = mesh.indices.iter().map(|&i| vertices[i as usize]).collect();
+        let all: Vec<VertexId> = mesh.indices.iter().map(|&i| vertices[i as usize]).collect();
         // An absent list of arities means triangles only.
-        let triangles = vec![3; if mesh.face_arities.is_empty() { corners.len() / 3 } else { 0 }];
-        let mut rest = &corners[..];
+        let triangles = vec![3; if mesh.face_arities.is_empty() { all.len() / 3 } else { 0 }];
+        let mut rest = &all[..];
         for &arity in mesh.face_arities.iter().chain(&triangles) {
             let (face, behind) = rest.split_at(arity as usize);
             builder.add_polygon(face, material);
+            if !paint(face, first, corners, placements, builder) {
+                notes.count("faces lack coordinates for a texture, and have its mean colour", 1);
+            }
+            first += face.len();
             rest = behind;
         }
-        if mesh.material_id.is_none() {
+        if mesh.material_id.is_none() && !corners.has_colours() {
             notes.count(
                 "faces have no known material, and are made grey",
                 mesh.face_arities.len() + triangles.len(),
             );
         }
     }
+}
+
+/// Gives the face that was added last, whose first corner has the number `first`, its coordinates and colours; `false` if some
+/// coordinates are absent.
+fn paint(
+    face: &[VertexId],
+    first: usize,
+    corners: &Corners,
+    placements: &[Placement],
+    builder: &mut SceneBuilder,
+) -> bool {
+    let numbers = || first..first + face.len();
+    let places = || -> Option<Vec<Vec2>> { numbers().map(|i| corners.place(i)).collect() };
+    let places = if placements.is_empty() { Some(Vec::new()) } else { places() };
+    let sets: Vec<Vec<Vec2>> = match &places {
+        Some(places) => placements.iter().map(|p| places.iter().map(|&at| p.apply(at)).collect()).collect(),
+        None => Vec::new(),
+    };
+    let tint: Option<Vec<Vec4>> =
+        corners.has_colours().then(|| numbers().map(|i| corners.colour(i)).collect());
+    let tint = tint.filter(|tint| tint.iter().any(|&corner| corner != Vec4::ONE));
+    if !sets.is_empty() || tint.is_some() {
+        let sets: Vec<&[Vec2]> = sets.iter().map(|set| &set[..]).collect();
+        builder.set_polygon_corners(face, &sets, tint.as_deref());
+    }
+    places.is_some()
 }

@@ -4,36 +4,63 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
-use super::super::notes::Notes;
-use super::super::{DEFAULT_REFLECTANCE, LoadError, LoadOptions, files, texture};
-use super::{clean, line_at};
-use crate::{Material, Rgb, Sides};
+use super::super::notes::{Notes, quoted};
+use super::super::texture::{self, Image, Images, Layer, Placement};
+use super::super::{DEFAULT_REFLECTANCE, LoadError, LoadOptions, files};
+use super::{clean, line_at, map};
+use crate::{MAX_REFLECTANCE, Material, MaterialId, Opacity, Rgb, SceneBuilder, Sides, Texture};
 
 /// The materials of all libraries of an OBJ file, as far as its faces use them.
 #[derive(Debug)]
 pub(super) struct Library<'a> {
     /// Names of the materials to take in.
     wanted: &'a BTreeSet<String>,
+    /// Whether vertices have colours.
+    is_coloured: bool,
     options: LoadOptions,
-    pub(super) materials: Vec<Material>,
+    builder: &'a mut SceneBuilder,
+    materials: Vec<Known>,
     /// Places in `materials`; of equal names the last counts.
     pub(super) by_name: BTreeMap<String, usize>,
-    textures: HashMap<PathBuf, Option<Rgb>>,
+    /// Images that were read, and whether their brightness was made their alpha.
+    textures: HashMap<(PathBuf, bool), Option<Image>>,
+    images: Images,
     /// The files that were tried.
     read: HashSet<PathBuf>,
 }
 
+/// What a face must know about its material.
+#[derive(Debug)]
+pub(super) struct Known {
+    pub(super) id: MaterialId,
+    /// The sets of coordinates that its textures use.
+    pub(super) placements: Vec<Placement>,
+}
+
 impl<'a> Library<'a> {
     /// A library that takes in the materials of these names.
-    pub(super) fn new(wanted: &'a BTreeSet<String>, options: LoadOptions) -> Self {
+    pub(super) fn new(
+        wanted: &'a BTreeSet<String>,
+        is_coloured: bool,
+        options: LoadOptions,
+        builder: &'a mut SceneBuilder,
+    ) -> Self {
         Self {
             wanted,
+            is_coloured,
             options,
+            builder,
             materials: Vec::new(),
             by_name: BTreeMap::new(),
             textures: HashMap::new(),
+            images: Images::default(),
             read: HashSet::new(),
         }
+    }
+
+    /// The materials, in the order of the numbers in `by_name`.
+    pub(super) fn finish(self) -> Vec<Known> {
+        self.materials
     }
 
     /// Reads what a `mtllib` statement of the file `obj` names: one file whose name may have blanks, or else
@@ -68,7 +95,14 @@ impl<'a> Library<'a> {
 
     fn parse(&mut self, path: &Path, bytes: &[u8], notes: &mut Notes) -> Result<(), LoadError> {
         let syntax = |line, what| LoadError::Syntax { path: path.to_owned(), line, what };
-        let text = clean::mtl(&String::from_utf8_lossy(bytes)).map_err(|(line, what)| syntax(line, what))?;
+        let clean::Mtl { text, ignored } =
+            clean::mtl(&String::from_utf8_lossy(bytes)).map_err(|(line, what)| syntax(line, what))?;
+        for keyword in ignored {
+            notes.name(
+                "properties of materials have no meaning for diffuse surfaces and were ignored",
+                keyword,
+            );
+        }
         let mut rest = text.as_bytes();
         let (materials, _) = tobj::load_mtl_buf(&mut rest).map_err(|e| {
             let (line, statement) = line_at(&text, text.len() - rest.len());
@@ -76,88 +110,119 @@ impl<'a> Library<'a> {
         })?;
         for source in materials.into_iter().filter(|m| self.wanted.contains(&m.name)) {
             self.by_name.insert(source.name.clone(), self.materials.len());
-            let material = self.convert(&source, path, notes);
-            self.materials.push(self.options.sides.apply(material));
+            let mut placements = Vec::new();
+            let material = self.convert(&source, path, &mut placements, notes);
+            let id = self.builder.add_material(self.options.sides.apply(material));
+            self.materials.push(Known { id, placements });
         }
         Ok(())
     }
 
-    fn convert(&mut self, source: &tobj::Material, mtl: &Path, notes: &mut Notes) -> Material {
-        let texture = source.diffuse_texture.as_ref().and_then(|map| self.texture(mtl, map, notes));
-        let reflectance = match (source.diffuse, texture) {
-            (Some(factor), mean) => Rgb::from_array(factor) * mean.unwrap_or(Rgb::ONE),
-            (None, Some(mean)) => mean,
-            (None, None) => {
+    fn convert(
+        &mut self,
+        source: &tobj::Material,
+        mtl: &Path,
+        sets: &mut Vec<Placement>,
+        notes: &mut Notes,
+    ) -> Material {
+        let base = self.layer(mtl, source.diffuse_texture.as_ref(), false, sets, notes);
+        let reflectance = match source.diffuse {
+            Some(factor) => Rgb::from_array(factor),
+            None if base.is_some() => Rgb::ONE,
+            None if self.is_coloured => Rgb::splat(MAX_REFLECTANCE),
+            None => {
                 notes.name("materials have no diffuse colour, and are made grey", &source.name);
                 Rgb::splat(DEFAULT_REFLECTANCE)
             }
         };
-        let emissive = source.emissive.map_or(Rgb::ZERO, Rgb::from_array);
-        let radiance = match source.unknown_param.get("map_Ke") {
-            Some(map) if emissive != Rgb::ZERO => {
-                emissive * self.texture(mtl, map, notes).unwrap_or(Rgb::ONE)
-            }
-            _ => emissive,
-        };
-        Material::diffuse(&source.name, reflectance).emitting(PI * radiance).with_sides(Sides::Both)
+        let radiance = source.emissive.map_or(Rgb::ZERO, Rgb::from_array);
+        let map = source.unknown_param.get("map_Ke").filter(|_| radiance != Rgb::ZERO);
+        let emissive = self.layer(mtl, map, false, sets, notes);
+        let mask = self.layer(mtl, source.dissolve_texture.as_ref(), true, sets, notes);
+        let mut material = Material::diffuse(&source.name, Rgb::ZERO).with_sides(Sides::Both);
+        (material.reflectance, material.reflectance_map) = texture::colour(reflectance, base.as_ref());
+        (material.exitance, material.exitance_map) = texture::colour(PI * radiance, emissive.as_ref());
+        material.opacity = self.opacity(source, mask.as_ref(), notes);
+        material
     }
 
-    /// Mean colour of the texture that a `map_…` statement of a library names.
-    fn texture(&mut self, mtl: &Path, map: &str, notes: &mut Notes) -> Option<Rgb> {
-        let name = plain_name(without_options(map));
+    /// The number `d` is the opacity, and `Tr` what is missing of it; where both are given `d` counts.
+    fn opacity(&self, source: &tobj::Material, mask: Option<&Layer>, notes: &mut Notes) -> Opacity {
+        let transparency = source.unknown_param.get("Tr").and_then(|tr| tr.parse::<f64>().ok());
+        let factor = match (source.dissolve, transparency) {
+            (Some(d), _) => d,
+            // Who writes this takes it for an opacity: nobody makes a surface to have none.
+            (None, Some(1.0)) => {
+                notes.name("materials have Tr 1 and no d, and were made opaque", quoted(&source.name));
+                1.0
+            }
+            (None, Some(tr)) => 1.0 - tr,
+            (None, None) => 1.0,
+        };
+        texture::opacity(factor.clamp(0.0, 1.0), mask, None)
+    }
+
+    /// The texture that a `map_…` statement of a library names; its alpha is that of a mask if it `is_mask`.
+    fn layer(
+        &mut self,
+        mtl: &Path,
+        statement: Option<&String>,
+        is_mask: bool,
+        sets: &mut Vec<Placement>,
+        notes: &mut Notes,
+    ) -> Option<Layer> {
+        let map::Map { name, placement, wrap, ignored } = map::parse(statement?);
+        for option in ignored {
+            notes.name("options of textures were ignored", option);
+        }
+        let name = plain_name(name);
         let Some(path) = files::beside(mtl, &name) else {
             notes.name("textures are not in the folder of the scene, and were not read", &name);
             return None;
         };
-        *self.textures.entry(path).or_insert_with_key(|path| {
-            let mean = files::read(path).map_err(|e| e.to_string()).and_then(|b| texture::mean_colour(&b));
-            mean.inspect_err(|e| notes.name(texture::UNREADABLE, format!("{name} ({e})"))).ok()
-        })
+        let colours = (path.clone(), false);
+        let image = match self.textures.get(&colours).copied() {
+            Some(None) => None,
+            Some(Some(image)) if !is_mask || image.has_alpha() => Some(image),
+            _ => self.image(path, &name, is_mask, notes),
+        };
+        Some(Layer::new(image?, wrap, placement, sets))
     }
+
+    /// An image, read when it is first asked for. The alpha of a mask that has none is its brightness.
+    fn image(&mut self, path: PathBuf, name: &str, is_mask: bool, notes: &mut Notes) -> Option<Image> {
+        if let Some(&image) = self.textures.get(&(path.clone(), is_mask)) {
+            return image;
+        }
+        let bytes = files::read(&path).map_err(|e| e.to_string());
+        let (image, from_brightness) = match bytes.and_then(|bytes| self.images.decode(&bytes)) {
+            Ok(texture) => {
+                let from_brightness = is_mask && texture.texels().iter().all(|texel| texel[3] == 255);
+                let texture = if from_brightness { brightness_as_alpha(&texture) } else { Some(texture) };
+                (texture.map(|t| self.images.add(t, name, self.builder, notes)), from_brightness)
+            }
+            Err(e) => {
+                notes.name(texture::UNREADABLE, format!("{name} ({e})"));
+                (None, false)
+            }
+        };
+        self.textures.insert((path, from_brightness), image);
+        image
+    }
+}
+
+/// A mask from an image without alpha: the numbers of its colours are taken for what they are, without decoding.
+fn brightness_as_alpha(texture: &Texture) -> Option<Texture> {
+    let [width, height] = texture.size();
+    let mask = |&[r, g, b, _]: &[u8; 4]| {
+        // Weights of the luminance (ITU-R BT.709), in units that keep grey as it is.
+        let sum = 2126 * u32::from(r) + 7152 * u32::from(g) + 722 * u32::from(b);
+        [255, 255, 255, ((sum + 5000) / 10_000) as u8]
+    };
+    Texture::new(width, height, texture.texels().iter().map(mask).collect())
 }
 
 /// A file name without quotes, with the slashes of this system.
 fn plain_name(name: &str) -> String {
     name.trim_matches('"').replace('\\', "/")
-}
-
-/// The file name behind the options of a `map_…` statement.
-fn without_options(mut map: &str) -> &str {
-    loop {
-        let (option, mut rest) = clean::split_word(map);
-        let (most, numbers) = match option {
-            "-o" | "-s" | "-t" => (3, true),
-            "-mm" => (2, true),
-            "-blendu" | "-blendv" | "-bm" | "-boost" | "-cc" | "-clamp" | "-colorspace" | "-imfchan"
-            | "-texres" | "-type" => (1, false),
-            _ => return map,
-        };
-        for _ in 0..most {
-            let (value, behind) = clean::split_word(rest);
-            if numbers && value.parse::<f64>().is_err() {
-                break;
-            }
-            rest = behind;
-        }
-        map = rest;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::without_options;
-
-    #[test]
-    fn options_before_a_texture_are_passed_over() {
-        for map in [
-            "a b.png",
-            "-s 1 1 1 a b.png",
-            "-o 0.1 -s 2 -clamp on a b.png",
-            "-mm 0 1 -type sphere\ta b.png",
-            "-texres 512 -blendu off -bm 0.3 a b.png",
-        ] {
-            assert_eq!(without_options(map), "a b.png");
-        }
-        assert_eq!(without_options("-o"), "");
-    }
 }

@@ -1,0 +1,148 @@
+//! Texture coordinates and colours of vertices.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use ::gltf::json::Index;
+use ::gltf::json::accessor::{Accessor, ComponentType, Type};
+use ::gltf::json::mesh::{Primitive, Semantic};
+use ::gltf::json::validation::Checked;
+use glam::{DVec4, Vec2, Vec4};
+
+use super::super::texture::Placement;
+use super::material::{Alpha, Known};
+use super::{LoadError, Reader};
+
+/// The most sets of coordinates of a material: it has two textures.
+pub(super) const MOST_SETS: usize = 2;
+
+/// Attributes by their accessors, which primitives often share. Colours as they are in the file.
+#[derive(Default)]
+pub(super) struct Attributes {
+    places: HashMap<usize, Rc<[Vec2]>>,
+    colours: HashMap<usize, Rc<[Vec4]>>,
+}
+
+/// What varies over the triangles of a primitive, vertex by vertex.
+pub(super) struct Values {
+    /// The sets of coordinates, as many as are there in a row, and what becomes of each.
+    pub(super) coordinates: Vec<(Rc<[Vec2]>, Placement)>,
+    /// Colours, unless all are white.
+    pub(super) colours: Option<Rc<[Vec4]>>,
+}
+
+impl Reader<'_> {
+    /// The values at the vertices of a primitive that has this material and number of vertices.
+    pub(super) fn values(
+        &mut self,
+        primitive: &Primitive,
+        material: &Known,
+        vertices: usize,
+        shared: &mut Attributes,
+        what: &str,
+    ) -> Result<Values, LoadError> {
+        let mut coordinates = Vec::new();
+        for set in material.sets.iter() {
+            let attribute = Checked::Valid(Semantic::TexCoords(set.set));
+            let Some(&accessor) = primitive.attributes.get(&attribute) else {
+                self.notes.count(NO_COORDINATES_OF_PRIMITIVES, 1);
+                break;
+            };
+            coordinates.push((self.places(accessor, vertices, shared, what)?, set.placement));
+        }
+        if primitive.attributes.contains_key(&Checked::Valid(Semantic::Colors(1))) {
+            self.notes
+                .count("mesh primitives have more than one set of colours, of which the first is used", 1);
+        }
+        let colours = match primitive.attributes.get(&Checked::Valid(Semantic::Colors(0))) {
+            Some(&accessor) => {
+                let colours = self.colours(accessor, vertices, shared, what)?;
+                self.tints(&colours, material.alpha)
+            }
+            None => None,
+        };
+        Ok(Values { coordinates, colours })
+    }
+
+    fn places(
+        &mut self,
+        accessor: Index<Accessor>,
+        vertices: usize,
+        shared: &mut Attributes,
+        what: &str,
+    ) -> Result<Rc<[Vec2]>, LoadError> {
+        use ComponentType::{F32, I8, I16, U8, U16};
+        let what = format!("{what}, texture coordinates");
+        let places = match shared.places.get(&accessor.value()) {
+            Some(places) => Rc::clone(places),
+            None => {
+                // Signed numbers are those of KHR_mesh_quantization.
+                let places = self.elements::<2>(accessor, Type::Vec2, &[F32, I8, U8, I16, U16], &what)?;
+                self.coordinates += places.len();
+                self.check_size("texture coordinates and colours", self.coordinates)?;
+                let places: Rc<[Vec2]> =
+                    places.iter().map(|place| Vec2::from_array(place.map(|x| x as f32))).collect();
+                Rc::clone(shared.places.entry(accessor.value()).or_insert(places))
+            }
+        };
+        self.check_count(places.len(), vertices, &what)?;
+        Ok(places)
+    }
+
+    fn colours(
+        &mut self,
+        accessor: Index<Accessor>,
+        vertices: usize,
+        shared: &mut Attributes,
+        what: &str,
+    ) -> Result<Rc<[Vec4]>, LoadError> {
+        use ComponentType::{F32, U8, U16};
+        let what = format!("{what}, colours");
+        let colours = match shared.colours.get(&accessor.value()) {
+            Some(colours) => Rc::clone(colours),
+            None => {
+                let accessors: Option<&Accessor> = self.root.get(accessor);
+                let has_alpha = accessors.is_some_and(|a| matches!(a.type_, Checked::Valid(Type::Vec4)));
+                let colours: Rc<[Vec4]> = if has_alpha {
+                    let colours = self.elements::<4>(accessor, Type::Vec4, &[F32, U8, U16], &what)?;
+                    colours.into_iter().map(|c| DVec4::from_array(c).as_vec4()).collect()
+                } else {
+                    let colours = self.elements::<3>(accessor, Type::Vec3, &[F32, U8, U16], &what)?;
+                    colours.into_iter().map(|[r, g, b]| DVec4::new(r, g, b, 1.0).as_vec4()).collect()
+                };
+                self.coordinates += colours.len();
+                self.check_size("texture coordinates and colours", self.coordinates)?;
+                Rc::clone(shared.colours.entry(accessor.value()).or_insert(colours))
+            }
+        };
+        self.check_count(colours.len(), vertices, &what)?;
+        Ok(colours)
+    }
+
+    /// What colours multiply their material by; `None` if that changes nothing.
+    fn tints(&mut self, colours: &Rc<[Vec4]>, alpha: Alpha) -> Option<Rc<[Vec4]>> {
+        let is_open = colours.iter().any(|colour| colour.w < 1.0);
+        if alpha == Alpha::Mask && is_open {
+            self.notes.count(
+                "mesh primitives have colours with alpha, which was ignored because their material is a mask",
+                1,
+            );
+        }
+        let tints = match alpha {
+            Alpha::Opaque | Alpha::Mask if is_open => colours.iter().map(|c| c.with_w(1.0)).collect(),
+            _ => Rc::clone(colours),
+        };
+        tints.iter().any(|&tint| tint != Vec4::ONE).then_some(tints)
+    }
+
+    fn check_count(&self, count: usize, vertices: usize, what: &str) -> Result<(), LoadError> {
+        if count >= vertices {
+            return Ok(());
+        }
+        Err(self.invalid(format!("{what}: there are {count} for {vertices} vertices")))
+    }
+}
+
+/// A kind of warning.
+const NO_COORDINATES_OF_PRIMITIVES: &str =
+    "mesh primitives lack coordinates for a texture, and have its mean colour";

@@ -1,0 +1,100 @@
+//! Texture coordinates and colours, which `tobj` does not get to see: corners come out of it in the order of the file.
+
+use glam::{Vec2, Vec4};
+
+use crate::Rgb;
+use crate::texture::srgb_to_linear_at;
+
+/// In place of a number: a corner has no texture coordinates.
+const NONE: u32 = u32::MAX;
+
+/// What the corners of faces have beside positions.
+#[derive(Debug, Default)]
+pub(super) struct Corners {
+    /// Vertices so far.
+    vertices: usize,
+    /// Colours of the vertices up to the last that has one, as they are in the file.
+    colours: Vec<[f32; 3]>,
+    places: Vec<Vec2>,
+    /// Numbers of vertex and coordinates, corner by corner.
+    corners: Vec<[u32; 2]>,
+    /// Whether colours go up to one, as they should, or 255.
+    in_bytes: bool,
+}
+
+impl Corners {
+    /// Takes in the words of a `v` statement: three coordinates, and a colour if there are three more.
+    pub(super) fn add_vertex<'a>(&mut self, words: impl Iterator<Item = &'a str>) {
+        let mut colour = words.skip(3).map(|word| word.parse().unwrap_or(f32::NAN));
+        if let (Some(r), Some(g), Some(b)) = (colour.next(), colour.next(), colour.next()) {
+            self.colours.resize(self.vertices, [1.0; 3]);
+            self.colours.push([r, g, b]);
+            self.in_bytes |= r > 1.0 || g > 1.0 || b > 1.0;
+        }
+        self.vertices += 1;
+    }
+
+    /// Takes in the words of a `vt` statement. Its second axis points up, that of images down.
+    pub(super) fn add_place<'a>(&mut self, mut words: impl Iterator<Item = &'a str>) {
+        let mut number = || words.next().map_or(0.0, |word| word.parse().unwrap_or(f32::NAN));
+        self.places.push(Vec2::new(number(), number()));
+    }
+
+    /// Takes in the corners of an `f` statement, `position/texture/normal` each.
+    pub(super) fn add_face<'a>(&mut self, corners: impl Iterator<Item = &'a str>) {
+        let (vertices, places) = (self.vertices, self.places.len());
+        self.corners.extend(corners.map(|corner| {
+            let mut parts = corner.split('/');
+            let mut number = |count: usize| {
+                let n: i64 = parts.next()?.parse().ok()?;
+                // Numbers from 1, or back from the last one so far.
+                let index = if n < 0 { n + count as i64 } else { n - 1 };
+                u32::try_from(index).ok()
+            };
+            [number(vertices).unwrap_or(NONE), number(places).unwrap_or(NONE)]
+        }));
+    }
+
+    pub(super) fn has_colours(&self) -> bool {
+        !self.colours.is_empty()
+    }
+
+    /// The coordinates of a corner; `None` if it has none that are there.
+    pub(super) fn place(&self, corner: usize) -> Option<Vec2> {
+        let [_, place] = *self.corners.get(corner)?;
+        self.places.get(place as usize).copied()
+    }
+
+    /// The linear colour of the vertex of a corner, white if it has none.
+    ///
+    /// The format says nothing about the meaning of colours; what writes them writes what is seen on a screen.
+    pub(super) fn colour(&self, corner: usize) -> Vec4 {
+        let vertex = self.corners.get(corner).map_or(NONE, |[vertex, _]| *vertex);
+        let colour = self.colours.get(vertex as usize).copied().unwrap_or([1.0; 3]);
+        let scale = if self.in_bytes && colour != [1.0; 3] { 255.0 } else { 1.0 };
+        let linear = |x: f32| srgb_to_linear_at(f64::from(x / scale).clamp(0.0, 1.0));
+        Rgb::from_array(colour.map(linear)).as_vec3().extend(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_find_their_values_from_either_end() {
+        let mut corners = Corners::default();
+        for vertex in ["0 0 0", "0 0 0 1 0.5 0 1", "0 0 0"] {
+            corners.add_vertex(vertex.split(' '));
+        }
+        corners.add_place("0.25 0.5 7".split(' '));
+        corners.add_place("2".split(' '));
+        corners.add_face("1/1 2/-1/5 -1//1 3/0 2/3 x/-3".split(' '));
+        let [a, b] = [Vec2::new(0.25, 0.5), Vec2::new(2.0, 0.0)];
+        let places: Vec<_> = (0..7).map(|i| corners.place(i)).collect();
+        assert_eq!(places, [Some(a), Some(b), None, None, None, None, None]);
+        let half = srgb_to_linear_at(0.5) as f32;
+        assert_eq!(corners.colour(1), Vec4::new(1.0, half, 0.0, 1.0));
+        assert_eq!([0, 2, 3, 5].map(|i| corners.colour(i)), [Vec4::ONE; 4]);
+    }
+}

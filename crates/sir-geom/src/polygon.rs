@@ -1,0 +1,365 @@
+//! Cutting polygons into triangles.
+//!
+//! Most polygons of files are convex, and the fan from their first corner is right. Of the others it is not: triangles of a fan
+//! would lie outside of the outline or over each other. Those are cut by their ears (Meisters 1975), which are the triangles that
+//! an outline can do without. All corners stay corners of triangles, also those in the middle of a straight edge: a neighbour may
+//! have one there, and a crack would open where one of them had not.
+
+use glam::{DVec2, DVec3};
+
+/// The most corners of a polygon that is not cut into a fan: the time for ears goes with the square.
+const MOST_CORNERS: usize = 4096;
+
+/// How often all remaining corners are looked at again when none is known to be an ear, which only corners that touch edges
+/// make necessary.
+const ROUNDS: usize = 16;
+
+/// A triangle whose doubled area is no more than this part of the square of its longest edge is a line.
+pub(crate) const FLAT: f64 = 1e-12;
+
+/// A polygon in triangles.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Cut {
+    /// Numbers of corners, as many as there are less two; counter-clockwise seen from where those of the polygon are.
+    pub(crate) triangles: Vec<[usize; 3]>,
+    /// Whether they are the polygon. A fan takes their place if its outline crosses itself, or has too many corners.
+    pub(crate) right: bool,
+}
+
+/// Cuts a polygon whose outline is counter-clockwise seen from its front, and which is about flat.
+pub(crate) fn cut(corners: &[DVec3]) -> Cut {
+    let fan: Vec<_> = (2..corners.len()).map(|i| [0, i - 1, i]).collect();
+    let normal = normal(corners);
+    if corners.len() <= 3 || !normal.is_finite() {
+        return Cut { triangles: fan, right: true };
+    }
+    if normal == DVec3::ZERO {
+        // A line, or an outline that runs as far clockwise as counter-clockwise.
+        let right =
+            fan.iter().all(|t| (corners[t[1]] - corners[0]).cross(corners[t[2]] - corners[0]) == DVec3::ZERO);
+        return Cut { triangles: fan, right };
+    }
+    let flat: Vec<DVec2> = corners.iter().map(|&p| along(p - corners[0], normal)).collect();
+    if fan.iter().all(|&t| turns_left(t.map(|i| flat[i]))) {
+        return Cut { triangles: fan, right: true };
+    }
+    let ears = if corners.len() <= MOST_CORNERS { Ring::new(&flat).cut() } else { None };
+    match ears.filter(|ears| covers(ears, &flat)) {
+        Some(triangles) => Cut { triangles, right: true },
+        None => Cut { triangles: fan, right: false },
+    }
+}
+
+/// A vector in the direction of the normal: the sum of cross products (Newell).
+fn normal(corners: &[DVec3]) -> DVec3 {
+    let Some(&first) = corners.first() else { return DVec3::ZERO };
+    corners.windows(2).map(|edge| (edge[0] - first).cross(edge[1] - first)).sum()
+}
+
+/// The point without the coordinate in which the normal is largest, seen from where the normal points: exact, and no area is zero
+/// that was not.
+fn along(p: DVec3, normal: DVec3) -> DVec2 {
+    let n = normal.abs();
+    let (q, sign) = if n.x >= n.y && n.x >= n.z {
+        (DVec2::new(p.y, p.z), normal.x)
+    } else if n.y >= n.z {
+        (DVec2::new(p.z, p.x), normal.y)
+    } else {
+        (DVec2::new(p.x, p.y), normal.z)
+    };
+    if sign < 0.0 { DVec2::new(q.y, q.x) } else { q }
+}
+
+/// Twice the area, below zero if the corners run clockwise.
+fn doubled_area([a, b, c]: [DVec2; 3]) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+fn turns_left(t @ [a, b, c]: [DVec2; 3]) -> bool {
+    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    doubled_area(t) > FLAT * longest
+}
+
+/// Whether the triangles have the area of the outline, and so none lies outside or over another.
+fn covers(triangles: &[[usize; 3]], flat: &[DVec2]) -> bool {
+    let fan: f64 = (2..flat.len()).map(|i| doubled_area([flat[0], flat[i - 1], flat[i]])).sum();
+    let parts: f64 = triangles.iter().map(|t| doubled_area(t.map(|i| flat[i])).abs()).sum();
+    (parts - fan).abs() <= 1e-9 * fan.abs()
+}
+
+/// What is left of an outline.
+struct Ring<'p> {
+    points: &'p [DVec2],
+    /// Neighbours of each corner that is left.
+    before: Vec<usize>,
+    behind: Vec<usize>,
+    /// Whether a corner is an ear as far as is known.
+    ear: Vec<bool>,
+    /// Corners that do not turn left, and those that did not once: only such ones can lie in an ear.
+    blunt: Vec<usize>,
+    gone: Vec<bool>,
+}
+
+impl<'p> Ring<'p> {
+    fn new(points: &'p [DVec2]) -> Self {
+        let n = points.len();
+        let mut ring = Self {
+            points,
+            before: (0..n).map(|i| (i + n - 1) % n).collect(),
+            behind: (0..n).map(|i| (i + 1) % n).collect(),
+            ear: vec![false; n],
+            blunt: Vec::new(),
+            gone: vec![false; n],
+        };
+        ring.blunt = (0..n).filter(|&i| !turns_left(ring.corner(i))).collect();
+        ring
+    }
+
+    fn corner(&self, i: usize) -> [DVec2; 3] {
+        [self.before[i], i, self.behind[i]].map(|k| self.points[k])
+    }
+
+    /// Whether a corner turns left, and no other one lies in its triangle or on an edge of it.
+    fn is_ear(&self, i: usize) -> bool {
+        let triangle @ [a, b, c] = self.corner(i);
+        let inside = |p: DVec2| {
+            [[a, b, p], [b, c, p], [c, a, p]].into_iter().all(|t| doubled_area(t) >= 0.0)
+                // Where an outline touches itself, as it does where a cut leads to a hole, corners are in the same place.
+                && p != a
+                && p != c
+        };
+        let own = [self.before[i], i, self.behind[i]];
+        turns_left(triangle)
+            && !self.blunt.iter().any(|&k| !self.gone[k] && !own.contains(&k) && inside(self.points[k]))
+    }
+
+    /// Takes away ear after ear; `None` if there is none though the outline has an area.
+    fn cut(mut self) -> Option<Vec<[usize; 3]>> {
+        let n = self.points.len();
+        let mut triangles = Vec::with_capacity(n - 2);
+        let (mut at, mut rounds) = (0, 0);
+        for left in (3..=n).rev() {
+            let mut looked = 0;
+            while !self.ear[at] {
+                at = self.behind[at];
+                looked += 1;
+                if looked == left {
+                    rounds += 1;
+                    looked = 0;
+                    if rounds > ROUNDS || !self.look(at) {
+                        return self.is_line(at).then(|| self.fan(at, triangles));
+                    }
+                }
+            }
+            let (before, behind) = (self.before[at], self.behind[at]);
+            triangles.push([before, at, behind]);
+            self.gone[at] = true;
+            (self.behind[before], self.before[behind]) = (behind, before);
+            for corner in [before, behind] {
+                self.ear[corner] = self.is_ear(corner);
+            }
+            // From every other corner, so that triangles are not all at the same one.
+            at = self.behind[behind];
+        }
+        Some(triangles)
+    }
+
+    /// Looks for ears among all corners that are left.
+    fn look(&mut self, start: usize) -> bool {
+        let mut found = false;
+        let mut at = start;
+        loop {
+            self.ear[at] = self.is_ear(at);
+            found |= self.ear[at];
+            at = self.behind[at];
+            if at == start {
+                return found;
+            }
+        }
+    }
+
+    /// Whether what is left has no area.
+    fn is_line(&self, start: usize) -> bool {
+        let mut at = start;
+        loop {
+            let [a, b, c] = self.corner(at);
+            let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+            if doubled_area([a, b, c]).abs() > FLAT * longest {
+                return false;
+            }
+            at = self.behind[at];
+            if at == start {
+                return true;
+            }
+        }
+    }
+
+    /// Adds what is left as a fan of triangles without an area.
+    fn fan(&self, start: usize, mut triangles: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
+        let mut at = self.behind[start];
+        while self.behind[at] != start {
+            triangles.push([start, at, self.behind[at]]);
+            at = self.behind[at];
+        }
+        triangles
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn at(points: &[[f64; 2]]) -> Vec<DVec3> {
+        points.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)).collect()
+    }
+
+    /// How many triangles contain a point, which is on no edge.
+    fn layers(cut: &Cut, corners: &[DVec3], p: DVec2) -> usize {
+        let inside = |t: &&[usize; 3]| {
+            let [a, b, c] = t.map(|i| corners[i].truncate());
+            [[a, b, p], [b, c, p], [c, a, p]].into_iter().all(|t| doubled_area(t) > 0.0)
+        };
+        cut.triangles.iter().filter(inside).count()
+    }
+
+    /// Whether a point is inside of an outline, by the parity of crossings.
+    fn is_inside(corners: &[DVec3], p: DVec2) -> bool {
+        let mut inside = false;
+        for (i, a) in corners.iter().enumerate() {
+            let b = corners[(i + 1) % corners.len()];
+            if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+                inside = !inside;
+            }
+        }
+        inside
+    }
+
+    /// Every point of the plane lies in one triangle if it is inside, and in none if it is not.
+    fn assert_tiles(corners: &[DVec3]) {
+        let found = cut(corners);
+        assert!(found.right && found.triangles.len() == corners.len() - 2, "{found:?}");
+        for i in 0..40 {
+            for k in 0..40 {
+                let p = DVec2::new(f64::from(i) + 0.513, f64::from(k) + 0.491) * 0.1 - 2.0;
+                assert_eq!(layers(&found, corners, p), usize::from(is_inside(corners, p)), "{p}");
+            }
+        }
+    }
+
+    #[test]
+    fn convex_polygons_are_fans() {
+        let pentagon = at(&[[0.0, 0.0], [2.0, 0.0], [2.5, 1.0], [1.0, 2.0], [-0.5, 1.0]]);
+        assert_eq!(cut(&pentagon).triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
+    }
+
+    #[test]
+    fn an_l_is_tiled_from_whichever_corner_it_begins() {
+        let l = [[0.0, 0.0], [1.5, 0.0], [1.5, 0.5], [0.5, 0.5], [0.5, 1.5], [0.0, 1.5]];
+        for first in 0..6 {
+            let mut l = l;
+            l.rotate_left(first);
+            assert_tiles(&at(&l));
+        }
+    }
+
+    /// A square with a square hole, as writers without holes have it: a cut leads there and back.
+    #[test]
+    fn a_hole_stays_one() {
+        let ring = at(&[
+            [-1.5, -1.5],
+            [1.5, -1.5],
+            [1.5, 1.5],
+            [-1.5, 1.5],
+            [-1.5, -1.5],
+            [-0.5, -0.5],
+            [-0.5, 0.5],
+            [0.5, 0.5],
+            [0.5, -0.5],
+            [-0.5, -0.5],
+        ]);
+        assert_tiles(&ring);
+    }
+
+    #[test]
+    fn a_comb_and_a_spiral_are_tiled() {
+        let mut comb = vec![[1.9, -1.0], [1.9, -0.9]];
+        for i in (0..19).rev() {
+            let x = -1.9 + 0.2 * f64::from(i);
+            comb.extend([[x + 0.15, -0.9], [x + 0.1, 1.0], [x, -0.9]]);
+        }
+        comb.push([-1.95, -1.0]);
+        assert_tiles(&at(&comb));
+        let turn = |i: i32, r: f64| {
+            let (angle, r) = (0.3 * f64::from(i), r + 0.02 * f64::from(i));
+            [r * angle.cos(), r * angle.sin()]
+        };
+        let spiral: Vec<_> =
+            (0..70).map(|i| turn(i, 0.3)).chain((0..70).rev().map(|i| turn(i, 0.2))).collect();
+        assert_tiles(&at(&spiral));
+    }
+
+    #[test]
+    fn corners_of_straight_edges_are_kept() {
+        let wall = at(&[[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        assert_tiles(&wall);
+        for triangle in cut(&wall).triangles {
+            assert!(turns_left(triangle.map(|i| wall[i].truncate())), "{triangle:?}");
+        }
+    }
+
+    #[test]
+    fn fronts_stay_fronts_in_any_plane() {
+        let l = [[0.0, 0.0], [0.5, 0.5], [0.5, 1.5], [0.0, 1.5], [-1.5, -0.2]];
+        for normal in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(1.0, -2.0, 0.5), DVec3::new(-3.0, 1.0, 1.0)] {
+            for normal in [normal, -normal] {
+                let n = normal.normalize();
+                let (a, b) = n.any_orthonormal_pair();
+                let corners: Vec<DVec3> = l.iter().map(|[x, y]| 9.0 * n + *x * a + *y * b).collect();
+                let found = cut(&corners);
+                assert!(found.right);
+                for t in found.triangles {
+                    let [p, q, r] = t.map(|i| corners[i]);
+                    assert!((q - p).cross(r - p).dot(n) > 0.0, "{normal}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn outlines_that_cross_themselves_are_fans_and_said_to_be_wrong() {
+        let bow = at(&[[0.0, 0.0], [1.0, 0.1], [1.0, 0.0], [0.0, 1.0]]);
+        assert_eq!(cut(&bow), Cut { triangles: vec![[0, 1, 2], [0, 2, 3]], right: false });
+    }
+
+    #[test]
+    fn what_has_no_area_or_no_numbers_does_no_harm() {
+        for points in [vec![[0.0, 0.0]; 5], vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.5, 0.0]]] {
+            assert_eq!(cut(&at(&points)).triangles.len(), points.len() - 2);
+        }
+        assert_eq!(cut(&at(&[[0.0, 0.0], [f64::NAN, 0.0], [1.0, 1.0], [0.0, 1.0]])).triangles.len(), 2);
+        assert_eq!(cut(&[]).triangles, [[0; 3]; 0]);
+    }
+
+    proptest! {
+        /// Stars around a point are simple, and most are not convex.
+        #[test]
+        fn stars_are_tiled(radii in prop::collection::vec(0.2..1.9f64, 3..60)) {
+            let n = radii.len() as f64;
+            let points: Vec<_> = radii.iter().zip(0..).map(|(r, i)| {
+                let angle = std::f64::consts::TAU * f64::from(i) / n;
+                [r * angle.cos(), r * angle.sin()]
+            }).collect();
+            assert_tiles(&at(&points));
+        }
+
+        /// Whatever the outline, there are as many triangles as there should be, and they name corners.
+        #[test]
+        fn any_outline_ends(points in prop::collection::vec([0..5i32, 0..5i32], 0..60)) {
+            let points: Vec<[f64; 2]> = points.iter().map(|p| p.map(f64::from)).collect();
+            let found = cut(&at(&points));
+            prop_assert_eq!(found.triangles.len(), points.len().saturating_sub(2));
+            prop_assert!(found.triangles.as_flattened().iter().all(|&i| i < points.len()));
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! Textures: images that say how a surface's colours vary on it.
+
+mod halved;
+mod sums;
+
+use std::sync::LazyLock;
+
+use glam::{DVec2, IVec2};
+
+use crate::{Rgb, typed_index};
+
+pub use sums::{TextureMean, TextureSums};
+
+typed_index!(
+    /// A texture of a [`Scene`](crate::Scene).
+    TextureId
+);
+
+/// An image: colours in 8-bit sRGB and 8 linear bits of alpha.
+///
+/// Coordinates are those of glTF: `(0, 0)` is the upper left corner of the image and `(1, 1)` the lower right. A texel fills its
+/// square evenly, so that the mean over an area is well defined; only pictures interpolate between texels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Texture {
+    width: u32,
+    height: u32,
+    /// Row by row from the top.
+    texels: Vec<[u8; 4]>,
+}
+
+/// What a texture shows outside of its square.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Wrap {
+    /// The image again.
+    #[default]
+    Repeat,
+    /// The image again, every other time its mirror image.
+    Mirror,
+    /// The colour of the nearest edge.
+    Clamp,
+}
+
+/// Which texture lies on a surface, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TextureMap {
+    /// The image.
+    pub texture: TextureId,
+    /// What there is outside of it, horizontally and vertically.
+    pub wrap: [Wrap; 2],
+    /// Which of the sets of coordinates it uses that the triangles of its material have.
+    pub coordinates: u8,
+}
+
+/// A texture whose colours are multiplied by a factor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColourMap {
+    /// The texture.
+    pub map: TextureMap,
+    /// The factor, in the unit of the product.
+    pub factor: Rgb,
+}
+
+impl Texture {
+    /// An image of texels `[red, green, blue, alpha]`, row by row from the top; `None` if their number is zero or not
+    /// `width × height`.
+    #[must_use]
+    pub fn new(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Option<Self> {
+        let count = u64::from(width) * u64::from(height);
+        let is_size = |x: u32| i32::try_from(x).is_ok();
+        (count > 0 && count == texels.len() as u64 && is_size(width) && is_size(height)).then_some(Self {
+            width,
+            height,
+            texels,
+        })
+    }
+
+    /// Width and height in texels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// Texels `[red, green, blue, alpha]`, row by row from the top: colours in sRGB, alpha linear.
+    #[must_use]
+    pub fn texels(&self) -> &[[u8; 4]] {
+        &self.texels
+    }
+
+    /// The mean linear colour, alpha ignored.
+    #[must_use]
+    pub fn mean_colour(&self) -> Rgb {
+        // Whole numbers add up to the same sum in any order.
+        let mut histogram = [[0u64; 3]; 256];
+        for texel in &self.texels {
+            for (channel, &value) in texel[..3].iter().enumerate() {
+                histogram[usize::from(value)][channel] += 1;
+            }
+        }
+        let mut sum = Rgb::ZERO;
+        for (value, counts) in (0u8..=255).zip(histogram) {
+            sum += srgb_to_linear(value) * Rgb::from_array(counts.map(|n| n as f64));
+        }
+        sum / self.texels.len() as f64
+    }
+
+    /// The mean of alpha, in `[0, 1]`.
+    #[must_use]
+    pub fn mean_alpha(&self) -> f64 {
+        let sum: u64 = self.texels.iter().map(|texel| u64::from(texel[3])).sum();
+        sum as f64 / (255.0 * self.texels.len() as f64)
+    }
+
+    /// Linear colour at a place, interpolated between the four texels around it.
+    #[must_use]
+    pub fn colour_at(&self, place: DVec2, wrap: [Wrap; 2]) -> Rgb {
+        let p = self.in_texels(place) - 0.5;
+        let (corner, part) = (p.floor(), p - p.floor());
+        let corner = corner.as_ivec2();
+        let colour = |x: i32, y: i32| {
+            let [r, g, b, _] = self.texel(corner.wrapping_add(IVec2::new(x, y)), wrap);
+            Rgb::new(srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b))
+        };
+        let row = |y: i32| colour(0, y).lerp(colour(1, y), part.x);
+        row(0).lerp(row(1), part.y)
+    }
+
+    /// Alpha of the texel at a place, in `[0, 1]`.
+    #[inline]
+    #[must_use]
+    pub fn alpha_at(&self, place: DVec2, wrap: [Wrap; 2]) -> f64 {
+        let [.., alpha] = self.texel(self.in_texels(place).floor().as_ivec2(), wrap);
+        f64::from(alpha) / 255.0
+    }
+
+    fn in_texels(&self, place: DVec2) -> DVec2 {
+        place * DVec2::new(f64::from(self.width), f64::from(self.height))
+    }
+
+    /// The texel in a column and row.
+    fn texel(&self, at: IVec2, wrap: [Wrap; 2]) -> [u8; 4] {
+        let column = wrap[0].inside(i64::from(at.x), i64::from(self.width));
+        let row = wrap[1].inside(i64::from(at.y), i64::from(self.height));
+        self.texels[row * self.width as usize + column]
+    }
+}
+
+impl Wrap {
+    /// The column of an image of this width that appears at any column.
+    fn inside(self, column: i64, width: i64) -> usize {
+        let inside = match self {
+            Self::Repeat => column.rem_euclid(width),
+            Self::Mirror => {
+                let there_and_back = column.rem_euclid(2 * width);
+                there_and_back.min(2 * width - 1 - there_and_back)
+            }
+            Self::Clamp => column.clamp(0, width - 1),
+        };
+        inside as usize
+    }
+}
+
+/// Decodes an 8-bit value of sRGB (IEC 61966-2-1).
+#[inline]
+pub(crate) fn srgb_to_linear(value: u8) -> f64 {
+    static VALUES: LazyLock<[f64; 256]> =
+        LazyLock::new(|| std::array::from_fn(|value| srgb_to_linear_at(value as f64 / 255.0)));
+    VALUES[usize::from(value)]
+}
+
+/// Decodes a value of sRGB in `[0, 1]`.
+pub(crate) fn srgb_to_linear_at(s: f64) -> f64 {
+    if s <= 0.04045 {
+        return s / 12.92;
+    }
+    let x = (s + 0.055) / 1.055;
+    x * x * fifth_root(x * x)
+}
+
+/// The fifth root of a number in `(0, 1]` by Newton's iteration.
+///
+/// `powf` may differ in the last bits from one machine to another, and reflectances decide tallies.
+fn fifth_root(x: f64) -> f64 {
+    let mut root = 1.0;
+    // From above, the iterates fall until rounding stops them.
+    loop {
+        let next = (4.0 * root + x / (root * root * root * root)) / 5.0;
+        if next >= root {
+            return root;
+        }
+        root = next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srgb_agrees_with_its_formula() {
+        for value in 0..=255u8 {
+            let s = f64::from(value) / 255.0;
+            let expected = if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
+            assert!((srgb_to_linear(value) - expected).abs() < 1e-14, "{value}");
+        }
+    }
+
+    #[test]
+    fn the_mean_is_taken_of_linear_colours() {
+        let texels = (0..8).map(|i| if i % 4 < 1 { [255, 0, 128, 0] } else { [0, 0, 128, 255] });
+        let texture = Texture::new(4, 2, texels.collect()).unwrap();
+        let mean = texture.mean_colour();
+        assert!((mean - Rgb::new(0.25, 0.0, 0.215_860_500_113_899_26)).length() < 1e-14, "{mean}");
+        assert_eq!(texture.mean_alpha(), 0.75);
+    }
+
+    #[test]
+    fn images_go_on_as_their_wrap_says() {
+        let inside = |wrap: Wrap| (-4..8).map(|i| wrap.inside(i, 3)).collect::<Vec<_>>();
+        assert_eq!(inside(Wrap::Repeat), [2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1]);
+        assert_eq!(inside(Wrap::Mirror), [2, 2, 1, 0, 0, 1, 2, 2, 1, 0, 0, 1]);
+        assert_eq!(inside(Wrap::Clamp), [0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2, 2]);
+    }
+
+    #[test]
+    fn colours_are_interpolated_between_the_middles_of_texels() {
+        let texture = Texture::new(2, 1, vec![[0, 0, 0, 0], [255, 255, 255, 255]]).unwrap();
+        for (u, repeated, clamped) in [(0.25, 0.0, 0.0), (0.5, 0.5, 0.5), (0.75, 1.0, 1.0), (1.0, 0.5, 1.0)] {
+            for (wrap, expected) in [(Wrap::Repeat, repeated), (Wrap::Clamp, clamped)] {
+                let found = texture.colour_at(DVec2::new(u, 0.3), [wrap; 2]);
+                assert!((found - Rgb::splat(expected)).length() < 1e-14, "{u} {wrap:?}: {found}");
+            }
+        }
+        assert_eq!(texture.alpha_at(DVec2::new(0.49, 7.0), [Wrap::Repeat; 2]), 0.0);
+        assert_eq!(texture.alpha_at(DVec2::new(-0.49, 7.0), [Wrap::Repeat; 2]), 1.0);
+    }
+
+    #[test]
+    fn an_image_has_as_many_texels_as_its_size_says() {
+        assert!(Texture::new(2, 2, vec![[0; 4]; 3]).is_none());
+        assert!(Texture::new(0, 2, Vec::new()).is_none());
+    }
+}
