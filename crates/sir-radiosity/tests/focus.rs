@@ -11,15 +11,18 @@ use sir_lines::{Domain, Focus, GlobalLines, LocalLines};
 use sir_mesh::Subdivision;
 use sir_radiosity::{Batches, Books, FirstShot, Model, Shot, Totals, Transported, sources};
 
-/// A black square metre in the middle of a black ground of 60 × 60 m, a hand above it, under a sky and the sun.
+/// A black square metre in the middle of a black ground of 60 × 60 m, a hand above it, under a sky and the sun. A
+/// speck high above a corner of the ground, which nearly covers no sky, makes the box of the scene high: of the lines through the
+/// focus, which reaches as high, not nearly all meet the square.
 fn square() -> (Model, Focus, f64) {
     let mut b = SceneBuilder::new();
-    let [small, wide] = [0; 2].map(|_| b.add_material(grey(0.0, 0.0)));
+    let [small, wide, speck] = [0; 3].map(|_| b.add_material(grey(0.0, 0.0)));
     let at = |half: f64, z: f64| {
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(half * x, half * y, z))
     };
     shapes::quad(&mut b, at(0.5, 0.1), small);
     shapes::quad(&mut b, at(30.0, 0.0), wide);
+    shapes::quad(&mut b, at(0.05, 3.0).map(|p| p + DVec3::new(25.0, 25.0, 0.0)), speck);
     let sun = DVec3::new(0.6, 0.0, 0.8);
     let sky = Sky::new(DVec3::Z, SkyModel::Uniform, Rgb::splat(100.0), Rgb::splat(5.0)).unwrap();
     b.set_sky(sky);
@@ -97,10 +100,9 @@ fn sky_and_sun_on_a_square_in_a_field() {
             }
         }
         println!("error {stated}, deviations {squares}");
-        // χ² with 40 degrees of freedom. Nearly all lines through this focus meet the square, so with it the true error is much smaller than the
+        // χ² with 40 degrees of freedom. With a focus a third of the lines of the sun meet the square, so the true error is somewhat smaller than the
         // stated one, which takes the number of all lines as given, and not that of each source.
-        let least = if focus.is_some() { 0.0 } else { 0.4 };
-        assert!(squares >= least && squares < 2.0, "{squares}");
+        assert!(squares > 0.3 && squares < 2.0, "{squares}");
         errors.push(stated);
     }
     assert!(errors[0] > 8.0 * errors[1], "{errors:?}");
