@@ -252,7 +252,7 @@ mod tests {
         for offset in [0, 1 << 63, u64::MAX] {
             for start in [0, 17, 1 << 40] {
                 let mut taken = 0;
-                for n in 0..3_000 {
+                for n in 0..3_000_u32 {
                     assert!((f64::from(taken) - share * f64::from(n)).abs() <= 1.0 + 1e-6);
                     taken += u32::from(aim.takes(start + u64::from(n), offset));
                 }
