@@ -4,6 +4,7 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use sir_geom::{Rgb, Scene};
+use sir_lines::LocalLines;
 use sir_parallel::cores;
 use sir_radiosity::{
     Batches, Books, Emitter, FirstShot, Model, Quanta, Repeats, SecondShot, SolveError, Source,
@@ -82,7 +83,7 @@ pub fn check(pipeline: &Pipeline, progress: Progress) -> Result<Estimate, Error>
         Action::Repeat(repeat) => Some(repeat),
         _ => None,
     });
-    let stages = probe(pipeline, &prepared.model)?;
+    let stages = probe(pipeline, &prepared)?;
     let repeat = repeat.map(|&Repeat { until, at_most, .. }| Repeated { until, at_most });
     Ok(Estimate { units: pipeline.units, prepared, memory, peak_memory, stages, repeat })
 }
@@ -142,15 +143,16 @@ fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, us
     (memory, scene + patches + accel + light.max(display))
 }
 
-fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, SolveError> {
-    let seed = pipeline.seed;
+fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<StageEstimate>, SolveError> {
+    let Prepared { model, focus, .. } = prepared;
+    let (focus, seed) = (*focus, pipeline.seed);
     let mut shot = None;
     let mut estimates = Vec::new();
     for stage in pipeline.flat_stages() {
         let name = stage.action.name();
         match stage.action {
             Action::FirstShot { lines } => {
-                let first_shot = FirstShot::new(model, lines, seed)?;
+                let first_shot = FirstShot::new(model, LocalLines { count: lines, focus }, seed)?;
                 let (tally, mut books) = (first_shot.tally(1), Books::default());
                 let rate = rate(lines, |block| first_shot.trace(0, block, &tally, &mut books));
                 shot = Some(first_shot.finish(tally, books)?);
@@ -158,7 +160,7 @@ fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, Solve
             }
             Action::SecondShot { lines } => {
                 let Some(shot) = &shot else { continue };
-                let second_shot = SecondShot::new(model, shot, lines, seed);
+                let second_shot = SecondShot::new(model, shot, LocalLines { count: lines, focus }, seed);
                 let local = second_shot.lines();
                 let (tally, mut books) = (local.tally(1), Books::default());
                 let rate = rate(local.lines(), |block| local.trace(0, block, &tally, &mut books));
@@ -167,8 +169,8 @@ fn probe(pipeline: &Pipeline, model: &Model) -> Result<Vec<StageEstimate>, Solve
             Action::Multipath { lines, body, .. } => {
                 let Some(shot) = shot.take() else { continue };
                 // Both transports trace the same lines at about the same rate.
-                let domain = body.around(&model.scene);
-                let transport = Batches::new(model, shot, lines, domain, seed, 1);
+                let through = body.lines_around(&model.scene, focus);
+                let transport = Batches::new(model, shot, lines, through, seed, 1);
                 let mut books = Books::default();
                 let rate = rate(lines, |block| transport.trace(0, block, &mut books));
                 estimates.push(StageEstimate { name, lines, rate });
@@ -275,9 +277,9 @@ pub(crate) fn kinds(sources: &[Source]) -> String {
     let counts = [
         ("triangle side", count(|e| matches!(e, Emitter::Surface { .. }))),
         ("point", count(|e| matches!(e, Emitter::Point { .. }))),
-        ("distant light", count(|e| matches!(e, Emitter::Distant(_)))),
-        ("sky", count(|e| matches!(e, Emitter::Dome))),
-        ("ground", count(|e| matches!(e, Emitter::Ground))),
+        ("distant light", count(|e| matches!(e, Emitter::Distant { .. }))),
+        ("sky", count(|e| matches!(e, Emitter::Dome(_)))),
+        ("ground", count(|e| matches!(e, Emitter::Ground(_)))),
     ];
     let named = counts.iter().filter(|(_, n)| *n > 0).map(|(name, n)| match *name {
         "sky" | "ground" => (*name).to_owned(),

@@ -12,8 +12,18 @@ use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
 use crate::ron_tree::{self, Node, Value};
 use crate::units::Units;
 
-const STAGES: [&str; 9] =
-    ["Load", "Light", "Subdivide", "FirstShot", "SecondShot", "Multipath", "Repeat", "Sensors", "Save"];
+const STAGES: [&str; 10] = [
+    "Load",
+    "Light",
+    "Subdivide",
+    "Focus",
+    "FirstShot",
+    "SecondShot",
+    "Multipath",
+    "Repeat",
+    "Sensors",
+    "Save",
+];
 
 /// Most replicas: a table of them must fit into memory.
 const MOST_REPLICAS: u64 = 1_000_000;
@@ -79,6 +89,7 @@ impl<'a> Decoder<'a> {
         if let Some(order) = order {
             check_order(&mut self.reader, &order, node.text);
         }
+        self.check_focus(&stages);
         Some((seed?, units, stages))
     }
 
@@ -141,6 +152,7 @@ impl<'a> Decoder<'a> {
             "Load" => self.load(node),
             "Light" => self.light(node),
             "Subdivide" => self.subdivide(node).map(Action::Subdivide),
+            "Focus" => self.focus(node),
             "FirstShot" => self.local_lines(node, name).map(|lines| Action::FirstShot { lines }),
             "SecondShot" => self.local_lines(node, name).map(|lines| Action::SecondShot { lines }),
             "Multipath" => self.multipath(node),

@@ -32,6 +32,7 @@ pub mod args;
 pub mod check;
 pub mod compare;
 mod decode;
+mod decode_focus;
 mod decode_lights;
 mod decode_outputs;
 mod decode_repeat;

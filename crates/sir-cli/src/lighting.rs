@@ -1,18 +1,23 @@
 //! The light of a run, and the stages of lines that add to it.
 
-use sir_lines::Domain;
+use sir_lines::{Focus, GlobalLines, LocalLines};
 use sir_parallel::{Crew, RunError, Saved, StageRun, StageTime};
-use sir_radiosity::{Model, MultipathSettings, PowerUnit, Quanta, Received, Shot, Solution, Transported};
+use sir_radiosity::{
+    Inside, Model, MultipathSettings, PowerUnit, Quanta, Received, Shot, Solution, Transported,
+};
 
 use crate::pipeline::{Action, Body, Transport};
+use crate::prepare::Prepared;
 use crate::report::{DomainReport, ErrorsReport, Facts, LightReport};
 
 /// Runs stages of lines, one after the other, and keeps the light that they have brought so far.
 pub(crate) struct Lighting<'m> {
     model: &'m Model,
     light: Light,
+    focus: Option<Focus>,
+    inside: &'m Inside,
     /// What global lines were last drawn through.
-    domain: Option<(Body, Domain)>,
+    through: Option<(Body, GlobalLines)>,
 }
 
 /// All light so far.
@@ -35,8 +40,9 @@ pub(crate) struct Done {
 
 impl<'m> Lighting<'m> {
     /// Darkness.
-    pub(crate) fn new(model: &'m Model) -> Self {
-        Self { model, light: Light::None, domain: None }
+    pub(crate) fn new(prepared: &'m Prepared) -> Self {
+        let Prepared { model, focus, inside, .. } = prepared;
+        Self { model, light: Light::None, focus: *focus, inside, through: None }
     }
 
     /// Runs a stage, or goes on with one that was saved. `None` if it is not a stage of lines.
@@ -47,24 +53,39 @@ impl<'m> Lighting<'m> {
         crew: &mut Crew<'_>,
         saved: Option<Saved>,
     ) -> Result<Option<Done>, RunError> {
-        let model = self.model;
+        let (model, focus) = (self.model, self.focus);
         let done = match *action {
             Action::FirstShot { lines } => {
                 self.light = Light::None;
-                self.shot(sir_parallel::first_shot(model, lines, seed, crew, saved)?)
+                self.shot(sir_parallel::first_shot(
+                    model,
+                    LocalLines { count: lines, focus },
+                    seed,
+                    crew,
+                    saved,
+                )?)
             }
             Action::SecondShot { lines } => {
                 let shot = self.take_shot();
-                self.shot(sir_parallel::second_shot(model, shot, lines, seed, crew, saved)?)
+                self.shot(sir_parallel::second_shot(
+                    model,
+                    shot,
+                    LocalLines { count: lines, focus },
+                    seed,
+                    crew,
+                    saved,
+                )?)
             }
             Action::Multipath { lines, transport, body } => {
-                let (shot, domain) = (self.take_shot(), self.domain(body));
-                let report = DomainReport::of(&domain);
+                let (shot, through) = (self.take_shot(), self.through(body));
+                let report = DomainReport::of(&through);
                 let run = match transport {
                     Transport::Batches => {
-                        sir_parallel::batches(model, shot, lines, domain, seed, crew, saved)?
+                        sir_parallel::batches(model, shot, lines, through, seed, crew, saved)?
                     }
                     Transport::Replicas { replicas, tail } => {
+                        // A pipeline with a focus has none of these.
+                        let domain = through.domain().clone();
                         let settings = MultipathSettings { lines, tail, replicas, domain };
                         sir_parallel::multipath(model, shot, settings, seed, crew, saved)?
                     }
@@ -85,10 +106,11 @@ impl<'m> Lighting<'m> {
         }
     }
 
-    fn domain(&mut self, body: Body) -> Domain {
-        let known = self.domain.take().filter(|(of, _)| *of == body);
-        let (_, domain) = self.domain.insert(known.unwrap_or_else(|| (body, body.around(&self.model.scene))));
-        domain.clone()
+    fn through(&mut self, body: Body) -> GlobalLines {
+        let known = self.through.take().filter(|(of, _)| *of == body);
+        let lines = || (body, body.lines_around(&self.model.scene, self.focus));
+        let (_, through) = self.through.insert(known.unwrap_or_else(lines));
+        through.clone()
     }
 
     fn shot(&mut self, run: StageRun<Shot>) -> Done {
@@ -128,6 +150,6 @@ impl<'m> Lighting<'m> {
             }
             Light::All(all) => all.solution,
         };
-        Some((LightReport::new(self.model, &solution, errors, hash), solution))
+        Some((LightReport::new(self.model, self.inside, &solution, errors, hash), solution))
     }
 }

@@ -22,6 +22,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
             let help = match name {
                 "Load" => "a pipeline has one scene: keep one `Load`",
                 "Light" => "keep one, with all the lights",
+                "Focus" => "keep one, with a box around all that matters",
                 "Subdivide" => "keep one of the two",
                 "Repeat" => "keep one, with as many repeats as both together",
                 _ => "keep one, with all the lines",
@@ -42,10 +43,10 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
         }
         match name {
             "Load" => scene = true,
-            "Light" | "Subdivide" if first_shot => {
+            "Light" | "Subdivide" | "Focus" if first_shot => {
                 let light = if repeat.is_some() { "Repeat" } else { "FirstShot" };
                 let why = match name {
-                    "Light" => "light has been sent without it",
+                    "Light" | "Focus" => "light has been sent without it",
                     _ => "light has been computed on the patches as they were",
                 };
                 reader.problem(

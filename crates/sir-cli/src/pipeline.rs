@@ -4,8 +4,8 @@ use std::io::Read as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use sir_geom::{Camera, Scene, SidesPolicy};
-use sir_lines::Domain;
+use sir_geom::{BoundingBox, Camera, Scene, SidesPolicy};
+use sir_lines::{Domain, Focus, GlobalLines};
 use sir_mesh::Subdivision;
 use sir_view::Exposure;
 
@@ -58,6 +58,13 @@ pub enum Action {
     },
     /// Cuts the triangles into patches.
     Subdivide(Subdivision),
+    /// Says which part of the scene matters.
+    Focus {
+        /// The box around it.
+        bounds: BoundingBox,
+        /// Share of the lines that are drawn through it: from 0 to 0.95. Default three quarters.
+        share: f64,
+    },
     /// Sends the power of the light sources along local lines.
     FirstShot {
         /// How many lines, at least 1.
@@ -145,6 +152,16 @@ impl Body {
             Self::Hull => Domain::hull(scene),
         }
     }
+
+    /// The lines through the body around a scene, and maybe a focus.
+    #[must_use]
+    pub fn lines_around(self, scene: &Scene, focus: Option<Focus>) -> GlobalLines {
+        let domain = self.around(scene);
+        match focus {
+            Some(focus) => GlobalLines::focused(domain, focus),
+            None => domain.into(),
+        }
+    }
 }
 
 impl Action {
@@ -155,6 +172,7 @@ impl Action {
             Self::Load { .. } => "Load",
             Self::Light { .. } => "Light",
             Self::Subdivide(_) => "Subdivide",
+            Self::Focus { .. } => "Focus",
             Self::FirstShot { .. } => "FirstShot",
             Self::SecondShot { .. } => "SecondShot",
             Self::Multipath { .. } => "Multipath",
@@ -173,6 +191,7 @@ impl Action {
             Self::Load { .. }
             | Self::Light { .. }
             | Self::Subdivide(_)
+            | Self::Focus { .. }
             | Self::Sensors(_)
             | Self::Save(_) => 0,
         }

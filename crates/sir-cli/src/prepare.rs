@@ -5,15 +5,16 @@ use std::path::Path;
 
 use glam::DVec3;
 use sir_geom::{Camera, LoadOptions, Scene};
+use sir_lines::Focus;
 use sir_mesh::{MeshError, Subdivision};
-use sir_radiosity::{Model, SolveError, Source, emits, sources};
+use sir_radiosity::{Inside, Model, SolveError, Source, emits, sources};
 use sir_view::guess_up;
 
 use crate::Error;
 use crate::diagnostic::Diagnostic;
 use crate::fields::did_you_mean;
 use crate::lights::Lamp;
-use crate::pipeline::{Action, CameraChoice, Content, Pipeline};
+use crate::pipeline::{Action, CameraChoice, Content, Pipeline, Stage};
 use crate::progress::Progress;
 use crate::report::Stopwatch;
 use crate::sensors::Layout;
@@ -29,6 +30,10 @@ pub struct Prepared {
     pub warnings: Vec<String>,
     /// The light sources: at least one.
     pub sources: Vec<Source>,
+    /// What matters, if not everything does.
+    pub focus: Option<Focus>,
+    /// The sides in it.
+    pub inside: Inside,
     /// Where the sensors of each stage `Sensors` are, by the number of the stage.
     pub layouts: BTreeMap<usize, Layout>,
     /// Seconds to read the scene.
@@ -69,7 +74,8 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     let mut problems = camera_problems(pipeline, &built.scene);
     let watch = Stopwatch::start();
     let (how, span) = subdivision;
-    match Model::new(built.scene, how) {
+    let focus = focus(pipeline, &built.scene)?;
+    match Model::within(built.scene, how, focus.map(|focus| focus.bounds())) {
         Ok(model) if problems.is_empty() => {
             let build_seconds = watch.seconds();
             let sources = sources(&model.scene, &model.mesh);
@@ -77,14 +83,45 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
                 return Err(SolveError::NoLight.into());
             }
             let up = up(pipeline.scene_path(), &model.scene);
+            let inside = Inside::of(&model, focus.as_ref());
+            if inside.is_empty() {
+                return Err(pipeline.diagnostics(nothing_inside(pipeline, &model.scene)).into());
+            }
             let layouts = layouts(pipeline, &model, up).map_err(|problems| pipeline.diagnostics(problems))?;
-            Ok(Prepared { model, up, warnings, sources, layouts, load_seconds, build_seconds })
+            Ok(Prepared { model, up, warnings, sources, focus, inside, layouts, load_seconds, build_seconds })
         }
         outcome => {
             problems.extend(outcome.err().map(|error| mesh_problem(error, span)));
             Err(pipeline.diagnostics(problems).into())
         }
     }
+}
+
+/// What matters, if the pipeline says so.
+fn focus(pipeline: &Pipeline, scene: &Scene) -> Result<Option<Focus>, Error> {
+    for stage in &pipeline.stages {
+        let Action::Focus { bounds, share } = stage.action else { continue };
+        let focus = Focus::new(bounds, share, scene);
+        return match focus {
+            Some(_) => Ok(focus),
+            None => Err(pipeline.diagnostics(nothing_inside(pipeline, scene)).into()),
+        };
+    }
+    Ok(None)
+}
+
+/// That nothing is in the focus, said at its stage.
+fn nothing_inside(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
+    let around = scene.bounding_box();
+    let is_focus = |stage: &&Stage| matches!(stage.action, Action::Focus { .. });
+    let stages = pipeline.stages.iter().filter(is_focus);
+    stages
+        .map(|stage| Diagnostic {
+            span: stage.span.clone(),
+            message: "no patch of the scene lies in the box of `Focus`".into(),
+            help: format!("the scene reaches from {:.4} to {:.4}, in its own units", around.min, around.max),
+        })
+        .collect()
 }
 
 /// Where all sensors are, or why they cannot be where they should.

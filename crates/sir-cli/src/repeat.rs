@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use sir_lines::seed_of_repeat;
 use sir_parallel::{Checkpoints, Communicator, Saved, StageTime};
-use sir_radiosity::{Model, PowerUnit, RepeatedBooks, Repeats, Solution, Visitor};
+use sir_radiosity::{Inside, Model, PowerUnit, RepeatedBooks, Repeats, Solution, Visitor};
 
 use crate::Error;
 use crate::check::duration;
@@ -30,7 +30,8 @@ impl Run<'_> {
         mut saved: Option<Saved>,
     ) -> Result<(StageReport, Solution), Error> {
         let model = &self.prepared.model;
-        let mut lighting = Lighting::new(model);
+        let mut lighting = Lighting::new(self.prepared);
+        let inside = &self.prepared.inside;
         let mut repeats = Repeating::new(settings, model);
         let (mut repeat, mut first) =
             if saved.is_some() { (self.head.repeat, self.head.part) } else { (0, 0) };
@@ -55,7 +56,7 @@ impl Run<'_> {
             if let Some(received) = lighting.received() {
                 repeats.sums.add(received);
             }
-            if !repeats.go_on(model, self.comm) {
+            if !repeats.go_on(model, inside, self.comm) {
                 break;
             }
             (repeat, first) = (repeat + 1, 0);
@@ -64,7 +65,7 @@ impl Run<'_> {
                 self.progress.note(&repeats.title());
             }
         }
-        let (report, solution) = repeats.finish(model);
+        let (report, solution) = repeats.finish(model, inside);
         self.progress.note(&format!("Repeat: {} times after {}", repeat + 1, duration(report.time.seconds)));
         for (stage, report) in settings.stages.iter().zip(&report.stages) {
             self.progress.warn(
@@ -152,10 +153,10 @@ impl<'a> Repeating<'a> {
     }
 
     /// Whether there is to be another repeat. The first rank decides, because clocks differ.
-    fn go_on(&mut self, model: &Model, comm: &dyn Communicator) -> bool {
+    fn go_on(&mut self, model: &Model, inside: &Inside, comm: &dyn Communicator) -> bool {
         if let Until::RelativeError(_) = self.settings.until {
             let (_, solution) = self.mean(model);
-            self.error = Some(relative_error(model, &solution).into_iter().fold(0.0, f64::max));
+            self.error = Some(relative_error(model, inside, &solution).into_iter().fold(0.0, f64::max));
         }
         let done = self.sums.count();
         let wanted = self.settings.until.wants_more(done, self.error, self.elapsed().as_secs_f64());
@@ -207,7 +208,7 @@ impl<'a> Repeating<'a> {
     }
 
     /// What to report, and the mean.
-    fn finish(self, model: &Model) -> (StageReport, Solution) {
+    fn finish(self, model: &Model, inside: &Inside) -> (StageReport, Solution) {
         let (hash, solution) = self.mean(model);
         let (count, total) = (self.sums.count(), self.elapsed());
         let Self { settings, sums, parts, unit, .. } = self;
@@ -228,7 +229,7 @@ impl<'a> Repeating<'a> {
             report.stages.push(part);
         }
         report.repeats = Some(count);
-        report.light = Some(LightReport::new(model, &solution, ErrorsReport { from, samples }, hash));
+        report.light = Some(LightReport::new(model, inside, &solution, ErrorsReport { from, samples }, hash));
         report.time = Time::of_lines(time, lines);
         (report, solution)
     }

@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 use sir_geom::Rgb;
-use sir_lines::Domain;
+use sir_lines::GlobalLines;
 use sir_parallel::StageTime;
-use sir_radiosity::{Balance, Counts, Model, PowerUnit, Quanta, Solution};
+use sir_radiosity::{Balance, Counts, Inside, Model, PowerUnit, Quanta, Solution};
 
 use crate::sensors::SensorsReport;
 use crate::units::Units;
@@ -123,7 +123,7 @@ pub struct LinesReport {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LightReport {
     /// Estimated relative error of the irradiance, per band: root of the area-weighted mean square of the standard errors,
-    /// over the area-weighted mean irradiance. Zero in a band without light.
+    /// over the area-weighted mean irradiance; with a focus, of the patches in it. Zero in a band without light.
     pub relative_error: [f64; 3],
     /// Where the standard errors come from.
     pub errors: ErrorsReport,
@@ -157,6 +157,9 @@ pub struct DomainReport {
     pub body: String,
     /// Its surface \[m²\]; of a flat body, both sides.
     pub surface: f64,
+    /// Share of the lines that were drawn through the focus, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub focus: Option<f64>,
 }
 
 /// Energy balance of a stage per band \[W\]: `emitted = absorbed + blocked + escaped + unshot`.
@@ -262,8 +265,10 @@ pub(crate) struct Facts {
 }
 
 impl DomainReport {
-    pub(crate) fn of(domain: &Domain) -> Self {
-        Self { body: domain.name().into(), surface: domain.surface() }
+    pub(crate) fn of(lines: &GlobalLines) -> Self {
+        let domain = lines.domain();
+        let focus = lines.focus().map(|_| lines.share());
+        Self { body: domain.name().into(), surface: domain.surface(), focus }
     }
 }
 
@@ -293,15 +298,24 @@ impl LinesReport {
 
 impl LightReport {
     /// `tally_hash` is that of the power of which the solution was made.
-    pub(crate) fn new(model: &Model, solution: &Solution, errors: ErrorsReport, tally_hash: String) -> Self {
-        Self { relative_error: relative_error(model, solution), errors, tally_hash }
+    pub(crate) fn new(
+        model: &Model,
+        inside: &Inside,
+        solution: &Solution,
+        errors: ErrorsReport,
+        tally_hash: String,
+    ) -> Self {
+        Self { relative_error: relative_error(model, inside, solution), errors, tally_hash }
     }
 }
 
 /// See [`LightReport::relative_error`].
-pub(crate) fn relative_error(model: &Model, solution: &Solution) -> [f64; 3] {
+pub(crate) fn relative_error(model: &Model, inside: &Inside, solution: &Solution) -> [f64; 3] {
     let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
     model.mesh.for_each_side(|triangle, _, _, side| {
+        if !inside.has(side) {
+            return;
+        }
         let a = model.area(triangle, side);
         let error = solution.error[side.index()];
         area += a;

@@ -22,13 +22,13 @@ impl Run<'_> {
         mut saved: Option<Saved>,
     ) -> Result<(), Error> {
         let prepared = self.prepared;
-        let mut lighting = Lighting::new(&prepared.model);
+        let mut lighting = Lighting::new(prepared);
         let mut solution = None;
         for (number, stage) in self.pipeline.stages.iter().enumerate().skip(self.head.stage) {
             let (name, watch) = (stage.action.name(), Stopwatch::start());
             let report = match &stage.action {
                 Action::Load { .. } => StageReport::of(name, Time::of(prepared.load_seconds)),
-                Action::Light { .. } => StageReport::of(name, Time::of(0.0)),
+                Action::Light { .. } | Action::Focus { .. } => StageReport::of(name, Time::of(0.0)),
                 Action::Subdivide(_) => StageReport::of(name, Time::of(prepared.build_seconds)),
                 Action::Sensors(sensors) => match &solution {
                     Some(solution) => self.measure(number, sensors, solution)?,

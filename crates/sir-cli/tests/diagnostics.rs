@@ -567,6 +567,17 @@ fn impossible_orders() {
 }
 
 #[test]
+fn a_focus_that_cannot_be() {
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: "room.obj"),"#,
+        r#"Focus(min: (0, 0, 0), max: (1, -1, 1), share: 1),"#,
+        r#"FirstShot(lines: 10),"#,
+        r#"Focus(min: (0, 0, 0)),"#,
+        r#"Multipath(lines: 10, transport: Replicas),"#,
+    ]));
+}
+
+#[test]
 fn syntax() {
     insta::assert_snapshot!(problems("Pipeline(\n    seed: 1\n    stages: [],\n)"), @r"
     x.ron:3:5: error: not valid RON: expected comma

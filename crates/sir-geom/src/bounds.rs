@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::Line;
+
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundingBox {
@@ -39,6 +41,34 @@ impl BoundingBox {
     pub fn face_areas(&self) -> DVec3 {
         let size = self.size();
         DVec3::new(size.y * size.z, size.z * size.x, size.x * size.y)
+    }
+
+    /// Whether a point lies in the box or on it.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        self.min.cmple(point).all() && point.cmple(self.max).all()
+    }
+
+    /// What two boxes have in common; `None` if that is nothing.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Option<Self> {
+        let both = Self { min: self.min.max(other.min), max: self.max.min(other.max) };
+        both.min.cmple(both.max).all().then_some(both)
+    }
+
+    /// Whether a line, in both directions from its origin, meets the box.
+    ///
+    /// Seen along the line, the box is a hexagon whose edges are those of the box: the line must be on the inner side of each pair.
+    /// Nothing is divided, so that lines along a face and flat boxes are no special cases.
+    #[inline]
+    #[must_use]
+    pub fn meets(&self, line: &Line) -> bool {
+        let half = 0.5 * self.size();
+        let along = line.direction.abs();
+        let across = (line.origin - self.centre()).cross(line.direction).abs();
+        across.x <= half.y * along.z + half.z * along.y
+            && across.y <= half.z * along.x + half.x * along.z
+            && across.z <= half.x * along.y + half.y * along.x
     }
 }
 
@@ -102,6 +132,42 @@ mod tests {
         let s = BoundingSphere::of(&corners).unwrap();
         assert!((s.radius - 0.75f64.sqrt()).abs() < 1e-8, "{s:?}");
         assert!(corners.iter().all(|c| c.distance(s.centre) < s.radius));
+    }
+
+    /// The nearest point of a segment to a box is sought step by step, which is sure but where a line only just meets or misses.
+    #[test]
+    fn lines_meet_a_box_where_one_of_their_points_is_in_it() {
+        let bounds = BoundingBox { min: DVec3::new(-1.0, 0.0, 2.0), max: DVec3::new(1.0, 0.5, 3.0) };
+        let grown = |by: f64| BoundingBox { min: bounds.min - by, max: bounds.max + by };
+        let direction =
+            |i: f64| DVec3::new((1.7 * i).sin(), (2.3 * i).cos(), (0.9 * i + 1.0).sin()).normalize();
+        let (mut met, mut missed) = (0, 0);
+        for i in 0..2_000 {
+            let i = f64::from(i);
+            let line = Line { origin: 2.0 * direction(3.1 * i) + DVec3::Z, direction: direction(i) };
+            let has_point_in =
+                |bounds: BoundingBox| (-8_000..8_000).any(|k| bounds.contains(line.at(f64::from(k) * 1e-3)));
+            if bounds.meets(&line) {
+                met += 1;
+                assert!(has_point_in(grown(1e-3)), "{line:?}");
+            } else {
+                missed += 1;
+                assert!(!has_point_in(bounds), "{line:?}");
+            }
+        }
+        assert!(met > 150 && missed > 150, "{met} met, {missed} missed");
+        let flat = BoundingBox { min: DVec3::ZERO, max: DVec3::new(1.0, 1.0, 0.0) };
+        let at = |x, y, z| DVec3::new(x, y, z);
+        assert!(flat.meets(&Line { origin: at(0.5, 0.5, 9.0), direction: -DVec3::Z }));
+        assert!(!flat.meets(&Line { origin: at(1.5, 0.5, 9.0), direction: DVec3::Z }));
+        assert!(!flat.meets(&Line { origin: at(-1.0, 0.5, 0.1), direction: DVec3::X }));
+    }
+
+    #[test]
+    fn boxes_have_a_box_in_common_or_nothing() {
+        let of = |min, max| BoundingBox { min: DVec3::splat(min), max: DVec3::splat(max) };
+        assert_eq!(of(0.0, 2.0).intersection(&of(1.0, 3.0)), Some(of(1.0, 2.0)));
+        assert_eq!(of(0.0, 1.0).intersection(&of(1.5, 3.0)), None);
     }
 
     #[test]

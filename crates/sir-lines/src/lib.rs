@@ -9,6 +9,7 @@
 //! * Global lines: a [`Domain`] is a convex body around the scene: its convex hull, its box, or a sphere. The uniform
 //!   (isotropic) lines of the body meet a surface of area `A` in proportion to `A`, which integral geometry turns into a
 //!   [`Forecast`] of the number of crossings.
+//! * [`GlobalLines`] are those of a domain, and maybe more of them through a part of the scene that matters, a [`Focus`].
 //! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does; [`unit_vector`] and
 //!   [`spot_direction`] leave a point. [`ParallelLines`] come from one direction.
 //! * [`EvenPoints`] are random, but not independent: for integrals over few lines, each of which has to count.
@@ -42,6 +43,7 @@ mod allocation;
 mod domain;
 mod even;
 mod facets;
+mod focus;
 mod forecast;
 mod local;
 mod parallel;
@@ -52,6 +54,7 @@ pub use allocation::Allocation;
 pub use domain::Domain;
 pub use even::EvenPoints;
 pub use facets::Facets;
+pub use focus::{DENSEST, Focus, GlobalLines, LocalLines};
 pub use forecast::Forecast;
 pub use local::{
     cosine_direction, cosine_direction_of, point_on_triangle, point_on_triangle_of, spot_direction,

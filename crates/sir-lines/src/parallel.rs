@@ -24,6 +24,18 @@ impl ParallelLines {
         Self { bounds, direction, areas: bounds.face_areas() * direction.abs() }
     }
 
+    /// The box that they meet.
+    #[must_use]
+    pub fn bounds(&self) -> BoundingBox {
+        self.bounds
+    }
+
+    /// Their direction, of unit length.
+    #[must_use]
+    pub fn direction(&self) -> DVec3 {
+        self.direction
+    }
+
     /// Area of the shadow of the box \[m²\].
     #[must_use]
     pub fn area(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! How finely each triangle is cut.
 
-use sir_geom::Scene;
+use sir_geom::{BoundingBox, Scene, TriangleId};
 
 use crate::MeshError;
 
@@ -25,8 +25,12 @@ pub enum Subdivision {
 }
 
 impl Subdivision {
-    /// Parts of an edge per triangle.
-    pub(crate) fn divisions(self, scene: &Scene) -> Result<Vec<u32>, MeshError> {
+    /// Parts of an edge per triangle: 1 of those that do not meet the box `within`, if there is one.
+    pub(crate) fn divisions(self, scene: &Scene, within: Option<BoundingBox>) -> Result<Vec<u32>, MeshError> {
+        let matters = |t: &TriangleId| within.is_none_or(|bounds| meets(scene, *t, bounds));
+        let of_each = |n: &dyn Fn(TriangleId) -> Result<u32, MeshError>| {
+            scene.triangle_ids().map(|t| if matters(&t) { n(t) } else { Ok(1) }).collect()
+        };
         let positive = |what: &'static str, x: f64| {
             if x.is_finite() && x > 0.0 { Ok(x) } else { Err(MeshError::NotPositive { what, value: x }) }
         };
@@ -34,7 +38,7 @@ impl Subdivision {
             Self::PerTriangle | Self::PerFace => Ok(vec![1; scene.triangles().len()]),
             Self::MaxArea(max) => {
                 let max = positive("area", max)?;
-                scene.triangle_ids().map(|t| parts((scene.area(t) / max).sqrt())).collect()
+                of_each(&|t| parts((scene.area(t) / max).sqrt()))
             }
             Self::MaxEdge(max) => {
                 let max = positive("edge", max)?;
@@ -42,14 +46,23 @@ impl Subdivision {
                     let [a, b, c] = scene.corners(t);
                     a.distance(b).max(b.distance(c)).max(c.distance(a))
                 };
-                scene.triangle_ids().map(|t| parts(longest(t) / max)).collect()
+                of_each(&|t| parts(longest(t) / max))
             }
             Self::Patches(target) => {
-                let areas: Vec<f64> = scene.triangle_ids().map(|t| scene.area(t)).collect();
+                // What has no area is not cut.
+                let area = |t| if matters(&t) { scene.area(t) } else { 0.0 };
+                let areas: Vec<f64> = scene.triangle_ids().map(area).collect();
                 by_count(&areas, target)
             }
         }
     }
+}
+
+/// Whether the box around a triangle meets another.
+fn meets(scene: &Scene, triangle: TriangleId, bounds: BoundingBox) -> bool {
+    let [a, b, c] = scene.corners(triangle);
+    let around = BoundingBox { min: a.min(b).min(c), max: a.max(b).max(c) };
+    around.intersection(&bounds).is_some()
 }
 
 /// The fewest whole parts that are each at most one unit of `x` units.
@@ -95,7 +108,7 @@ fn fill_up(areas: &[f64], target: u64, divisions: &mut [u32]) {
     });
     for t in order {
         let more = u64::from(2 * divisions[t] + 1);
-        if more <= missing && divisions[t] < MAX_DIVISIONS {
+        if more <= missing && divisions[t] < MAX_DIVISIONS && areas[t] > 0.0 {
             divisions[t] += 1;
             missing -= more;
         }

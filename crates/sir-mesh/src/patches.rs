@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use sir_geom::{Barycentric, FaceId, Rgb, Scene, Side, Sides, TriangleId, typed_index};
+use sir_geom::{Barycentric, BoundingBox, FaceId, Rgb, Scene, Side, Sides, TriangleId, typed_index};
 use thiserror::Error;
 
 use crate::barycentric;
@@ -82,7 +82,20 @@ impl PatchMesh {
     ///
     /// If a limit is not positive, or there would be more than 2³² patches.
     pub fn new(scene: &Scene, subdivision: Subdivision) -> Result<Self, MeshError> {
-        let divisions = subdivision.divisions(scene)?;
+        Self::within(scene, subdivision, None)
+    }
+
+    /// As [`new`](Self::new), but triangles whose box does not meet this one, if there is one, are not cut.
+    ///
+    /// # Errors
+    ///
+    /// As those of `new`.
+    pub fn within(
+        scene: &Scene,
+        subdivision: Subdivision,
+        bounds: Option<BoundingBox>,
+    ) -> Result<Self, MeshError> {
+        let divisions = subdivision.divisions(scene, bounds)?;
         let mut mesh = Self {
             cuts: Vec::with_capacity(divisions.len()),
             patches_of: Vec::with_capacity(divisions.len()),
@@ -387,6 +400,37 @@ mod tests {
         }
         let mesh = PatchMesh::new(&scene, Subdivision::Patches(5)).unwrap();
         assert_eq!(mesh.patch_count(), scene.triangles().len());
+    }
+
+    #[test]
+    fn only_what_meets_a_box_is_cut() {
+        let scene = room(Sides::Front);
+        // It meets two walls, the floor and the ceiling, and neither the other walls nor the sphere.
+        let bounds = BoundingBox { min: DVec3::new(-1.0, -1.0, -1.0), max: DVec3::new(2.0, 3.0, 4.0) };
+        let far = |t: TriangleId| {
+            let [a, b, c] = scene.corners(t);
+            let min = a.min(b).min(c);
+            min.x > 2.0 || min.y > 3.0
+        };
+        for subdivision in
+            [Subdivision::MaxArea(0.02), Subdivision::MaxEdge(0.3), Subdivision::Patches(20_000)]
+        {
+            let all = PatchMesh::new(&scene, subdivision).unwrap();
+            let mesh = PatchMesh::within(&scene, subdivision, Some(bounds)).unwrap();
+            assert!((total_area(&scene, &mesh) / scene.total_area() - 1.0).abs() < 1e-12);
+            for t in scene.triangle_ids() {
+                match subdivision {
+                    _ if far(t) => assert_eq!(mesh.divisions(t), 1),
+                    Subdivision::Patches(_) => assert!(mesh.divisions(t) > all.divisions(t)),
+                    _ => assert_eq!(mesh.divisions(t), all.divisions(t)),
+                }
+            }
+            assert_eq!(scene.triangle_ids().filter(|&t| far(t)).count(), 4 + 320);
+            if let Subdivision::Patches(target) = subdivision {
+                let missing = target as usize - mesh.patch_count();
+                assert!(missing < 100, "{missing} fewer than asked for");
+            }
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use sir_lines::Domain;
+use sir_lines::{Domain, Focus, GlobalLines, LocalLines};
 use sir_radiosity::{
     Batches, Books, FirstShot, FirstShotTally, Model, Multipath, MultipathSettings, SecondShot, Shot, Totals,
     Transported, Visitor,
@@ -92,19 +92,27 @@ impl LocalState {
     }
 }
 
-/// Runs a first shot of `lines` lines, or goes on with one that was saved.
+/// Adds to the numbers that tell a stage from others what tells its focus from others.
+fn with_focus(mut identity: Vec<u64>, focus: Option<&Focus>) -> Vec<u64> {
+    identity.extend(focus.iter().flat_map(|focus| focus.identity()));
+    identity
+}
+
+/// Runs a first shot of some lines, maybe with a focus, or goes on with one that was saved.
 ///
 /// # Errors
 ///
 /// If nothing emits, a tally overflowed, the observer wants to stop, or a checkpoint cannot be saved or restored.
 pub fn first_shot(
     model: &Model,
-    lines: u64,
+    lines: impl Into<LocalLines>,
     seed: u64,
     crew: &mut Crew<'_>,
     saved: Option<Saved>,
 ) -> Result<StageRun<Shot>, RunError> {
-    let mut shift = Shift::begin(crew, lines, &[1, model.mesh.side_count() as u64, lines, seed]);
+    let lines = lines.into();
+    let identity = vec![1, model.mesh.side_count() as u64, lines.count, seed];
+    let mut shift = Shift::begin(crew, lines.count, &with_focus(identity, lines.focus.as_ref()));
     let state = LocalState::restored(model, None, &mut shift, saved)?;
     let stage = FirstShot::new(model, lines, seed)?;
     let (tally, books) = state.trace(&stage, None, &mut shift)?;
@@ -112,7 +120,7 @@ pub fn first_shot(
     Ok(StageRun { outcome, time: shift.time(), batches: 1 })
 }
 
-/// Lets the brightest patches send what they reflect of a first shot along `lines` local lines, or goes on with a second shot
+/// Lets the brightest patches send what they reflect of a first shot along some local lines, with the focus of that shot, or goes on with a second shot
 /// that was saved; `shot` is then not looked at.
 ///
 /// # Errors
@@ -121,12 +129,14 @@ pub fn first_shot(
 pub fn second_shot(
     model: &Model,
     mut shot: Shot,
-    lines: u64,
+    lines: impl Into<LocalLines>,
     seed: u64,
     crew: &mut Crew<'_>,
     saved: Option<Saved>,
 ) -> Result<StageRun<Shot>, RunError> {
-    let mut shift = Shift::begin(crew, lines, &[4, model.mesh.side_count() as u64, lines, seed]);
+    let lines = lines.into();
+    let identity = vec![4, model.mesh.side_count() as u64, lines.count, seed];
+    let mut shift = Shift::begin(crew, lines.count, &with_focus(identity, lines.focus.as_ref()));
     let state = LocalState::restored(model, Some(&mut shot), &mut shift, saved)?;
     // Which patches are bright follows from the first shot.
     let stage = SecondShot::new(model, &shot, lines, seed);
@@ -150,7 +160,7 @@ impl Work for Batches<'_> {
     }
 }
 
-/// Transports the reflected light of a first shot along `lines` global lines in frozen batches, or goes on with a transport
+/// Transports the reflected light of a first shot along `lines` global lines in frozen batches, drawn `through` a domain or also a focus, or goes on with a transport
 /// that was saved; `shot` is then not looked at.
 ///
 /// # Errors
@@ -160,14 +170,16 @@ pub fn batches(
     model: &Model,
     shot: Shot,
     lines: u64,
-    domain: Domain,
+    through: impl Into<GlobalLines>,
     seed: u64,
     crew: &mut Crew<'_>,
     saved: Option<Saved>,
 ) -> Result<StageRun<Transported>, RunError> {
-    let mut shift =
-        Shift::begin(crew, lines, &[2, model.mesh.side_count() as u64, lines, seed, identity_of(&domain)]);
-    let mut stage = Batches::new(model, shot, lines, domain, seed, shift.threads());
+    let through = through.into();
+    let sides = model.mesh.side_count() as u64;
+    let identity = vec![2, sides, lines, seed, identity_of(through.domain())];
+    let mut shift = Shift::begin(crew, lines, &with_focus(identity, through.focus()));
+    let mut stage = Batches::new(model, shot, lines, through, seed, shift.threads());
     let mut position = Position::default();
     let open = |stage: &mut Batches<'_>, shift: &mut Shift<'_, '_>| {
         each(stage.parts(shift.threads()), |mut part| part.open());

@@ -3,7 +3,7 @@
 //! While the lines of a batch are traced, what each side sends with a line is fixed, and what they bring is only added up;
 //! the next batch sends it on. So the lines of a batch may be traced in any order and by any number of workers, and the
 //! result does not depend on it. It is stochastic iteration (Szirmay-Kalos 1999, *Stochastic iteration for
-//! non-diffuse global illumination*) along global lines, with four refinements:
+//! non-diffuse global illumination*) along global lines, with these refinements:
 //!
 //! * *Nothing is lost.* A side that holds the power `U` and expects `n` lines of a batch sends `U/q` with each, and what
 //!   `c` lines did not take, `U − cU/q`, stays for the next batch. Among all `q`, `n + 1` leaves the smallest mean square:
@@ -17,6 +17,10 @@
 //!   ratio estimator. Given `C`, which is Poisson, it is exact on average if `λ` is divided by `1 − exp(−λ)`, for the sides
 //!   that no line crossed. What is left of the noise is that lines bring different amounts, and nothing where all bring the
 //!   same. A factor for all sides, almost one, lets them receive in all what was sent.
+//! * *A focus has more lines.* With one, lines that do not meet it are rarer by a whole number, which is their weight: so many times the
+//!   share of a side leaves with such a line, and so many lines it counts for. Sides in the focus are only crossed by lines of weight 1, as if
+//!   there were no others. Of the others, `n` is the number of lines as if all had the larger weight, and what they receive is not
+//!   multiplied, since lines are not as good as each other. How many lines a batch has follows from the power in the focus.
 //! * *The tail is stretched.* What is still unshot at the end would be received much as was the power sent after the sources
 //!   had ceased. Let there have been `L₀` unshot at that time and `L` at the end: then the power received since is
 //!   multiplied by `1 + L/(L₀ − L)`, so that all power is accounted for.
@@ -24,15 +28,16 @@
 use std::ops::{AddAssign, Range};
 
 use sir_geom::TriangleId;
-use sir_lines::{Domain, Stage, Streams};
+use sir_lines::{GlobalLines, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global;
-use crate::ledger::{Counters, Ledger, SquareUnit};
-use crate::segments::End;
+use crate::ledger::{Counters, Ledger, Page, SquareUnit};
+use crate::segments::{End, Segment};
 use crate::state::{from_word, to_word, visit_counts, visit_float, visit_slice};
 use crate::{
-    Balance, Books, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Transported, Visitor,
+    Balance, Books, Inside, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Transported,
+    Visitor,
 };
 
 /// Most parts in which the sources are sent out.
@@ -68,7 +73,10 @@ const STRETCHABLE: f64 = 0.9;
 #[derive(Debug)]
 pub struct Batches<'m> {
     model: &'m Model,
-    domain: Domain,
+    lines: GlobalLines,
+    /// Where the sequence of lines through the focus begins.
+    offset: u64,
+    inside: Inside,
     streams: Streams,
     /// What the lines of this batch bring, and the share of its power that each side sends with a line.
     ledger: Ledger,
@@ -88,7 +96,7 @@ struct Account {
     brought: Quanta,
     /// While the sources are sent out, what is to be sent of them; afterwards, as `brought` when they had ceased.
     noted: [f32; 3],
-    /// Lines that have crossed it.
+    /// Lines that have crossed it, by their weights.
     crossings: u64,
 }
 
@@ -107,20 +115,58 @@ struct Plan {
     least: u64,
     /// Reflected power per power sent in the first shot.
     guess: f64,
+    /// Most lines of a batch.
+    most: u64,
+    /// How much a side outside of the focus counts for the number of lines.
+    outside: f64,
     /// Reflected direct power, in all.
-    source: Quanta,
+    source: Sums,
     /// Unshot power when the sources had ceased.
-    ceased: Quanta,
+    ceased: Sums,
     /// Sums over all batches so far; `unshot` is that of now.
     totals: Totals,
+}
+
+/// A sum over all sides, and over those in the focus.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Sums {
+    all: Quanta,
+    inside: Quanta,
+}
+
+impl Sums {
+    #[inline]
+    fn add(&mut self, power: Quanta, inside: bool) {
+        self.all += power;
+        if inside {
+            self.inside += power;
+        }
+    }
+
+    /// The sum if sides outside of the focus count for so much.
+    fn weighed(self, outside: f64) -> f64 {
+        self.inside.total() + outside * (self.all - self.inside).total()
+    }
+
+    /// The sum over sides in the focus, or over the others.
+    fn part(self, inside: bool) -> Quanta {
+        if inside { self.inside } else { self.all - self.inside }
+    }
+}
+
+impl AddAssign for Sums {
+    fn add_assign(&mut self, other: Self) {
+        self.all += other.all;
+        self.inside += other.inside;
+    }
 }
 
 /// Sums over sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Totals {
-    unshot: Quanta,
-    sent: Quanta,
-    reflected: Quanta,
+    unshot: Sums,
+    sent: Sums,
+    reflected: Sums,
     absorbed: Quanta,
 }
 
@@ -137,7 +183,8 @@ impl AddAssign for Totals {
 #[derive(Debug)]
 pub struct Part<'a> {
     model: &'a Model,
-    domain: &'a Domain,
+    lines: &'a GlobalLines,
+    inside: &'a Inside,
     ledger: &'a Ledger,
     plan: Plan,
     first: u32,
@@ -145,36 +192,50 @@ pub struct Part<'a> {
 }
 
 impl<'m> Batches<'m> {
-    /// Prepares the transport of the reflected direct power of a first shot along `lines` lines, for this number of
-    /// workers: how many there are has no effect on the result, but on the time.
+    /// Prepares the transport of the reflected direct power of a first shot along `lines` lines, drawn `through` a domain or also a
+    /// focus, for this number of workers: how many there are has no effect on the result, but on the time.
     #[must_use]
-    pub fn new(model: &'m Model, shot: Shot, lines: u64, domain: Domain, seed: u64, workers: usize) -> Self {
+    pub fn new(
+        model: &'m Model,
+        shot: Shot,
+        lines: u64,
+        through: impl Into<GlobalLines>,
+        seed: u64,
+        workers: usize,
+    ) -> Self {
+        let through = through.into();
+        let inside = Inside::of(model, through.focus());
         let unshot = shot.unshot(model);
         let Shot { received: direct, unit, balance, .. } = shot;
         let sides = model.mesh.side_count();
         let mut accounts = Vec::with_capacity(sides);
-        let mut source = Quanta::ZERO;
-        let forecast = domain.forecast(lines);
+        let mut source = Sums::default();
+        let forecast = through.forecast(lines);
         let (mut area, mut square, mut most, mut brightest) = (0.0, 0.0, 0.0, [0.0; 3]);
         model.mesh.for_each_side(|triangle, _, _, side| {
             let reflectance = model.reflectance(triangle, side);
             let unshot = unshot[side.index()];
-            source += unshot;
+            let is_inside = inside.has(side);
+            source.add(unshot, is_inside);
             accounts.push(Account { unshot, noted: unshot.0.map(|q| q as f32), ..Account::default() });
             let a = model.area(triangle, side);
-            (area, square) = (area + a, square + a * a);
             let crossings = forecast.crossings(a);
-            most = f64::max(most, crossings);
+            let weight = if is_inside { 1.0 } else { f64::from(through.weight()) };
+            if is_inside || inside.is_empty() {
+                (area, square) = (area + a, square + a * a);
+            }
+            // Lines are fewer than their weights, and cross it once.
+            most = f64::max(most, if is_inside { crossings } else { crossings.min(lines as f64) });
             for band in 0..3 {
                 // All light that a side reflects, if what it sees is as bright, over all its crossings.
-                let share = unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings;
+                let share = weight * (unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings);
                 // Not a number, and not counted, for a patch that is all gap.
                 brightest[band] = f64::max(brightest[band], share);
             }
         });
         let ledger = Ledger::new(sides, workers, 1, SquareUnit::new(brightest, most));
         // Lines that cross a typical patch once: typical of where the area is.
-        let once = domain.surface() * area / (2.0 * square);
+        let once = forecast.surface * area / (2.0 * square);
         let parts = (lines as f64 / once / CROSSINGS_PER_PART) as u64;
         let plan = Plan {
             lines,
@@ -184,12 +245,16 @@ impl<'m> Batches<'m> {
             least: (SMALLEST * once).ceil() as u64,
             guess: balance.unshot.total() / balance.emitted.total().max(1.0),
             source,
-            ceased: Quanta::ZERO,
+            most: through.most(),
+            outside: 1.0 / f64::from(through.weight()),
+            ceased: Sums::default(),
             totals: Totals { unshot: source, ..Totals::default() },
         };
         let plan = Plan { batch: [0, plan.next_lines()], ..plan };
         let streams = Streams::new(seed, Stage::GLOBAL);
-        Self { model, domain, streams, ledger, direct, accounts, unit, plan }
+        let offset = Streams::new(seed, Stage::ALLOCATION).line(Stage::GLOBAL.0 - Stage::FIRST_SHOT.0).unit();
+        let offset = (offset * 2f64.powi(64)) as u64;
+        Self { model, lines: through, offset, inside, streams, ledger, direct, accounts, unit, plan }
     }
 
     /// The lines of the current batch. Each of them is traced once, by whomever, when all parts have been
@@ -210,27 +275,26 @@ impl<'m> Batches<'m> {
         let Books { balance, counts } = books;
         let page = self.ledger.page(worker);
         let soon = |side| page.prefetch(side);
-        global::trace(self.model, &self.domain, &self.streams, lines, counts, soon, |_, segment| {
-            match (segment.from, segment.to) {
-                (End::Side(i, _), End::Side(j, _)) => page.exchange(i, j),
-                (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
-                    balance.escaped += page.leave(i);
-                }
-                (End::Side(i, _), End::Inactive) | (End::Inactive, End::Side(i, _)) => {
-                    balance.blocked += page.leave(i);
-                }
-                _ => {}
-            }
-        });
+        let draw = |index| self.lines.sample(index, self.offset, &mut self.streams.line(index));
+        if self.lines.focus().is_none() {
+            // The weight is known, and costs nothing.
+            global::trace(self.model, draw, lines, counts, soon, |_, _, segment| {
+                pass(page, balance, segment, 1);
+            });
+        } else {
+            global::trace(self.model, draw, lines, counts, soon, |_, weight, segment| {
+                pass(page, balance, segment, weight);
+            });
+        }
     }
 
     /// Cuts the sides into at most `count` parts.
     pub fn parts(&mut self, count: usize) -> impl Iterator<Item = Part<'_>> {
-        let Self { model, ref domain, ref ledger, ref mut accounts, plan, .. } = *self;
+        let Self { model, ref lines, ref inside, ref ledger, ref mut accounts, plan, .. } = *self;
         let size = accounts.len().div_ceil(count.max(1)).max(1);
         accounts.chunks_mut(size).enumerate().map(move |(i, accounts)| {
             let first = (i * size) as u32;
-            Part { model, domain, ledger, plan, first, accounts }
+            Part { model, lines, inside, ledger, plan, first, accounts }
         })
     }
 
@@ -266,7 +330,7 @@ impl<'m> Batches<'m> {
     /// Shows the state of the stage to a visitor.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
         self.unit.visit(visitor);
-        self.plan.visit(visitor);
+        self.plan.visit(!self.inside.is_all(), visitor);
         self.ledger.visit_unit(visitor);
         self.ledger.visit(Counters::All, visitor);
         self.ledger.visit_shares(visitor);
@@ -280,20 +344,24 @@ impl<'m> Batches<'m> {
     ///
     /// If a tally overflowed.
     pub fn finish(self, books: Books) -> Result<Transported, SolveError> {
-        let Self { model, domain, direct: mut received, ledger, accounts, unit, plan, .. } = self;
+        let Self { model, lines, inside, direct: mut received, ledger, accounts, unit, plan, .. } = self;
         let Books { balance: Balance { blocked, escaped, .. }, counts } = books;
         let Totals { unshot, absorbed, .. } = plan.totals;
-        let balance = Balance { emitted: plan.source, absorbed, blocked, escaped, unshot };
+        let balance = Balance { emitted: plan.source.all, absorbed, blocked, escaped, unshot: unshot.all };
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "multipath" });
         }
-        let (forecast, stretch) = (domain.forecast(plan.lines), plan.stretch());
+        let (forecast, stretches) =
+            (lines.forecast(plan.lines), [false, true].map(|inside| plan.stretch(inside)));
         let factor = |account: &Account, triangle, side| {
             account.factor(forecast.crossings(model.area(triangle, side)))
         };
         let (mut plain, mut corrected) = ([0.0; 3], [0.0; 3]);
         model.mesh.for_each_side(|triangle, _, _, side| {
-            let account = &accounts[side.index()];
+            if !inside.has(side) {
+                return;
+            }
+            let (account, [_, stretch]) = (&accounts[side.index()], stretches);
             let factor = factor(account, triangle, side);
             for band in 0..3 {
                 let [_, _, power] = account.stretched(band, stretch[band]);
@@ -306,17 +374,22 @@ impl<'m> Batches<'m> {
         let Received { power, variance } = &mut received;
         model.mesh.for_each_side(|triangle, _, _, side| {
             let (account, squares) = (&accounts[side.index()], ledger.squares(side));
-            let factor = factor(account, triangle, side);
+            // Where lines have different weights, they are not corrected.
+            let is_inside = inside.has(side);
+            let factor = if is_inside { factor(account, triangle, side) } else { 1.0 };
+            let stretch = stretches[usize::from(is_inside)];
             let (power, variance) = (&mut power[side.index()], &mut variance[side.index()]);
             let mut sum = Quanta::ZERO;
             for band in 0..3 {
                 let [brought, tail, stretched] = account.stretched(band, stretch[band]);
-                let factor = factor * scale(band);
+                let factor = if is_inside { factor * scale(band) } else { 1.0 };
                 sum.0[band] = (factor * stretched).round() as i64;
                 // Lines bring about the same at all times, so the squares of the tail are in proportion to its power.
                 let share = if brought > 0.0 { (tail / brought).clamp(0.0, 1.0) } else { 0.0 };
                 let longer = 1.0 - share + share * (1.0 + stretch[band]) * (1.0 + stretch[band]);
-                let more = factor * factor * account.variance(stretched, longer * squares[band]);
+                let squares = longer * squares[band];
+                let spread = if is_inside { account.variance(stretched, squares) } else { squares };
+                let more = factor * factor * spread;
                 variance[band] = (f64::from(variance[band]) + more) as f32;
             }
             *power += sum;
@@ -324,6 +397,21 @@ impl<'m> Batches<'m> {
         });
         let solution = Solution::new(model, &received, unit);
         Ok(Transported { solution, received, unit, balance, counts, made_up })
+    }
+}
+
+/// What a line of some weight does along a segment.
+#[inline]
+fn pass(page: Page<'_>, balance: &mut Balance, segment: Segment, weight: u32) {
+    match (segment.from, segment.to) {
+        (End::Side(i, _), End::Side(j, _)) => page.exchange(i, j, weight),
+        (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
+            balance.escaped += page.leave(i, weight);
+        }
+        (End::Side(i, _), End::Inactive) | (End::Inactive, End::Side(i, _)) => {
+            balance.blocked += page.leave(i, weight);
+        }
+        _ => {}
     }
 }
 
@@ -382,9 +470,10 @@ impl Plan {
     /// with the reserve, in small batches.
     fn next_lines(&self) -> u64 {
         let (left, least) = (self.lines - self.batch[0], self.least as f64);
+        let weighed = |sums: Sums| sums.weighed(self.outside);
         let (source, held, sent) =
-            (self.source.total(), self.totals.unshot.total(), self.totals.sent.total());
-        let r = if sent > 0.0 { self.totals.reflected.total() / sent } else { self.guess };
+            (weighed(self.source), weighed(self.totals.unshot), weighed(self.totals.sent));
+        let r = if sent > 0.0 { weighed(self.totals.reflected) / sent } else { self.guess };
         let sends = |r: f64| 1.0 / (1.0 - r);
         let r = r.clamp(0.0, 0.999);
 
@@ -400,39 +489,49 @@ impl Plan {
         let lines = if over { left } else { left.min(wanted as u64) };
         let lines = if left - lines < self.least { left } else { lines };
         // Crossings of a side are counted in 32 bits.
-        lines.min(1 << 31)
+        lines.min(self.most)
     }
 
     /// What is to be added to the power received in the tail for each unit of it, per band.
-    fn stretch(&self) -> [f64; 3] {
+    /// The power left in the focus is taken to spread in it, and that left elsewhere likewise.
+    fn stretch(&self, inside: bool) -> [f64; 3] {
+        let [ceased, unshot] = [self.ceased, self.totals.unshot].map(|sums| sums.part(inside));
         std::array::from_fn(|band| {
-            let (before, after) = (self.ceased.0[band] as f64, self.totals.unshot.0[band] as f64);
+            let (before, after) = (ceased.0[band] as f64, unshot.0[band] as f64);
             if after > 0.0 && after <= STRETCHABLE * before { after / (before - after) } else { 0.0 }
         })
     }
 
-    fn visit(&mut self, visitor: &mut dyn Visitor) {
+    fn visit(&mut self, focused: bool, visitor: &mut dyn Visitor) {
         // The other fields follow from the scene and the number of lines.
         let Self { batch: [start, end], number, guess, source, ceased, totals, .. } = self;
         visit_counts([start, end, number], visitor);
         visit_float(guess, visitor);
         let Totals { unshot, sent, reflected, absorbed } = totals;
-        for quanta in [source, ceased, unshot, sent, reflected, absorbed] {
-            visitor.same(&mut quanta.0);
+        for sums in [source, ceased, unshot, sent, reflected] {
+            visitor.same(&mut sums.all.0);
+            if focused {
+                visitor.same(&mut sums.inside.0);
+            } else {
+                sums.inside = sums.all;
+            }
         }
+        visitor.same(&mut absorbed.0);
     }
 }
 
 impl<'a> Part<'a> {
     /// Sets what the sides of this part send with each line of the batch that begins.
     pub fn open(&mut self) {
-        let forecast = self.domain.forecast(self.plan.batch[1] - self.plan.batch[0]);
+        let forecast = self.lines.forecast(self.plan.batch[1] - self.plan.batch[0]);
+        let heavy = f64::from(self.lines.weight());
         let withheld = self.plan.withheld();
         let ceased = self.plan.number == self.plan.parts;
         for (triangle, sides) in self.sides() {
             for i in sides {
-                let expected = forecast.crossings(self.model.area(triangle, SideId(i)));
-                let lines = expected + 1.0 + expected.sqrt() * expected.min(1.0);
+                let weight = if self.inside.has(SideId(i)) { 1.0 } else { heavy };
+                let expected = forecast.crossings(self.model.area(triangle, SideId(i))) / weight;
+                let lines = weight * (expected + 1.0 + expected.sqrt() * expected.min(1.0));
                 let k = (i - self.first) as usize;
                 let account = &mut self.accounts[k];
                 if ceased {
@@ -459,9 +558,10 @@ impl<'a> Part<'a> {
                 account.brought += power;
                 account.unshot += reflected - sent;
                 account.crossings += u64::from(crossings);
-                totals.unshot += account.unshot;
-                totals.sent += sent;
-                totals.reflected += reflected;
+                let inside = self.inside.has(side);
+                totals.unshot.add(account.unshot, inside);
+                totals.sent.add(sent, inside);
+                totals.reflected.add(reflected, inside);
                 totals.absorbed += power - reflected;
             }
         }

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use sir_accel::Ray;
-use sir_geom::{Barycentric, Line, Scene, Side, Sky, Spread, TriangleId};
+use sir_geom::{Barycentric, BoundingBox, Line, Scene, Side, Sky, Spread, TriangleId};
 use sir_lines::{
     Domain, ParallelLines, Stream, cosine_direction, point_on_triangle, spot_direction, unit_vector,
 };
@@ -13,7 +13,8 @@ use sir_mesh::PatchId;
 /// What a source is.
 ///
 /// Light from outside is let in through the axis-aligned box around the scene; lines that meet nothing in there are booked as
-/// *escaped*. Uniform lines through the box, of which those are kept that the sky sends, have the density of its radiance.
+/// *escaped*. Uniform lines through the box, of which those are kept that the sky sends, have the density of its radiance. With a focus there are
+/// two sources of each light from outside: what passes `through` a smaller box, and what passes `around` it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Emitter {
     /// A side of a triangle, or of a part of one.
@@ -37,11 +38,25 @@ pub enum Emitter {
         spread: Spread,
     },
     /// Parallel light.
-    Distant(ParallelLines),
+    Distant {
+        /// The lines through a box.
+        lines: ParallelLines,
+        /// Those that meet this box do not count.
+        around: Option<BoundingBox>,
+    },
     /// The scene's sky, above the horizon.
-    Dome,
+    Dome(Opening),
     /// The ground of the scene's sky.
-    Ground,
+    Ground(Opening),
+}
+
+/// Where light from the sky is let in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Opening {
+    /// What its lines pass through.
+    pub through: BoundingBox,
+    /// Those that meet this box do not count.
+    pub around: Option<BoundingBox>,
 }
 
 /// How far outside of the box lines from outside begin, in radii of the scene: a surface in a face of the box must be met.
@@ -65,11 +80,16 @@ impl Emitter {
                 };
                 Line { origin: *position, direction }.into()
             }
-            Self::Distant(lines) => from_outside(scene, lines.sample(stream)),
-            Self::Dome => from_sky(scene, stream, Sky::share),
-            Self::Ground => {
-                from_sky(scene, stream, |sky, towards| f64::from(u8::from(towards.dot(sky.up()) <= 0.0)))
-            }
+            Self::Distant { lines, around } => loop {
+                let line = lines.sample(stream);
+                if !around.is_some_and(|bounds| bounds.meets(&line)) {
+                    break from_outside(scene, lines.bounds(), line);
+                }
+            },
+            Self::Dome(opening) => from_sky(scene, opening, stream, Sky::share),
+            Self::Ground(opening) => from_sky(scene, opening, stream, |sky, towards| {
+                f64::from(u8::from(towards.dot(sky.up()) <= 0.0))
+            }),
         }
     }
 }
@@ -97,20 +117,43 @@ pub(crate) fn point_on_surface(
     point
 }
 
-/// A ray from the sky: a uniform one through the box that was kept with the probability `share`.
-fn from_sky(scene: &Scene, stream: &mut Stream, share: impl Fn(&Sky, DVec3) -> f64) -> Ray {
-    let bounds = Domain::Box(scene.bounding_box());
+/// A ray from the sky: a uniform one through an opening that was kept with the probability `share`.
+fn from_sky(
+    scene: &Scene,
+    opening: &Opening,
+    stream: &mut Stream,
+    share: impl Fn(&Sky, DVec3) -> f64,
+) -> Ray {
+    let bounds = Domain::Box(opening.through);
     loop {
         let line = bounds.sample(stream);
+        if opening.around.is_some_and(|around| around.meets(&line)) {
+            continue;
+        }
         // Only a scene with a sky has such sources.
         if scene.sky().is_none_or(|sky| stream.unit() < share(sky, -line.direction)) {
-            break from_outside(scene, line);
+            break from_outside(scene, opening.through, line);
         }
     }
 }
 
-/// The ray of a line that enters the box.
-fn from_outside(scene: &Scene, line: Line) -> Ray {
-    let back = OUTSIDE * scene.bounding_sphere().radius;
+/// The ray of a line that begins where it enters a box: that of the scene, or one in it.
+fn from_outside(scene: &Scene, through: BoundingBox, line: Line) -> Ray {
+    let bounds = scene.bounding_box();
+    let entry = if through == bounds { 0.0 } else { entry(bounds, &line) };
+    let back = entry + OUTSIDE * scene.bounding_sphere().radius;
     Line { origin: line.origin - back * line.direction, ..line }.into()
+}
+
+/// How far it is from a point in a box back to where its line has entered the box.
+fn entry(bounds: BoundingBox, line: &Line) -> f64 {
+    let of = |axis: usize| {
+        let (to_min, to_max) = (line.origin[axis] - bounds.min[axis], line.origin[axis] - bounds.max[axis]);
+        match line.direction[axis] {
+            d if d > 0.0 => to_min / d,
+            d if d < 0.0 => to_max / d,
+            _ => f64::INFINITY,
+        }
+    };
+    of(0).min(of(1)).min(of(2)).max(0.0)
 }

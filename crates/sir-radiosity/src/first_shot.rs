@@ -6,12 +6,12 @@ use std::ops::Range;
 
 use sir_accel::Ray;
 use sir_geom::Rgb;
-use sir_lines::{Allocation, Stage, Streams};
+use sir_lines::{Allocation, LocalLines, Stage, Streams};
 use sir_mesh::SideId;
 
 use crate::global::AHEAD;
-use crate::ledger::{Counters, Ledger, SquareUnit};
-use crate::sources::{Source, sources};
+use crate::ledger::{Counters, HEADROOM, Ledger, SquareUnit};
+use crate::sources::{Aimed, Source};
 use crate::state::visit_counts;
 use crate::{Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Solution, SolveError, Visitor};
 
@@ -28,6 +28,8 @@ pub struct FirstShot<'m> {
     sources: Vec<Source>,
     /// Power of one line of each source.
     per_line: Vec<Quanta>,
+    /// How many times as dense lines are in a focus.
+    density: f64,
     allocation: Allocation,
     streams: Streams,
     unit: PowerUnit,
@@ -102,14 +104,16 @@ impl Shot {
 }
 
 impl<'m> FirstShot<'m> {
-    /// Shares `lines` lines among the sources in proportion to their power, so that all lines carry the same.
+    /// Shares lines among the sources in proportion to their power, so that all lines carry the same; with a focus, all lines in it, and all
+    /// others.
     ///
     /// # Errors
     ///
     /// If nothing emits.
-    pub fn new(model: &'m Model, lines: u64, seed: u64) -> Result<Self, SolveError> {
-        let sources = sources(&model.scene, &model.mesh);
-        let total = sources.iter().fold(Rgb::ZERO, |sum, s| sum + s.power);
+    pub fn new(model: &'m Model, lines: impl Into<LocalLines>, seed: u64) -> Result<Self, SolveError> {
+        let LocalLines { count: lines, focus } = lines.into();
+        let sources = Aimed::new(model, focus.as_ref());
+        let total = sources.sources.iter().fold(Rgb::ZERO, |sum, s| sum + s.power);
         if total.max_element() <= 0.0 {
             return Err(SolveError::NoLight);
         }
@@ -121,20 +125,21 @@ impl<'m> FirstShot<'m> {
     /// As [`new`](Self::new), with these sources, all of which emit.
     pub(crate) fn of(
         model: &'m Model,
-        sources: Vec<Source>,
+        aimed: Aimed,
         unit: PowerUnit,
         lines: u64,
         seed: u64,
         stage: Stage,
     ) -> Self {
-        let weights: Vec<f64> = sources.iter().map(|s| s.power.element_sum()).collect();
-        // A line carries ΣΦ/N in all, in the colour of its source.
+        let weights = aimed.weights();
+        let Aimed { sources, density, .. } = aimed;
+        // A line carries ΣΦ/N in all, in the colour of its source; less where lines are denser, for which there are more.
         let line = weights.iter().sum::<f64>() / lines.max(1) as f64;
         let per_line = sources.iter().zip(&weights).map(|(s, w)| unit.quanta(s.power * (line / w))).collect();
         let offset = Streams::new(seed, Stage::ALLOCATION).line(stage.0 - Stage::FIRST_SHOT.0).unit();
         let allocation = Allocation::new(&weights, lines, offset);
         let streams = Streams::new(seed, stage);
-        Self { model, sources, per_line, allocation, streams, unit, lines }
+        Self { model, sources, per_line, density, allocation, streams, unit, lines }
     }
 
     /// Number of lines.
@@ -151,7 +156,10 @@ impl<'m> FirstShot<'m> {
     /// An empty tally, for this number of workers: how many there are has no effect on the result, but on the time.
     #[must_use]
     pub fn tally(&self, workers: usize) -> FirstShotTally {
-        let largest = |band: usize| self.per_line.iter().map(|q| q.0[band] as f64).fold(0.0, f64::max);
+        // No line brings more than this: where those in a focus bring much less, squares need no headroom but all digits.
+        let exact = if self.density > 1.0 { 1.0 / HEADROOM.sqrt() } else { 1.0 };
+        let largest =
+            |band: usize| exact * self.per_line.iter().map(|q| q.0[band] as f64).fold(0.0, f64::max);
         let squares = SquareUnit::new([0, 1, 2].map(largest), self.lines as f64);
         let sides = self.model.mesh.side_count();
         FirstShotTally { ledger: Ledger::new(sides, workers, COPIES, squares) }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use sir_lines::{Domain, Streams};
+use sir_geom::Line;
 use sir_mesh::SideId;
 
 use crate::segments::{End, Segment, Segments};
@@ -15,24 +15,27 @@ pub(crate) const AHEAD: usize = 40;
 const LINES: usize = 1024;
 
 /// Traces global lines in order, counts what they meet, and calls `visit` for each of their segments with the number
-/// of the line. Some time before, `soon` gets the sides at its ends.
+/// of the line and its weight; `draw` makes both of the number. Some time before, `soon` gets the sides at its ends.
 pub(crate) fn trace(
     model: &Model,
-    domain: &Domain,
-    streams: &Streams,
+    draw: impl Fn(u64) -> (Line, u32),
     lines: Range<u64>,
     counts: &mut Counts,
     soon: impl Fn(SideId),
-    mut visit: impl FnMut(u64, Segment),
+    mut visit: impl FnMut(u64, u32, Segment),
 ) {
     let mut tracer = model.accel.tracer();
     let mut segments = Segments::default();
-    let mut some = Vec::with_capacity(LINES);
+    let (mut some, mut weights) = (Vec::with_capacity(LINES), Vec::with_capacity(LINES));
     let mut first = lines.start;
     while first < lines.end {
         let end = lines.end.min(first + LINES as u64);
         some.clear();
-        some.extend((first..end).map(|index| domain.sample(&mut streams.line(index))));
+        weights.clear();
+        for (line, weight) in (first..end).map(&draw) {
+            some.push(line);
+            weights.push(weight);
+        }
         let mut line = first;
         tracer.all_hits_each(&some, |hits| {
             for hits in hits.lines() {
@@ -50,7 +53,8 @@ pub(crate) fn trace(
                         }
                     }
                 }
-                visit(line + of_line as u64, segment);
+                let index = line + of_line as u64;
+                visit(index, weights[(index - first) as usize], segment);
             }
             line += hits.lines().len() as u64;
         });

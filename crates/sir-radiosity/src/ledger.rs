@@ -20,7 +20,7 @@ struct Record {
     power: [AtomicI64; 3],
     squares: [AtomicI64; 3],
     share: [AtomicU32; 3],
-    /// Lines that left the side, and [`LOCKED`] while a worker writes.
+    /// Lines that left the side, by their weights, and [`LOCKED`] while a worker writes.
     crossings: AtomicU32,
 }
 
@@ -102,7 +102,7 @@ impl Ledger {
         copies.fold(Quanta::ZERO, |sum, power| sum + power)
     }
 
-    /// Takes out the power received by a side and the number of lines that left it.
+    /// Takes out the power received by a side and the weight of all lines that left it.
     pub(crate) fn take(&self, side: SideId) -> (Quanta, u32) {
         let (mut power, mut crossings) = (Quanta::ZERO, 0);
         for record in self.of(side.index()) {
@@ -217,19 +217,19 @@ impl Page<'_> {
         self.change(side, 0, power);
     }
 
-    /// A line leaves a side, which sends its share with it.
+    /// A line of some weight leaves a side, which sends its share with it, so many times.
     #[inline]
-    pub(crate) fn leave(self, side: SideId) -> Quanta {
-        self.change(side, 1, Quanta::ZERO);
-        self.share(side)
+    pub(crate) fn leave(self, side: SideId, weight: u32) -> Quanta {
+        self.change(side, weight, Quanta::ZERO);
+        self.share(side).times(i64::from(weight))
     }
 
-    /// A line leaves two sides, each towards the other one.
+    /// A line of some weight leaves two sides, each towards the other one.
     #[inline]
-    pub(crate) fn exchange(self, i: SideId, j: SideId) {
-        let (from_i, from_j) = (self.share(i), self.share(j));
-        self.change(i, 1, from_j);
-        self.change(j, 1, from_i);
+    pub(crate) fn exchange(self, i: SideId, j: SideId, weight: u32) {
+        let [from_i, from_j] = [i, j].map(|side| self.share(side).times(i64::from(weight)));
+        self.change(i, weight, from_j);
+        self.change(j, weight, from_i);
     }
 
     /// Some lines leave a side, or power comes to it.
@@ -291,7 +291,7 @@ pub(crate) struct SquareUnit {
 }
 
 /// How much larger than foreseen a square may be.
-const HEADROOM: f64 = 64.0;
+pub(crate) const HEADROOM: f64 = 64.0;
 
 impl SquareUnit {
     /// A unit for gifts of about `largest` quanta at most, of which a side gets about `gifts` at most.

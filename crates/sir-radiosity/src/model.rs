@@ -1,7 +1,7 @@
 //! What is solved: a scene, its patches, and the means to trace lines through it.
 
 use sir_accel::Accel;
-use sir_geom::{Rgb, Scene, Side, TriangleId};
+use sir_geom::{BoundingBox, Rgb, Scene, Side, TriangleId};
 use sir_mesh::{MeshError, PatchId, PatchMesh, SideId, Subdivision};
 
 /// A scene, cut into patches and ready for lines. Immutable, and shared by all who trace.
@@ -22,7 +22,20 @@ impl Model {
     ///
     /// If the subdivision is impossible.
     pub fn new(scene: Scene, subdivision: Subdivision) -> Result<Self, MeshError> {
-        let mesh = PatchMesh::new(&scene, subdivision)?;
+        Self::within(scene, subdivision, None)
+    }
+
+    /// As [`new`](Self::new), but triangles whose box does not meet this one, if there is one, are not cut.
+    ///
+    /// # Errors
+    ///
+    /// If the subdivision is impossible.
+    pub fn within(
+        scene: Scene,
+        subdivision: Subdivision,
+        bounds: Option<BoundingBox>,
+    ) -> Result<Self, MeshError> {
+        let mesh = PatchMesh::within(&scene, subdivision, bounds)?;
         let accel = Accel::new(&scene);
         Ok(Self { scene, mesh, accel })
     }

@@ -156,7 +156,8 @@ impl<'m> Multipath<'m> {
         let Books { balance, counts } = books;
         let (model, page) = (self.model, self.ledger.page(worker));
         let soon = |side| page.prefetch(side);
-        global::trace(model, &self.settings.domain, &self.streams, now, counts, soon, |index, segment| {
+        let draw = |index| (self.settings.domain.sample(&mut self.streams.line(index)), 1);
+        global::trace(model, draw, now, counts, soon, |index, _, segment| {
             exchange(model, page, unshot, balance, segment, index < *tail);
         });
         if lines.is_empty() {

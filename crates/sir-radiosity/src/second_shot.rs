@@ -6,13 +6,13 @@
 //! sources as the lines of this shot are to those of the first: then a line carries as much as a line of the first shot.
 
 use sir_geom::{Rgb, Side};
-use sir_lines::Stage;
+use sir_lines::{LocalLines, Stage};
 use sir_mesh::{PatchId, SideId};
 
 use crate::emitter::Emitter;
 use crate::first_shot::{FirstShot, FirstShotTally, Shot};
-use crate::sources::Source;
-use crate::{Books, Model, Quanta, SolveError};
+use crate::sources::{Aimed, Source};
+use crate::{Books, Inside, Model, Quanta, SolveError};
 
 /// The lines of a second shot.
 #[derive(Clone, Debug)]
@@ -23,12 +23,14 @@ pub struct SecondShot<'m> {
 }
 
 impl<'m> SecondShot<'m> {
-    /// Shares `lines` lines among the brightest patches. If nothing reflects, there are no lines.
+    /// Shares lines among the brightest patches; with a focus, that of the first shot, among those in it. If none reflects, there are no lines.
     #[must_use]
-    pub fn new(model: &'m Model, shot: &Shot, lines: u64, seed: u64) -> Self {
+    pub fn new(model: &'m Model, shot: &Shot, lines: impl Into<LocalLines>, seed: u64) -> Self {
+        let LocalLines { count: lines, focus } = lines.into();
         let unshot = shot.unshot(model);
         let total = shot.balance.emitted.total() * lines as f64 / shot.counts.lines.max(1) as f64;
-        let bright = brightest(model, &unshot, total);
+        let share = focus.map_or(1.0, |focus| Aimed::new(model, Some(&focus)).inner_share());
+        let bright = brightest(model, &unshot, &Inside::of(model, focus.as_ref()), total * share);
         let (mut sources, mut sides) = (Vec::new(), Vec::new());
         for triangle in model.scene.triangle_ids() {
             let (corners, front) = (model.scene.corners(triangle), model.scene.normal(triangle));
@@ -50,7 +52,7 @@ impl<'m> SecondShot<'m> {
             }
         }
         let lines = if sources.is_empty() { 0 } else { lines };
-        let lines = FirstShot::of(model, sources, shot.unit, lines, seed, Stage::SECOND_SHOT);
+        let lines = FirstShot::of(model, Aimed::plain(sources), shot.unit, lines, seed, Stage::SECOND_SHOT);
         Self { lines, sides }
     }
 
@@ -80,12 +82,12 @@ impl<'m> SecondShot<'m> {
     }
 }
 
-/// Which sides are the brightest ones that hold `total` together, or all that hold something.
-fn brightest(model: &Model, unshot: &[Quanta], total: f64) -> Vec<bool> {
+/// Which sides are the brightest ones `inside` that hold `total` together, or all that hold something.
+fn brightest(model: &Model, unshot: &[Quanta], inside: &Inside, total: f64) -> Vec<bool> {
     let mut sides = Vec::new();
     model.mesh.for_each_side(|triangle, _, _, side| {
         let power = unshot[side.index()].total();
-        if power > 0.0 {
+        if power > 0.0 && inside.has(side) {
             sides.push((power / model.area(triangle, side), power, side));
         }
     });

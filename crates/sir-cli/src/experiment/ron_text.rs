@@ -21,6 +21,8 @@ fn action(action: &Action) -> Option<String> {
         // The names of these choices in a file are those in the program.
         Action::Load { path, sides } => format!("Load(path: {}, sides: {sides:?})", path_text(path)),
         Action::Light { text, .. } => text.clone(),
+        // The paper knows of none, and replicas cannot have it.
+        Action::Focus { .. } => return None,
         Action::Subdivide(how) => match how {
             // This is what happens without the stage.
             Subdivision::PerTriangle => return None,

@@ -44,7 +44,8 @@ fn all_lines_are_traced_once() {
         let Outcome { counts, .. } = outcome(job);
         assert_eq!(counts.lines, LINES, "{job:?}");
         // Of the lines through the hull of the room, none misses it; some local lines leave it.
-        let some = if matches!(job, Job::FirstShot | Job::SecondShot) { 1..LINES } else { 0..1 };
+        let some =
+            if matches!(job, Job::FirstShot | Job::AimedShot | Job::SecondShot) { 1..LINES } else { 0..1 };
         assert!(some.contains(&counts.empty) && counts.crossings > 0, "{job:?}: {counts:?}");
     }
 }
@@ -58,7 +59,7 @@ fn what_is_received_is_absorbed_or_reflected() {
         ROOM.model.mesh.for_each_side(|triangle, _, _, side| {
             let reflectance = ROOM.model.scene.material(triangle).reflectance;
             let before = match job {
-                Job::FirstShot => Quanta::ZERO,
+                Job::FirstShot | Job::AimedShot => Quanta::ZERO,
                 _ => ROOM.shot.received.power[side.index()],
             };
             let new = received.power[side.index()] - before;
@@ -70,7 +71,8 @@ fn what_is_received_is_absorbed_or_reflected() {
             // When the books of batches are closed, the tail is stretched, and numbers of lines are corrected: surfaces that
             // absorb more may then have received a little more.
             let made_up = made_up.0[band] as f64;
-            let corrected = if matches!(job, Job::Batches) { 1e-2 * absorbed } else { 0.0 };
+            let corrected =
+                if matches!(job, Job::Batches | Job::AimedBatches) { 1e-2 * absorbed } else { 0.0 };
             let rounding = 4.0 * counts.crossings as f64 + corrected;
             assert!(
                 difference >= made_up.min(0.0) - rounding,

@@ -5,8 +5,8 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
-use sir_geom::{Light, LightKind, Material, Rgb, SceneBuilder, Sides, Sky, SkyModel, Spread};
-use sir_lines::Domain;
+use sir_geom::{BoundingBox, Light, LightKind, Material, Rgb, SceneBuilder, Sides, Sky, SkyModel, Spread};
+use sir_lines::{Domain, Focus, GlobalLines, LocalLines};
 use sir_mesh::{SideId, Subdivision};
 use sir_parallel::{
     Communicator, Crew, RunError, Saved, StageRun, batches, first_shot, multipath, second_shot,
@@ -40,9 +40,16 @@ pub(crate) static FINE_ROOM: LazyLock<Room> = LazyLock::new(|| Room::new(40_000)
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Job {
     FirstShot,
+    /// With a focus.
+    AimedShot,
     SecondShot,
     Batches,
-    Multipath { replicas: u64, tail: u64 },
+    /// With a focus.
+    AimedBatches,
+    Multipath {
+        replicas: u64,
+        tail: u64,
+    },
 }
 
 /// What a stage has made.
@@ -58,10 +65,12 @@ pub(crate) struct Outcome {
 }
 
 /// All stages, multipath with various settings.
-pub(crate) const JOBS: [Job; 9] = [
+pub(crate) const JOBS: [Job; 11] = [
     Job::FirstShot,
+    Job::AimedShot,
     Job::SecondShot,
     Job::Batches,
+    Job::AimedBatches,
     Job::Multipath { replicas: 1, tail: 0 },
     Job::Multipath { replicas: 3, tail: 0 },
     Job::Multipath { replicas: 8, tail: 0 },
@@ -120,6 +129,22 @@ impl Room {
         let domain = Domain::hull(&model.scene);
         Self { model, shot, domain }
     }
+
+    /// A focus on a part of the room.
+    fn focus(&self) -> Focus {
+        let bounds = BoundingBox { min: DVec3::splat(-1.0), max: DVec3::new(0.2, 0.6, 0.1) };
+        Focus::new(bounds, 0.75, &self.model.scene).unwrap()
+    }
+
+    fn aimed_shot(&self) -> LocalLines {
+        LocalLines { count: LINES, focus: Some(self.focus()) }
+    }
+
+    fn aimed_lines(&self) -> GlobalLines {
+        let lines = GlobalLines::focused(self.domain.clone(), self.focus());
+        assert!(lines.weight() > 1);
+        lines
+    }
 }
 
 impl Job {
@@ -139,9 +164,14 @@ impl Job {
         let shot = || if saved.is_some() { Shot::nothing(model) } else { room.shot.clone() };
         match self {
             Self::FirstShot => first_shot(model, LINES, SEED, crew, saved).map(Outcome::of_shot),
+            Self::AimedShot => first_shot(model, room.aimed_shot(), SEED, crew, saved).map(Outcome::of_shot),
             Self::SecondShot => second_shot(model, shot(), LINES, SEED, crew, saved).map(Outcome::of_shot),
             Self::Batches => {
                 batches(model, shot(), LINES, domain, SEED, crew, saved).map(Outcome::of_transport)
+            }
+            Self::AimedBatches => {
+                let through = room.aimed_lines();
+                batches(model, shot(), LINES, through, SEED, crew, saved).map(Outcome::of_transport)
             }
             Self::Multipath { replicas, tail } => {
                 let settings = Self::settings(replicas, tail, domain);
@@ -154,8 +184,10 @@ impl Job {
     pub(crate) fn by_hand(self, room: &Room) -> Outcome {
         let (model, shot, mut books) = (&room.model, room.shot.clone(), Books::default());
         let run = match self {
-            Self::FirstShot => {
-                let stage = FirstShot::new(model, LINES, SEED).unwrap();
+            Self::FirstShot | Self::AimedShot => {
+                let lines =
+                    if let Self::AimedShot = self { room.aimed_shot() } else { LocalLines::from(LINES) };
+                let stage = FirstShot::new(model, lines, SEED).unwrap();
                 let tally = stage.tally(1);
                 stage.trace(0, 0..LINES, &tally, &mut books);
                 let outcome = stage.finish(tally, books).unwrap();
@@ -168,8 +200,12 @@ impl Job {
                 let outcome = stage.finish(shot, tally, books).unwrap();
                 return Outcome::of_shot(StageRun { outcome, time: Default::default(), batches: 1 });
             }
-            Self::Batches => {
-                let mut stage = Batches::new(model, shot, LINES, room.domain.clone(), SEED, 1);
+            Self::Batches | Self::AimedBatches => {
+                let through = match self {
+                    Self::AimedBatches => room.aimed_lines(),
+                    _ => room.domain.clone().into(),
+                };
+                let mut stage = Batches::new(model, shot, LINES, through, SEED, 1);
                 loop {
                     stage.parts(1).for_each(|mut part| part.open());
                     stage.trace(0, stage.lines(), &mut books);

@@ -130,7 +130,7 @@ fn a_missing_checkpoint_cannot_be_read() {
 
 #[test]
 fn a_checkpoint_of_another_stage_is_refused() {
-    let jobs = [Job::FirstShot, Job::Batches, MULTIPATH];
+    let jobs = [Job::FirstShot, Job::AimedShot, Job::Batches, Job::AimedBatches, MULTIPATH];
     for saved in jobs {
         let (_folder, path) = stopped(&ROOM, saved);
         for job in jobs {

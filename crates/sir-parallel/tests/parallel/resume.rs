@@ -115,11 +115,13 @@ fn assert_resumable_often(job: Job) {
 #[test]
 fn a_first_shot_goes_on_after_a_stop() {
     assert_resumable(Job::FirstShot);
+    assert_resumable(Job::AimedShot);
 }
 
 #[test]
 fn batches_go_on_after_a_stop() {
     assert_resumable(Job::Batches);
+    assert_resumable(Job::AimedBatches);
 }
 
 #[test]

@@ -26,11 +26,13 @@ fn assert_same_bits(job: Job) {
 #[test]
 fn a_first_shot_is_the_same_by_any_number_of_workers() {
     assert_same_bits(Job::FirstShot);
+    assert_same_bits(Job::AimedShot);
 }
 
 #[test]
 fn batches_are_the_same_by_any_number_of_workers() {
     assert_same_bits(Job::Batches);
+    assert_same_bits(Job::AimedBatches);
 }
 
 #[test]

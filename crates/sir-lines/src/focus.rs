@@ -1,0 +1,271 @@
+//! More lines where they matter: in a part of the scene.
+//!
+//! A room on a wide ground is met by one in hundreds of the lines that are drawn through all of the scene. So some lines are drawn
+//! through a box around the room, the others through everything. A uniform line through a body of surface `S` has the same density
+//! `1/S` everywhere in the body, so the lines of both kinds together have but two densities: with a share `s` of lines through the
+//! box `F` and the others through the domain `K`, it is `s/S_F + (1 − s)/S_K` where a line meets the box, and `(1 − s)/S_K` elsewhere. Whatever a line
+//! does counts in inverse proportion to its density (the balance heuristic, Veach and Guibas 1995), so that nothing is
+//! lost and everything is right on average, wherever the box is.
+
+use sir_geom::{BoundingBox, Line, Scene};
+
+use crate::{Domain, Forecast, Stream};
+
+/// How many times as dense lines may be in a focus as elsewhere: power is counted in whole numbers, which have to do for both.
+pub const DENSEST: u32 = 4096;
+
+/// How far outside of a focus surfaces still belong to it, in radii of the scene: those in its faces should.
+const MARGIN: f64 = 1e-6;
+
+/// The part of a scene that matters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Focus {
+    bounds: BoundingBox,
+    share: f64,
+}
+
+impl Focus {
+    /// The part of a scene in a box, and the share of the lines that should be drawn through it, from 0 to below 1.
+    ///
+    /// `None` if the box and the scene have nothing in common, or no more than a line.
+    #[must_use]
+    pub fn new(bounds: BoundingBox, share: f64, scene: &Scene) -> Option<Self> {
+        let margin = MARGIN * scene.bounding_sphere().radius;
+        let bounds = BoundingBox { min: bounds.min - margin, max: bounds.max + margin };
+        let bounds = bounds.intersection(&scene.bounding_box())?;
+        (bounds.face_areas().element_sum() > 0.0).then_some(Self { bounds, share })
+    }
+
+    /// The box, as far as it is in that of the scene.
+    #[must_use]
+    pub fn bounds(&self) -> BoundingBox {
+        self.bounds
+    }
+
+    /// Share of the lines that should be drawn through it.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.share
+    }
+
+    /// Numbers that tell it from others.
+    #[must_use]
+    pub fn identity(&self) -> [u64; 7] {
+        let BoundingBox { min, max } = self.bounds;
+        [min.x, min.y, min.z, max.x, max.y, max.z, self.share].map(f64::to_bits)
+    }
+}
+
+/// How many local lines there are, and where more of them go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalLines {
+    /// Lines in all.
+    pub count: u64,
+    /// What matters, if not everything does.
+    pub focus: Option<Focus>,
+}
+
+impl From<u64> for LocalLines {
+    fn from(count: u64) -> Self {
+        Self { count, focus: None }
+    }
+}
+
+/// Global lines: uniform ones through a domain, and maybe more of them through a focus.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlobalLines {
+    domain: Domain,
+    aim: Option<Aim>,
+}
+
+/// What makes lines denser in a focus.
+#[derive(Clone, Debug, PartialEq)]
+struct Aim {
+    focus: Focus,
+    through: Domain,
+    /// Share of the lines that are drawn through the focus.
+    share: f64,
+    /// The same in units of 2⁻⁶⁴.
+    step: u64,
+    /// Weight of a line that does not meet the focus; that of others is 1.
+    weight: u32,
+    /// One over the density of lines that meet the focus.
+    surface: f64,
+}
+
+impl From<Domain> for GlobalLines {
+    fn from(domain: Domain) -> Self {
+        Self { domain, aim: None }
+    }
+}
+
+impl GlobalLines {
+    /// Lines through a domain of which about the share that the focus asks for is drawn through it. Weights are whole numbers, so the
+    /// share is rounded to what makes them so; where they would not differ, lines are the same everywhere.
+    #[must_use]
+    pub fn focused(domain: Domain, focus: Focus) -> Self {
+        let through = Domain::Box(focus.bounds);
+        let [inner, outer] = [through.surface(), domain.surface()];
+        let wanted = 1.0 + focus.share / (1.0 - focus.share) * (outer / inner);
+        let weight = wanted.round().min(f64::from(DENSEST)) as u32;
+        if weight <= 1 {
+            return domain.into();
+        }
+        let odds = f64::from(weight - 1) * (inner / outer);
+        let share = odds / (1.0 + odds);
+        let surface = 1.0 / (share / inner + (1.0 - share) / outer);
+        let step = (share * 2f64.powi(64)) as u64;
+        Self { domain, aim: Some(Aim { focus, through, share, step, weight, surface }) }
+    }
+
+    /// A random line, and its weight. The index tells whether the focus is aimed at: of any number of successive lines, these are as many as there
+    /// should be, but for one; `offset` is a random number, the same for all.
+    #[inline]
+    pub fn sample(&self, index: u64, offset: u64, stream: &mut Stream) -> (Line, u32) {
+        let Some(aim) = &self.aim else { return (self.domain.sample(stream), 1) };
+        if aim.takes(index, offset) {
+            return (aim.through.sample(stream), 1);
+        }
+        let line = self.domain.sample(stream);
+        let weight = if aim.focus.bounds.meets(&line) { 1 } else { aim.weight };
+        (line, weight)
+    }
+
+    /// The body that all lines are drawn through, or those that are not drawn through the focus.
+    #[must_use]
+    pub fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// Where there are more lines than elsewhere, if they are not the same everywhere.
+    #[must_use]
+    pub fn focus(&self) -> Option<&Focus> {
+        self.aim.as_ref().map(|aim| &aim.focus)
+    }
+
+    /// Share of the lines that are drawn through the focus.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.aim.as_ref().map_or(0.0, |aim| aim.share)
+    }
+
+    /// The weight of lines that do not meet the focus, at least 1: how many times as dense lines are in it.
+    #[must_use]
+    pub fn weight(&self) -> u32 {
+        self.aim.as_ref().map_or(1, |aim| aim.weight)
+    }
+
+    /// What to expect of this number of lines: the sum of the weights of those that cross a surface, anywhere.
+    #[must_use]
+    pub fn forecast(&self, lines: u64) -> Forecast {
+        Forecast { lines, surface: self.aim.as_ref().map_or(self.domain.surface(), |aim| aim.surface) }
+    }
+
+    /// How many successive lines there are whose weights add up to at most 2³¹.
+    #[must_use]
+    pub fn most(&self) -> u64 {
+        let Some(aim) = &self.aim else { return 1 << 31 };
+        let weight = f64::from(aim.weight);
+        let mean = aim.share + (1.0 - aim.share) * weight;
+        // There may be one line more of either kind than expected.
+        ((2f64.powi(31) - 2.0 * weight) / (mean + 1e-6)) as u64
+    }
+}
+
+impl Aim {
+    #[inline]
+    fn takes(&self, index: u64, offset: u64) -> bool {
+        let place = index.wrapping_mul(self.step).wrapping_add(offset);
+        place.checked_add(self.step).is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use glam::DVec3;
+    use sir_geom::shapes::{Facing, cuboid};
+    use sir_geom::{Material, Rgb, SceneBuilder};
+
+    use super::*;
+    use crate::{Stage, Streams};
+
+    /// A box of 20 × 2 × 20 m, and a focus in a corner of it that reaches beyond the scene.
+    fn corner(share: f64) -> GlobalLines {
+        let mut b = SceneBuilder::new();
+        let grey = b.add_material(Material::diffuse("", Rgb::splat(0.5)));
+        cuboid(&mut b, DVec3::ZERO, DVec3::new(20.0, 2.0, 20.0), [grey; 6], Facing::Inward);
+        let scene = b.build().unwrap().scene;
+        let bounds = BoundingBox { min: DVec3::new(-5.0, 0.0, -5.0), max: DVec3::new(2.0, 3.0, 1.0) };
+        let focus = Focus::new(bounds, share, &scene).unwrap();
+        let in_scene = focus.bounds();
+        assert_eq!(in_scene.min, DVec3::ZERO);
+        assert!((in_scene.max - DVec3::new(2.0, 2.0, 1.0)).abs().max_element() < 1e-4);
+        GlobalLines::focused(Domain::hull(&scene), focus)
+    }
+
+    /// The sum of weights of the lines that cross a disc is that of the forecast, in the focus, outside of it, and where it is half in it: within
+    /// four standard errors. In the focus many more lines cross it than without.
+    #[test]
+    fn weights_make_up_for_the_density() {
+        const LINES: u64 = 400_000;
+        let streams = Streams::new(4, Stage::GLOBAL);
+        for share in [0.5, 0.9] {
+            let lines = corner(share);
+            assert!(lines.weight() > 10 && (lines.share() - share).abs() < 0.05, "{}", lines.share());
+            let all: Vec<_> = (0..LINES).map(|i| lines.sample(i, 12_345, &mut streams.line(i))).collect();
+            let radius = 0.4;
+            for (centre, normal) in [
+                (DVec3::new(1.0, 1.0, 0.5), DVec3::Y),
+                (DVec3::new(15.0, 1.0, 12.0), DVec3::Y),
+                (DVec3::new(2.0, 1.0, 0.5), DVec3::Z),
+                (DVec3::new(2.5, 1.0, 0.5), DVec3::X),
+            ] {
+                let crosses = |line: &Line| {
+                    let t = (centre - line.origin).dot(normal) / line.direction.dot(normal);
+                    line.at(t).distance_squared(centre) < radius * radius
+                };
+                let weights =
+                    all.iter().filter(|(line, _)| crosses(line)).map(|(_, weight)| f64::from(*weight));
+                let (sum, squares) = weights.clone().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
+                let expected = lines.forecast(LINES).crossings(std::f64::consts::PI * radius * radius);
+                assert!(
+                    (sum - expected).abs() < 4.0 * f64::sqrt(squares),
+                    "{share}, {centre}: {sum} of {expected}"
+                );
+                if centre.x < 2.0 {
+                    let without =
+                        lines.domain().forecast(LINES).crossings(std::f64::consts::PI * radius * radius);
+                    assert!(weights.count() as f64 > 10.0 * without);
+                }
+            }
+        }
+    }
+
+    /// Of any successive lines as many are aimed as there should be, for any offset, but for one.
+    #[test]
+    fn the_share_is_kept_in_every_range() {
+        let lines = corner(0.7);
+        let aim = lines.aim.as_ref().unwrap();
+        let share = lines.share();
+        for offset in [0, 1 << 63, u64::MAX] {
+            for start in [0, 17, 1 << 40] {
+                let mut taken = 0;
+                for n in 0..3_000_u32 {
+                    assert!((f64::from(taken) - share * f64::from(n)).abs() <= 1.0 + 1e-6);
+                    taken += u32::from(aim.takes(start + u64::from(n), offset));
+                }
+            }
+        }
+        let sum = lines.most() as f64 * (share + (1.0 - share) * f64::from(lines.weight()));
+        assert!(sum < 2f64.powi(31) && sum > 2f64.powi(30), "{sum}");
+    }
+
+    #[test]
+    fn a_focus_on_everything_changes_nothing() {
+        let lines = corner(0.0);
+        assert_eq!((lines.weight(), lines.share(), lines.focus()), (1, 0.0, None));
+        assert_eq!(lines, lines.domain().clone().into());
+    }
+}
