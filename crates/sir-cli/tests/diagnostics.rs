@@ -159,7 +159,7 @@ fn unknown_names_and_fields() {
     x.ron:6:1: error: unknown stage `Render`
     6 | Render,
       | ^^^^^^
-      = help: stages are `Load`, `Light`, `Subdivide`, `FirstShot`, `SecondShot`, `Multipath`, `Repeat`, `Sensors` and `Save`
+      = help: stages are `Load`, `Light`, `Subdivide`, `Focus`, `FirstShot`, `SecondShot`, `Multipath`, `Repeat`, `Sensors` and `Save`
 
     x.ron:7:7: error: unknown output `Picture`
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
@@ -574,7 +574,32 @@ fn a_focus_that_cannot_be() {
         r#"FirstShot(lines: 10),"#,
         r#"Focus(min: (0, 0, 0)),"#,
         r#"Multipath(lines: 10, transport: Replicas),"#,
-    ]));
+    ]), @r"
+    x.ron:3:1: error: `min` must not be larger than `max` in any coordinate
+    3 | Focus(min: (0, 0, 0), max: (1, -1, 1), share: 1),
+      | ^^^^^
+      = help: give the corner with the smallest coordinates as `min`
+
+    x.ron:3:47: error: `share` must be from 0 to 0.95, but it is 1
+    3 | Focus(min: (0, 0, 0), max: (1, -1, 1), share: 1),
+      |                                               ^
+      = help: 0.75 draws three quarters of the lines through the box
+
+    x.ron:5:1: error: `Focus` lacks the field `max`
+    5 | Focus(min: (0, 0, 0)),
+      | ^^^^^
+      = help: write `Focus(max: (5, 3, 4), …)`
+
+    x.ron:5:1: error: a second `Focus`; the first is in line 3
+    5 | Focus(min: (0, 0, 0)),
+      | ^^^^^
+      = help: keep one, with a box around all that matters
+
+    x.ron:6:1: error: the transport `Replicas` cannot have a `Focus`: each line takes along all that a surface holds, so lines must be the same everywhere
+    6 | Multipath(lines: 10, transport: Replicas),
+      | ^^^^^^^^^
+      = help: write `transport: Batches`, or leave `Focus` out
+    ");
 }
 
 #[test]
