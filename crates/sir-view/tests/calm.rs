@@ -122,3 +122,64 @@ fn a_patch_that_no_line_has_met_takes_the_light_around_it() {
     let shown = DisplayMesh::new(&scene, &mesh, &values).calm(&own, 2);
     assert!(shown.iter().all(|e| e.x > 0.5), "{:?}", shown.iter().map(|e| e.x).fold(f64::INFINITY, f64::min));
 }
+
+#[test]
+fn what_is_too_small_to_know_shows_the_light_beyond_its_edges() {
+    // A lit floor with a tiny box on it, whose faces no line has met, and a wall that is large enough to be dark.
+    let mut builder = SceneBuilder::new();
+    let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)).with_sides(Sides::Front));
+    let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    shapes::quad(
+        &mut builder,
+        [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(1.0, 1.0, 0.0), at(0.0, 1.0, 0.0)],
+        grey,
+    );
+    shapes::quad(
+        &mut builder,
+        [at(1.0, 0.0, 0.0), at(1.0, 0.0, 1.0), at(1.0, 1.0, 1.0), at(1.0, 1.0, 0.0)],
+        grey,
+    );
+    let tiny = |x: f64, z: f64| at(x, 1.0, z);
+    shapes::quad(
+        &mut builder,
+        [tiny(0.0, 0.0), tiny(0.002, 0.0), tiny(0.002, 0.002), tiny(0.0, 0.002)],
+        grey,
+    );
+    let scene = builder.build().unwrap().scene;
+    let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01)).unwrap();
+    let (mut computed, mut errors) = (Vec::new(), Vec::new());
+    mesh.for_each_side(|t, _, _, _| {
+        let lit = t.0 < 2;
+        // A hundred grains a patch.
+        computed.push(if lit { Rgb::ONE } else { Rgb::ZERO });
+        errors.push(if lit { Rgb::splat(0.1) } else { Rgb::ZERO });
+    });
+    let shown = DisplayMesh::new(&scene, &mesh, &computed).calm(&errors, 2);
+    mesh.for_each_side(|t, _, _, id| {
+        let e = shown[id.index()].x;
+        match t.0 {
+            0 | 1 => assert!(e > 0.9, "the floor is {e}"),
+            2 | 3 => assert!(e < 0.1, "the wall is {e}"),
+            _ => assert!(e > 0.5, "the tiny face is {e}"),
+        }
+    });
+}
+
+/// Of a grain of coloured light, a band may be nothing; it may be less than nothing where more was sent than there was.
+#[test]
+fn bands_without_light_do_no_harm() {
+    let (scene, mesh) = sheet();
+    let [_, _, computed, errors] = noisy(&scene, &mesh, |p| 1.0 + p.x);
+    let mut computed = grey(&computed);
+    let errors = grey(&errors);
+    for (i, e) in computed.iter_mut().enumerate() {
+        match i % 50 {
+            0 => e.z = 0.0,
+            1 => *e = Rgb::ZERO,
+            2 => e.y = -0.01,
+            _ => {}
+        }
+    }
+    let shown = DisplayMesh::new(&scene, &mesh, &computed).calm(&errors, 2);
+    assert!(shown.iter().all(|e| e.is_finite()), "{:?}", shown.iter().find(|e| !e.is_finite()));
+}

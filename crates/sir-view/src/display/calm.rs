@@ -8,10 +8,14 @@
 //! variance, as is done here. The variance is that of light that comes in grains: with grains of `q` watts, a patch
 //! of the area `a` \[m²\] and the irradiance `E` has `q E / a`. That holds for patches that no line has met, too,
 //! whose own estimate is zero. The grains come from the standard errors of a patch and its neighbours, `Σ σ²a² / Σ E a`.
+//!
+//! A patch so small that hardly a grain was to be expected says nothing: it is black, or by far too bright. Where such patches have
+//! no smooth surface around them, they show what is around them beyond edges.
 
 use std::thread;
 
-use sir_geom::Rgb;
+use glam::DVec3;
+use sir_geom::{Rgb, Side};
 
 use super::DisplayMesh;
 
@@ -32,6 +36,15 @@ const FARTHEST: f64 = 3.0;
 /// corners count some of them twice, and the middle one three times.
 const RING: f64 = 0.65;
 
+/// Grains that have to be expected of a patch for it to speak for itself.
+const ENOUGH: f64 = 3.0;
+
+/// How far, in patches, light is looked for around those that say nothing.
+const FILL_PASSES: usize = 8;
+
+/// Surfaces whose normals have a cosine below this are not beside but behind each other.
+const BEHIND: f64 = -0.5;
+
 /// A side of a patch in the course of the passes.
 #[derive(Clone, Copy, Default)]
 struct State {
@@ -44,8 +57,9 @@ impl DisplayMesh<'_> {
     /// The irradiance \[W/m²\] of every [`SideId`](sir_mesh::SideId) without the noise, for pictures; the mesh is that of the
     /// irradiance as it was computed, and `errors` are its standard errors.
     ///
-    /// Neighbours are patches that share a vertex of the mesh, and so belong to one smooth surface. No value moves by
-    /// more than three standard errors: its own, or that of the grains around it, if that is larger. The result is the same for any number of threads.
+    /// Neighbours are patches that share a vertex of the mesh, and so belong to one smooth surface; for patches on which hardly
+    /// any light was to be expected to arrive, those that share a position. No value moves by more than three standard
+    /// errors. The result is the same for any number of threads.
     ///
     /// # Panics
     ///
@@ -53,7 +67,7 @@ impl DisplayMesh<'_> {
     #[must_use]
     pub fn calm(&self, errors: &[Rgb], threads: usize) -> Vec<Rgb> {
         assert_eq!(errors.len(), self.irradiance.len(), "one error for every side of the mesh");
-        let ring = Ring::new(self);
+        let ring = Ring::new(self, |vertex| vertex);
         let mut areas = vec![0.0; errors.len()];
         self.mesh.for_each_side(|t, _, _, id| areas[id.index()] += self.mesh.patch_area(t));
         let each = |work: &(dyn Fn(usize) -> State + Sync), out: &mut [State]| {
@@ -65,13 +79,26 @@ impl DisplayMesh<'_> {
             });
         };
         let mut grains = vec![State::default(); errors.len()];
-        each(&|i| State { irradiance: self.grain(&ring, errors, &areas, i), stands_for: 0.0 }, &mut grains);
+        let common = self.grain(errors, &areas, |visit| (0..errors.len()).for_each(visit));
+        let grain = |i| {
+            let own = self.grain(errors, &areas, |visit| ring.around(i, visit));
+            // Where no light has arrived at all, it would come as elsewhere.
+            Rgb::select(own.cmpeq(Rgb::ZERO), common, own)
+        };
+        each(&|i| State { irradiance: grain(i), stands_for: 0.0 }, &mut grains);
         let start = self.irradiance.iter().zip(&areas);
         let mut now: Vec<State> =
-            start.map(|(&irradiance, &stands_for)| State { irradiance, stands_for }).collect();
+            start.map(|(&e, &stands_for)| State { irradiance: e.max(Rgb::ZERO), stands_for }).collect();
         let mut next = now.clone();
         for _ in 0..PASSES {
             each(&|i| pass(&ring, &now, &areas, grains[i].irradiance, i), &mut next);
+            std::mem::swap(&mut now, &mut next);
+        }
+        drop(ring);
+        let normals = self.normals();
+        let ring = Ring::new(self, |vertex| self.vertices[vertex as usize].position);
+        for _ in 0..FILL_PASSES {
+            each(&|i| fill(&ring, &now, &normals, grains[i].irradiance, i), &mut next);
             std::mem::swap(&mut now, &mut next);
         }
         let shown = now.iter().enumerate().map(|(i, state)| {
@@ -83,15 +110,25 @@ impl DisplayMesh<'_> {
         shown.collect()
     }
 
-    /// Mean power of the grains \[W\] in which light comes to a patch and its neighbours.
-    fn grain(&self, ring: &Ring, errors: &[Rgb], areas: &[f64], i: usize) -> Rgb {
+    /// Mean power of the grains \[W\] in which light comes to some patches.
+    fn grain(&self, errors: &[Rgb], areas: &[f64], patches: impl FnOnce(&mut dyn FnMut(usize))) -> Rgb {
         let (mut squares, mut power) = (Rgb::ZERO, Rgb::ZERO);
-        ring.around(i, |j| {
+        patches(&mut |j| {
             let error = areas[j] * errors[j];
             squares += error * error;
             power += areas[j] * self.irradiance[j];
         });
         ratio(squares, power)
+    }
+
+    /// The normal of every side.
+    fn normals(&self) -> Vec<DVec3> {
+        let mut normals = vec![DVec3::ZERO; self.irradiance.len()];
+        self.mesh.for_each_side(|triangle, _, side, id| {
+            let front = self.scene.normal(triangle);
+            normals[id.index()] = if side == Side::Front { front } else { -front };
+        });
+        normals
     }
 }
 
@@ -113,12 +150,32 @@ fn pass(ring: &Ring, now: &[State], areas: &[f64], grain: Rgb, i: usize) -> Stat
     if others == 0.0 {
         return own;
     }
-    // A patch that nothing has reached yet has all to gain.
-    let share = if own.irradiance == Rgb::ZERO { 1.0 } else { noise / (noise + UNSEEN * UNSEEN) };
+    // A patch that nothing has reached yet, in some band, has all to gain.
+    let share = if noise.is_finite() && own.irradiance != Rgb::ZERO {
+        noise / (noise + UNSEEN * UNSEEN)
+    } else {
+        1.0
+    };
     State {
         irradiance: own.irradiance.lerp(sum / weights, share),
         stands_for: own.stands_for + share * RING * others,
     }
+}
+
+/// Light from around for a patch on which too little was to be expected to arrive.
+fn fill(ring: &Ring, now: &[State], normals: &[DVec3], grain: Rgb, i: usize) -> State {
+    let own = now[i];
+    let (mut sum, mut area) = (Rgb::ZERO, 0.0);
+    ring.around(i, |j| {
+        if normals[i].dot(normals[j]) > BEHIND {
+            sum += now[j].stands_for * now[j].irradiance;
+            area += now[j].stands_for;
+        }
+    });
+    // How many grains would have arrived if the patch were as bright as what is around it: a large one that is dark is dark.
+    let expected = ratio(sum / area * own.stands_for, grain).max_element() / ENOUGH;
+    let share = 1.0 / (1.0 + expected * expected);
+    State { irradiance: own.irradiance.lerp(sum / area, share), stands_for: own.stands_for }
 }
 
 /// One if two values are the same, and zero if noise cannot have made them as different as they are; in between
@@ -138,7 +195,7 @@ fn ratio(a: Rgb, b: Rgb) -> Rgb {
     Rgb::from_array(std::array::from_fn(|k| if a[k] == 0.0 { 0.0 } else { a[k] / b[k] }))
 }
 
-/// Which sides of patches have vertices of the mesh in common.
+/// Which sides of patches have vertices of the mesh, or positions, in common.
 struct Ring {
     /// Sides around each vertex, vertex after vertex, and where those of each begin; likewise vertices of each side.
     sides: Vec<u32>,
@@ -148,11 +205,12 @@ struct Ring {
 }
 
 impl Ring {
-    fn new(display: &DisplayMesh<'_>) -> Self {
+    /// Of sides that have what `point` gives for a vertex in common.
+    fn new(display: &DisplayMesh<'_>, point: impl Fn(u32) -> u32) -> Self {
         let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(4 * display.irradiance.len());
         for piece in display.pieces() {
             let first = pairs.len();
-            pairs.extend(piece.triangles.iter().flatten().map(|&v| (piece.id.index() as u32, v)));
+            pairs.extend(piece.triangles.iter().flatten().map(|&v| (piece.id.index() as u32, point(v))));
             pairs[first..].sort_unstable();
             let mut kept = first;
             for i in first..pairs.len() {
@@ -169,7 +227,8 @@ impl Ring {
         let (corners, first_corners) = lists(&pairs, display.irradiance.len());
         pairs.iter_mut().for_each(|(side, vertex)| std::mem::swap(side, vertex));
         pairs.sort_unstable();
-        let (sides, first_sides) = lists(&pairs, display.vertices().len());
+        let points = pairs.last().map_or(0, |pair| pair.0 as usize + 1);
+        let (sides, first_sides) = lists(&pairs, points);
         Self { sides, first_sides, corners, first_corners }
     }
 
