@@ -20,13 +20,26 @@ fn pipelines() -> Vec<PathBuf> {
     found
 }
 
+/// The scene that a pipeline names, below `data`.
+fn scene_of(text: &str) -> &str {
+    let (_, rest) = text.split_once("Load(path: \"data/").unwrap();
+    rest.split('"').next().unwrap()
+}
+
 #[test]
 fn all_are_pipelines_whose_scenes_are_in_data_and_which_the_readme_names() {
     let readme = fs::read_to_string(pipelines()[0].with_file_name("README.md")).unwrap();
+    let copies = tempfile::tempdir().unwrap();
     for path in pipelines() {
-        let pipeline = Pipeline::read(&path).unwrap_or_else(|error| panic!("{error}"));
-        let data = path.with_file_name("data");
-        assert!(pipeline.scene_path().starts_with(&data), "{}", path.display());
+        // A pipeline is read only if its scene is there: an empty one will do.
+        let text = fs::read_to_string(&path).unwrap();
+        let scene = copies.path().join("data").join(scene_of(&text));
+        fs::create_dir_all(scene.parent().unwrap()).unwrap();
+        fs::write(&scene, "").unwrap();
+        let copy = copies.path().join(path.file_name().unwrap());
+        fs::write(&copy, &text).unwrap();
+        let pipeline = Pipeline::read(&copy).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(pipeline.scene_path(), scene);
         let name = path.file_stem().unwrap().to_str().unwrap();
         assert!(readme.contains(&format!("`{name}`")), "{name} is not in the README");
     }
@@ -41,13 +54,12 @@ fn all_check_where_their_scenes_are() {
     let scenes = data.join("scenes");
     let copies = tempfile::tempdir().unwrap();
     for path in pipelines() {
-        let scene = Pipeline::read(&path).unwrap().scene_path().to_owned();
-        let scene = scenes.join(scene.strip_prefix(path.with_file_name("data")).unwrap());
+        let text = fs::read_to_string(&path).unwrap();
+        let scene = scenes.join(scene_of(&text));
         if !scene.is_file() {
             println!("skipped: no {}", scene.display());
             continue;
         }
-        let text = fs::read_to_string(&path).unwrap();
         let text = text.replace("data/", &format!("{}/", scenes.canonicalize().unwrap().display()));
         let copy = copies.path().join(path.file_name().unwrap());
         fs::write(&copy, text).unwrap();
