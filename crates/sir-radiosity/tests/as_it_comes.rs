@@ -4,12 +4,12 @@
 
 mod common;
 
-use common::{Estimate, batches, grey, runs, scene, shoot};
+use common::{Estimate, batches, grey, received, runs, scene, shoot};
 use glam::{DQuat, DVec3};
 use sir_geom::shapes::{Facing, cuboid, quad};
 use sir_geom::{Material, MaterialId, SceneBuilder, Side, Sides};
 use sir_mesh::Subdivision;
-use sir_radiosity::{Model, Shot, Solution};
+use sir_radiosity::{Model, Solution};
 
 const fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -22,16 +22,6 @@ fn model(builder: SceneBuilder, subdivision: Subdivision) -> Model {
 /// A grey surface that is alike on both sides, emission included.
 fn both(m: f64, rho: f64) -> Material {
     Material { back_emits: true, ..grey(m, rho).with_sides(Sides::Both) }
-}
-
-/// Power that each material receives in the first band \[W\].
-fn received(model: &Model, shot: &Shot) -> Vec<f64> {
-    let mut sums = vec![0.0; model.scene.materials().len()];
-    model.mesh.for_each_side(|triangle, _, _, side| {
-        let power = shot.unit.watts(shot.received.power[side.index()]).x;
-        sums[model.scene.triangle(triangle).material.index()] += power;
-    });
-    sums
 }
 
 /// A share of the lines, within four standard errors of a binomial variable.

@@ -6,7 +6,7 @@ mod common;
 
 use std::f64::consts::PI;
 
-use common::{batches, grey, shoot};
+use common::{batches, grey, received, shoot};
 use glam::DVec3;
 use sir_geom::shapes::{Facing, cuboid, quad};
 use sir_geom::{Light, LightKind, Rgb, SceneBuilder, Sky, SkyModel, Spread};
@@ -38,16 +38,6 @@ fn open_box(builder: &mut SceneBuilder, size: DVec3) {
     rectangle(builder, x, z, y);
     rectangle(builder, DVec3::ZERO, z, x);
     rectangle(builder, y, x, z);
-}
-
-/// Power received by each material in the first band \[W\].
-fn received(model: &Model, shot: &Shot) -> Vec<f64> {
-    let mut sums = vec![0.0; model.scene.materials().len()];
-    model.mesh.for_each_side(|triangle, _, _, side| {
-        let power = shot.unit.watts(shot.received.power[side.index()]).x;
-        sums[model.scene.triangle(triangle).material.index()] += power;
-    });
-    sums
 }
 
 /// Shoots, and compares what materials receive with the exact power; returns the shot.

@@ -166,6 +166,16 @@ pub(crate) fn radiosities(model: &Model, run: &Transported) -> Vec<Rgb> {
     sums.iter().zip(&areas).map(|(s, a)| *s / *a).collect()
 }
 
+/// Power that each material receives in the first band \[W\].
+pub(crate) fn received(model: &Model, shot: &Shot) -> Vec<f64> {
+    let mut sums = vec![0.0; model.scene.materials().len()];
+    model.mesh.for_each_side(|triangle, _, _, side| {
+        let power = shot.unit.watts(shot.received.power[side.index()]).x;
+        sums[model.scene.triangle(triangle).material.index()] += power;
+    });
+    sums
+}
+
 /// A number from independent runs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Estimate {
