@@ -52,17 +52,20 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     let mut options = LoadOptions::default();
     let mut all_lamps: &[Lamp] = &[];
     let mut subdivision = (Subdivision::PerTriangle, 0..0);
+    let mut box_that_matters = None;
     for stage in &pipeline.stages {
         match &stage.action {
             Action::Load { sides, .. } => options.sides = *sides,
             Action::Light { lamps, .. } => all_lamps = lamps,
             Action::Subdivide(how) => subdivision = (*how, stage.span.clone()),
+            Action::Focus { bounds, .. } => box_that_matters = Some(bounds),
             _ => {}
         }
     }
     let watch = Stopwatch::start();
     let built = sir_geom::load_with(pipeline.scene_path(), &options, |builder| {
         all_lamps.iter().for_each(|lamp| lamp.add_to(builder));
+        box_that_matters.iter().for_each(|bounds| builder.split_at(bounds));
     })?;
     let load_seconds = watch.seconds();
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();

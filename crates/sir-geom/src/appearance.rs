@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, Vec2, Vec4};
+use glam::{DVec2, DVec4, Vec2, Vec4};
 
 use crate::material::Opacity;
 use crate::{
@@ -53,6 +53,21 @@ impl Appearance {
         corners
     }
 
+    /// Takes in the values at the corners of a part of a triangle.
+    pub(crate) fn part(&mut self, whole: Corners, part: [Barycentric; 3]) -> Corners {
+        let first = whole.coordinates as usize;
+        let sets = first..first + usize::from(whole.sets);
+        let coordinates: Vec<_> = self.coordinates[sets]
+            .iter()
+            .map(|set| part.map(|point| mix(set.map(|place| place.as_dvec2()), point).as_vec2()))
+            .collect();
+        let tint = self
+            .tints
+            .get(whole.tint as usize)
+            .map(|tint| part.map(|point| mix_tint(*tint, point).as_vec4()));
+        self.add(&coordinates, tint)
+    }
+
     /// The texture of a map on a triangle, and the coordinates of its corners.
     pub(crate) fn texture(&self, map: &TextureMap, corners: Corners) -> Option<(&Texture, [DVec2; 3])> {
         if map.coordinates >= corners.sets {
@@ -65,8 +80,7 @@ impl Appearance {
 
     /// Colour and opacity that the corners give a triangle at a point.
     fn tint(&self, corners: Corners, point: Barycentric) -> Option<(Rgb, f64)> {
-        let tint = self.tints.get(corners.tint as usize)?.map(|corner| corner.as_dvec4());
-        let mixed = (1.0 - point.v - point.w) * tint[0] + point.v * tint[1] + point.w * tint[2];
+        let mixed = mix_tint(*self.tints.get(corners.tint as usize)?, point);
         Some((mixed.truncate().max(Rgb::ZERO), mixed.w.clamp(0.0, 1.0)))
     }
 
@@ -83,6 +97,12 @@ impl Appearance {
 /// The coordinates at a point of a triangle.
 fn mix(corners: [DVec2; 3], point: Barycentric) -> DVec2 {
     (1.0 - point.v - point.w) * corners[0] + point.v * corners[1] + point.w * corners[2]
+}
+
+/// The colour, and in the last place the opacity, at a point of a triangle.
+fn mix_tint(corners: [Vec4; 3], point: Barycentric) -> DVec4 {
+    let [a, b, c] = corners.map(|corner| corner.as_dvec4());
+    (1.0 - point.v - point.w) * a + point.v * b + point.w * c
 }
 
 /// Which triangles of a scene let light through, and where. Does without the scene.

@@ -7,9 +7,10 @@ use glam::{DVec3, Vec2, Vec4};
 use thiserror::Error;
 
 use crate::appearance::{Appearance, Corners};
+use crate::split::{Corner, split};
 use crate::{
-    BoundingBox, BoundingSphere, Camera, ColourMap, FaceId, GroupId, Light, MAX_REFLECTANCE, Material,
-    MaterialId, Rgb, Scene, Sky, Texture, TextureId, Triangle, VertexId, polygon,
+    Barycentric, BoundingBox, BoundingSphere, Camera, ColourMap, FaceId, GroupId, Light, MAX_REFLECTANCE,
+    Material, MaterialId, Rgb, Scene, Sky, Texture, TextureId, Triangle, VertexId, polygon,
 };
 
 /// Why a scene cannot be built.
@@ -264,6 +265,42 @@ impl SceneBuilder {
             let sets: Vec<[Vec2; 3]> = coordinates.iter().map(|set| [a, b, c].map(|i| set[i])).collect();
             let tint = tint.map(|tint| [a, b, c].map(|i| tint[i]));
             triangle.corners = self.appearance.add(&sets, tint.filter(|t| t.iter().all(|c| c.is_finite())));
+        }
+    }
+
+    /// Cuts the triangles added so far where they pass through the faces of a box, so that each lies in it, faces included, or outside. They
+    /// remain what they were: parts of the same polygon, with the same number in the file, and what varies over them goes on. A triangle
+    /// that only passes by the box stays whole.
+    pub fn split_at(&mut self, bounds: &BoundingBox) {
+        for triangle in std::mem::take(&mut self.triangles) {
+            let places = triangle.vertices.map(|v| self.vertices.get(v.index()).copied());
+            let parts = match places {
+                [Some(a), Some(b), Some(c)] if [a, b, c].iter().all(|place| place.is_finite()) => {
+                    let [first, second, third] = triangle.vertices.map(Some);
+                    let corner = |place, v, w, vertex| Corner { place, point: Barycentric { v, w }, vertex };
+                    let whole =
+                        [corner(a, 0.0, 0.0, first), corner(b, 1.0, 0.0, second), corner(c, 0.0, 1.0, third)];
+                    split(whole, bounds)
+                }
+                // Said when the scene is built.
+                _ => None,
+            };
+            let Some(parts) = parts else {
+                self.triangles.push(triangle);
+                continue;
+            };
+            for part in parts {
+                let vertices: Vec<VertexId> = part
+                    .iter()
+                    .map(|corner| corner.vertex.unwrap_or_else(|| self.add_vertex(corner.place)))
+                    .collect();
+                for i in 2..part.len() {
+                    let [a, b, c] = [0, i - 1, i];
+                    let corners = self.appearance.part(triangle.corners, [a, b, c].map(|i| part[i].point));
+                    let vertices = [a, b, c].map(|i| vertices[i]);
+                    self.triangles.push(Triangle { vertices, corners, ..triangle });
+                }
+            }
         }
     }
 

@@ -52,6 +52,7 @@ mod polygon;
 mod scene;
 pub mod shapes;
 mod sky;
+mod split;
 mod texture;
 
 pub use appearance::Opacities;

@@ -1,5 +1,6 @@
 //! How finely each triangle is cut.
 
+use glam::DVec3;
 use sir_geom::{BoundingBox, Scene, TriangleId};
 
 use crate::MeshError;
@@ -25,9 +26,9 @@ pub enum Subdivision {
 }
 
 impl Subdivision {
-    /// Parts of an edge per triangle: 1 of those that do not meet the box `within`, if there is one.
+    /// Parts of an edge per triangle: 1 of those whose middle is not in the box `within`, if there is one.
     pub(crate) fn divisions(self, scene: &Scene, within: Option<BoundingBox>) -> Result<Vec<u32>, MeshError> {
-        let matters = |t: &TriangleId| within.is_none_or(|bounds| meets(scene, *t, bounds));
+        let matters = |t: &TriangleId| within.is_none_or(|bounds| bounds.contains(middle(scene, *t)));
         let of_each = |n: &dyn Fn(TriangleId) -> Result<u32, MeshError>| {
             scene.triangle_ids().map(|t| if matters(&t) { n(t) } else { Ok(1) }).collect()
         };
@@ -58,11 +59,9 @@ impl Subdivision {
     }
 }
 
-/// Whether the box around a triangle meets another.
-fn meets(scene: &Scene, triangle: TriangleId, bounds: BoundingBox) -> bool {
+fn middle(scene: &Scene, triangle: TriangleId) -> DVec3 {
     let [a, b, c] = scene.corners(triangle);
-    let around = BoundingBox { min: a.min(b).min(c), max: a.max(b).max(c) };
-    around.intersection(&bounds).is_some()
+    (a + b + c) / 3.0
 }
 
 /// The fewest whole parts that are each at most one unit of `x` units.
