@@ -186,6 +186,14 @@ fn long_and_strange_names_do_not_flood_the_screen() {
     refused(&[("a.glb", &gltf.glb())], &["material", "exitance"]);
 }
 
+/// A PNG image of two colours, which a single one cannot stand for.
+fn two_colours() -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([255 * x as u8, 80, 9]));
+    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
 /// A PNG header that claims a size, and the start of its data.
 fn huge_png(side: u32) -> Vec<u8> {
     let mut bytes = png([1, 2, 3]);
@@ -210,6 +218,41 @@ fn a_picture_that_claims_to_be_huge_is_not_made() {
         let built = load_hostile(&[("a.glb", &gltf.glb())]).unwrap();
         assert!(warnings(&built)[0].contains("textures cannot be read"), "{:?}", built.warnings);
     }
+}
+
+/// The most memory for each byte: a strip has a triangle for each index, of one byte, and all that corners can have.
+#[test]
+fn a_dense_strip_with_all_that_corners_can_have() {
+    let _alone = alone();
+    let mut gltf = Gltf::with_material(json!({
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "emissiveTexture": {"index": 0, "texCoord": 1},
+        "emissiveFactor": [1, 1, 1],
+        "alphaMode": "BLEND",
+    }));
+    let view = gltf.view(&two_colours());
+    gltf.json["images"] = json!([{"bufferView": view, "mimeType": "image/png"}]);
+    gltf.json["textures"] = json!([{"source": 0}]);
+    let turn = |i: f32| [i.cos(), i.sin(), 0.3 * i];
+    let positions: Vec<[f32; 3]> = (0..256_u16).map(|i| turn(f32::from(i))).collect();
+    let positions = gltf.positions(&positions);
+    let bytes: Vec<u8> = (0..=255).collect();
+    let places = gltf.accessor(&bytes.repeat(2), 5121, "VEC2", 256);
+    let others = gltf.accessor(&bytes.repeat(2), 5121, "VEC2", 256);
+    let colours = gltf.accessor(&bytes.repeat(4), 5121, "VEC4", 256);
+    for accessor in [places, others, colours] {
+        gltf.json["accessors"][accessor]["normalized"] = json!(true);
+    }
+    const INDICES: usize = 1_050_000;
+    let indices: Vec<u8> = (0..INDICES).map(|i| (i % 251) as u8).collect();
+    let indices = gltf.accessor(&indices, 5121, "SCALAR", INDICES);
+    gltf.json["meshes"][0]["primitives"] = json!([{
+        "attributes": {"POSITION": positions, "TEXCOORD_0": places, "TEXCOORD_1": others, "COLOR_0": colours},
+        "indices": indices, "mode": 5, "material": 0,
+    }]);
+    let built = load_hostile(&[("a.glb", &gltf.glb())]).unwrap();
+    assert_eq!(built.scene.triangles().len(), INDICES - 2);
+    assert!(built.scene.appearance_bytes() > 95 * INDICES, "{}", built.scene.appearance_bytes());
 }
 
 #[test]
