@@ -41,7 +41,7 @@ pub enum SceneError {
         count: usize,
     },
     /// A material has a negative, infinite or undefined colour.
-    #[error("material {} has the {what} ({}, {}, {}), which must be finite and not negative", quoted(name), value.x, value.y, value.z)]
+    #[error("material {} has the {what} ({:?}, {:?}, {:?}), which must be finite and not negative", quoted(name), value.x, value.y, value.z)]
     BadMaterial {
         /// Name of the material.
         name: String,
@@ -105,9 +105,10 @@ impl fmt::Display for Warning {
             }
             Self::ClampedReflectance { material, asked } => write!(
                 f,
-                "material {} reflects {asked:.4} of the light it gets; {MAX_REFLECTANCE} is used, \
+                "material {} reflects {} of the light it gets; {MAX_REFLECTANCE} is used, \
                  because a surface must absorb some",
-                quoted(material)
+                quoted(material),
+                if *asked < 1e6 { format!("{asked:.4}") } else { format!("{asked:.1e}") }
             ),
             Self::Ignored { what } => f.write_str(what),
         }
