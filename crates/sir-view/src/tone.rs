@@ -36,7 +36,8 @@ impl Exposure {
         })
     }
 
-    /// The factor for a mesh: likewise, of the radiance at the corners of all triangles by area.
+    /// The factor for a mesh: likewise, of the radiance of all triangles, each weighed by the light that falls on it. So the outer sides
+    /// of a room and what is hidden in its furniture do not count, and lamps not much.
     #[must_use]
     pub fn factor_for_mesh(self, display: &DisplayMesh<'_>) -> f64 {
         self.factor(|| {
@@ -47,7 +48,7 @@ impl Exposure {
                     let [a, b, c] = v.map(|v| display.positions()[v.position as usize]);
                     let e = v.iter().map(|v| rgb(&v.irradiance)).sum::<Rgb>() / 3.0;
                     let radiance = display.radiosity_of(&piece, e) / std::f64::consts::PI;
-                    samples.push((luminance(radiance), (b - a).cross(c - a).length()));
+                    samples.push((luminance(radiance), luminance(e) * (b - a).cross(c - a).length()));
                 }
             }
             samples

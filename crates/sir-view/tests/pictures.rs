@@ -56,6 +56,24 @@ fn a_picture_of_errors_is_without_what_surfaces_emit() {
     assert_even(&render(&display, &Accel::new(&scene), &camera, settings(2)).unwrap());
 }
 
+/// Surfaces that no light reaches, such as the outer sides of a room, are not what a mesh is exposed for, however large they are.
+#[test]
+fn what_is_dark_does_not_change_the_automatic_exposure_of_a_mesh() {
+    let factor = |dark: f64| {
+        let mut builder = SceneBuilder::new();
+        let m = builder.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+        shapes::cuboid(&mut builder, DVec3::ZERO, SIZE, [m; 6], Facing::Inward);
+        shapes::cuboid(&mut builder, -dark * DVec3::ONE, dark * SIZE, [m; 6], Facing::Outward);
+        let scene = builder.build().unwrap().scene;
+        let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
+        let mut irradiance = vec![Rgb::splat(1e-9); mesh.side_count()];
+        irradiance[..12].fill(Rgb::splat(3.0));
+        Exposure::Auto.factor_for_mesh(&DisplayMesh::new(&scene, &mesh, &irradiance))
+    };
+    let (small, large) = (factor(2.0), factor(100.0));
+    assert!((small / large - 1.0).abs() < 1e-2, "{small} {large}");
+}
+
 fn assert_even(picture: &Picture) {
     for (i, pixel) in picture.radiance.iter().enumerate() {
         for (got, expected) in pixel.iter().zip([0.5, 0.4, 0.3]) {

@@ -44,6 +44,28 @@ fn counts_that_no_data_backs_are_refused() {
     }
 }
 
+/// Zeros that cost the file nothing, used for all that they can be used for.
+#[test]
+fn accessors_without_data_are_small_all_together() {
+    let _alone = alone();
+    let with = |count: usize, primitives: usize| {
+        let mut gltf = Gltf::triangle();
+        for _ in 0..primitives {
+            let [positions, colours] = ["VEC3", "VEC4"].map(|kind| {
+                let accessors = gltf.json["accessors"].as_array_mut().unwrap();
+                accessors.push(json!({"componentType": 5126, "type": kind, "count": count}));
+                accessors.len() - 1
+            });
+            gltf.primitive(json!({"attributes": {"POSITION": positions, "COLOR_0": colours}, "mode": 5}));
+        }
+        gltf.glb()
+    };
+    assert_eq!(load_hostile(&[("a.glb", &with(30_000, 1))]).unwrap().scene.triangles().len(), 1);
+    for (count, primitives) in [(1 << 16, 1), (1_000, 33)] {
+        refused(&[("a.glb", &with(count, primitives))], &["accessor", &count.to_string(), "no data"]);
+    }
+}
+
 #[test]
 fn indices_beyond_their_lists_are_refused() {
     let _alone = alone();

@@ -6,8 +6,8 @@ use ::gltf::json::{Index, buffer};
 
 use super::{LoadError, Reader, lookup};
 
-/// The most elements of an accessor that no buffer view backs: zeros cost a file nothing.
-const MAX_UNBACKED: usize = 1 << 20;
+/// The most elements that no buffer view backs, of all accessors together, as often as they are read: zeros cost a file nothing.
+const MAX_UNBACKED: usize = 1 << 16;
 
 /// How the components of an element are stored.
 #[derive(Clone, Copy)]
@@ -75,8 +75,14 @@ impl Reader<'_> {
         let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
         let mut elements = match accessor.buffer_view {
             Some(view) => self.run(view, accessor.byte_offset.unwrap_or_default().0, layout, count, &name)?,
-            None if count <= MAX_UNBACKED => vec![[0.0; N]; count],
-            None => return Err(self.invalid(format!("{name} has {count} elements, but no data"))),
+            None => {
+                let so_far = self.unbacked.get().saturating_add(count);
+                if so_far > MAX_UNBACKED {
+                    return Err(self.invalid(format!("{name} has {count} elements, but no data")));
+                }
+                self.unbacked.set(so_far);
+                vec![[0.0; N]; count]
+            }
         };
         if let Some(sparse) = &accessor.sparse {
             let changes = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);

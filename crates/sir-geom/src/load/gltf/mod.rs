@@ -13,6 +13,7 @@ mod material;
 mod primitive;
 mod walk;
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::rc::Rc;
@@ -77,6 +78,7 @@ pub(super) fn read(
         coordinates: 0,
         triangles: 0,
         primitives: 0,
+        unbacked: Cell::new(0),
     };
     reader.scene()
 }
@@ -100,6 +102,8 @@ struct Reader<'a> {
     coordinates: usize,
     triangles: usize,
     primitives: usize,
+    /// Elements of accessors without data.
+    unbacked: Cell<usize>,
 }
 
 impl Reader<'_> {
