@@ -1,0 +1,392 @@
+//! Fields of stages: names, types, ranges.
+
+use super::{problems, stages};
+
+#[test]
+fn unknown_names_and_fields() {
+    insta::assert_snapshot!(stages(&[
+        r#"Laod(path: "room.obj"),"#,
+        r#"Load(path: "room.obj", side: Front, colour: 1),"#,
+        r#"Firstshot(lines: 10),"#,
+        r#"FirstShot(line: 10),"#,
+        r#"Render,"#,
+        r#"Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),"#,
+    ]), @r#"
+    x.ron:2:1: error: unknown stage `Laod`
+    2 | Laod(path: "room.obj"),
+      | ^^^^
+      = help: did you mean `Load`?
+
+    x.ron:3:24: error: unknown field `side` in `Load`
+    3 | Load(path: "room.obj", side: Front, colour: 1),
+      |                        ^^^^
+      = help: did you mean `sides`?
+
+    x.ron:3:37: error: unknown field `colour` in `Load`
+    3 | Load(path: "room.obj", side: Front, colour: 1),
+      |                                     ^^^^^^
+      = help: `Load` has the fields `path` and `sides`
+
+    x.ron:4:1: error: unknown stage `Firstshot`
+    4 | Firstshot(lines: 10),
+      | ^^^^^^^^^
+      = help: did you mean `FirstShot`?
+
+    x.ron:5:11: error: unknown field `line` in `FirstShot`
+    5 | FirstShot(line: 10),
+      |           ^^^^
+      = help: did you mean `lines`?
+
+    x.ron:6:1: error: unknown stage `Render`
+    6 | Render,
+      | ^^^^^^
+      = help: stages are `Load`, `Light`, `Subdivide`, `Focus`, `FirstShot`, `SecondShot`, `Multipath`, `Repeat`, `Sensors` and `Save`
+
+    x.ron:7:7: error: unknown output `Picture`
+    7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
+      |       ^^^^^^^
+      = help: outputs are `Image`, `Gltf` and `Table`
+
+    x.ron:7:31: error: unknown output `Imgae`
+    7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
+      |                               ^^^^^
+      = help: did you mean `Image`?
+
+    x.ron:7:53: error: expected one of the outputs, but this is a text
+    7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
+      |                                                     ^^^^^^^
+      = help: outputs are `Image`, `Gltf` and `Table`
+    "#);
+    insta::assert_snapshot!(problems("Pipelin(stages: [])"), @r"
+    x.ron:1:1: error: the file must hold `Pipeline(…)`, but it holds `Pipelin(…)`
+    1 | Pipelin(stages: [])
+      | ^^^^^^^^^^^^^^^^^^^
+      = help: write `Pipeline(stages: […])`
+    ");
+    insta::assert_snapshot!(problems("[1]"), @r"
+    x.ron:1:1: error: the file must hold `Pipeline(…)`, but it holds a list
+    1 | [1]
+      | ^^^
+      = help: write `Pipeline(stages: […])`
+    ");
+}
+
+#[test]
+fn missing_and_repeated_fields() {
+    insta::assert_snapshot!(stages(&[
+        r#"Load(sides: Both),"#,
+        r#"Subdivide,"#,
+        r#"FirstShot(lines: 10, lines: 20),"#,
+        r#"Multipath(),"#,
+        r#"Save([Image(width: 10), Gltf(), Table(path: "")]),"#,
+    ]), @r#"
+    x.ron:2:1: error: `Load` lacks the field `path`
+    2 | Load(sides: Both),
+      | ^^^^
+      = help: write `Load(path: "scene.gltf", …)`
+
+    x.ron:3:1: error: `Subdivide` does not say how finely
+    3 | Subdivide,
+      | ^^^^^^^^^
+      = help: write one of `patches: 20_000`, `max_area: 0.01`, `max_edge: 0.1` or `per_face: true`
+
+    x.ron:4:22: error: the field `lines` is given twice
+    4 | FirstShot(lines: 10, lines: 20),
+      |                      ^^^^^
+      = help: remove one of the two; the first is in line 4
+
+    x.ron:5:1: error: `Multipath` lacks the field `lines`
+    5 | Multipath(),
+      | ^^^^^^^^^
+      = help: write `Multipath(lines: 1_000_000, …)`
+
+    x.ron:6:7: error: `Image` lacks the field `path`
+    6 | Save([Image(width: 10), Gltf(), Table(path: "")]),
+      |       ^^^^^
+      = help: write `Image(path: "view.png", …)`
+
+    x.ron:6:25: error: `Gltf` lacks the field `path`
+    6 | Save([Image(width: 10), Gltf(), Table(path: "")]),
+      |                         ^^^^
+      = help: write `Gltf(path: "result.glb", …)`
+
+    x.ron:6:45: error: `path` must be a text in quotes, but it is empty
+    6 | Save([Image(width: 10), Gltf(), Table(path: "")]),
+      |                                             ^^
+      = help: write for instance `path: "result.csv"`
+    "#);
+    insta::assert_snapshot!(problems("(seed: 1)"), @r#"
+    x.ron:1:1: error: `Pipeline` lacks the field `stages`
+    1 | (seed: 1)
+      | ^
+      = help: write `Pipeline(stages: [Load(path: "scene.gltf"), …], …)`
+    "#);
+    insta::assert_snapshot!(problems("(seed: 1, stages: [])"), @r#"
+    x.ron:1:19: error: the pipeline has no stages
+    1 | (seed: 1, stages: [])
+      |                   ^^
+      = help: begin with `Load(path: "scene.gltf")`
+    "#);
+}
+
+#[test]
+fn wrong_types() {
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: 3, sides: "Both"),"#,
+        r#"Subdivide(per_face: 4),"#,
+        r#"FirstShot(10),"#,
+        r#"Multipath(lines: "many", domain: Spher, replicas: 1.5),"#,
+        r#"Save([Image(path: "a.png", exposure: Automatic, camera: true)]),"#,
+        r#"Save(path: "b.png"),"#,
+        r#"Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),"#,
+    ]), @r#"
+    x.ron:2:12: error: `path` must be a text in quotes, but it is the number 3
+    2 | Load(path: 3, sides: "Both"),
+      |            ^
+      = help: write for instance `path: "scene.gltf"`
+
+    x.ron:2:22: error: `sides` must be `AsAuthored`, `Both` or `Front`, but it is a text
+    2 | Load(path: 3, sides: "Both"),
+      |                      ^^^^^^
+      = help: write `AsAuthored`, `Both` or `Front`
+
+    x.ron:3:21: error: `per_face` can only be `true`, but it is the number 4
+    3 | Subdivide(per_face: 4),
+      |                     ^
+      = help: write `per_face: true`, or leave `Subdivide` out
+
+    x.ron:4:1: error: `FirstShot` takes named fields, but this is `FirstShot(…)`
+    4 | FirstShot(10),
+      | ^^^^^^^^^^^^^
+      = help: write `FirstShot(lines: …)`
+
+    x.ron:5:18: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is a text
+    5 | Multipath(lines: "many", domain: Spher, replicas: 1.5),
+      |                  ^^^^^^
+      = help: write for instance `lines: 1_000_000`
+
+    x.ron:5:34: error: `domain` must be `Hull`, `Box` or `Sphere`, but it is `Spher`
+    5 | Multipath(lines: "many", domain: Spher, replicas: 1.5),
+      |                                  ^^^^^
+      = help: did you mean `Sphere`?
+
+    x.ron:5:51: error: `replicas` must be a whole number from 1 to 1_000_000, but it is the number 1.5
+    5 | Multipath(lines: "many", domain: Spher, replicas: 1.5),
+      |                                                   ^^^
+      = help: write for instance `replicas: 8`
+
+    x.ron:6:38: error: `exposure` must be `Auto` or a number, but it is `Automatic`
+    6 | Save([Image(path: "a.png", exposure: Automatic, camera: true)]),
+      |                                      ^^^^^^^^^
+      = help: write `exposure: Auto` or for instance `exposure: 1.0`
+
+    x.ron:6:57: error: `camera` must be a `Camera(…)`, or the number or name of one, but it is `true`
+    6 | Save([Image(path: "a.png", exposure: Automatic, camera: true)]),
+      |                                                         ^^^^
+      = help: write for instance `camera: 0` or `camera: Camera(eye: (1, 2, 5), target: (1, 1, 0))`
+
+    x.ron:7:1: error: `Save` must have a list of outputs
+    7 | Save(path: "b.png"),
+      | ^^^^^^^^^^^^^^^^^^^
+      = help: write `Save([Image(path: "view.png")])`
+
+    x.ron:8:48: error: `eye` must be three numbers, but it is the number 1
+    8 | Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),
+      |                                                ^
+      = help: write for instance `eye: (1, 2, 5)`
+
+    x.ron:8:66: error: `target` must be a finite number, but it is `up`
+    8 | Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),
+      |                                                                  ^^
+      = help: write for instance `target: (1, 1, 0)`
+
+    x.ron:8:76: error: `fov` must be a finite number, but it is a text
+    8 | Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),
+      |                                                                            ^^^^^^
+      = help: write for instance `fov: 45`
+    "#);
+    insta::assert_snapshot!(problems("(seed: -1, stages: Load)"), @r"
+    x.ron:1:8: error: `seed` must be a whole number from 0 to 18_446_744_073_709_551_615, but it is the number -1
+    1 | (seed: -1, stages: Load)
+      |        ^^
+      = help: write for instance `seed: 1`
+
+    x.ron:1:20: error: `stages` must be a list, but it is `Load`
+    1 | (seed: -1, stages: Load)
+      |                    ^^^^
+      = help: write `stages: [Load(…), …]`
+    ");
+}
+
+#[test]
+fn numbers_out_of_range() {
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: "room.obj"),"#,
+        r#"Subdivide(patches: 1e15),"#,
+        r#"FirstShot(lines: 0),"#,
+        r#"Multipath(lines: -5),"#,
+        r#"Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),"#,
+        r#"Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),"#,
+        r#"Save([Image(path: "c.png", camera: Camera(eye: (0, 0, 0), target: (0, 1, 0)))]),"#,
+    ]), @r#"
+    x.ron:3:20: error: `patches` must be a whole number from 1 to 4_294_967_295, but it is the number 1e15
+    3 | Subdivide(patches: 1e15),
+      |                    ^^^^
+      = help: write for instance `patches: 20_000`
+
+    x.ron:4:18: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 0
+    4 | FirstShot(lines: 0),
+      |                  ^
+      = help: write for instance `lines: 1_000_000`
+
+    x.ron:5:18: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number -5
+    5 | Multipath(lines: -5),
+      |                  ^^
+      = help: write for instance `lines: 1_000_000`
+
+    x.ron:6:35: error: `width` must be a whole number from 1 to 16_384, but it is the number 0
+    6 | Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),
+      |                                   ^
+      = help: write for instance `width: 800`
+
+    x.ron:6:46: error: `height` must be a whole number from 1 to 16_384, but it is the number 100_000
+    6 | Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),
+      |                                              ^^^^^^^
+      = help: write for instance `height: 600`
+
+    x.ron:6:64: error: `samples` must be a whole number from 1 to 64, but it is the number 1.5
+    6 | Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),
+      |                                                                ^^^
+      = help: write for instance `samples: 4`
+
+    x.ron:6:79: error: `exposure` must be above zero, but it is -1
+    6 | Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),
+      |                                                                               ^^
+      = help: write for instance `exposure: 1.0`
+
+    x.ron:7:38: error: `exposure` must be a finite number, but it is the number NaN
+    7 | Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),
+      |                                      ^^^
+      = help: write for instance `exposure: 1.0`
+
+    x.ron:7:89: error: `target` must be a finite number, but it is the number inf
+    7 | Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),
+      |                                                                                         ^^^
+      = help: write for instance `target: (1, 1, 0)`
+
+    x.ron:7:100: error: `fov` must be below 180 degrees, but it is 200
+    7 | Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),
+      |                                                                                                    ^^^
+      = help: write for instance `fov: 45`
+
+    x.ron:8:36: error: this camera has no direction: `eye` and `target` coincide, or `up` points along the view
+    8 | Save([Image(path: "c.png", camera: Camera(eye: (0, 0, 0), target: (0, 1, 0)))]),
+      |                                    ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+      = help: move `target` away from `eye`, and choose an `up` that is not parallel to the view
+    "#);
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)"#,
+    ]), @r#"
+    x.ron:2:45: error: `max_area` must be above zero, but it is 0
+    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)
+      |                                             ^
+      = help: write for instance `max_area: 0.01`
+
+    x.ron:2:66: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 1e16
+    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)
+      |                                                                  ^^^^
+      = help: write for instance `lines: 1_000_000`
+
+    x.ron:2:99: error: `tail` must be a whole number from 0 to 8, but it is the number 9
+    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)
+      |                                                                                                   ^
+      = help: write for instance `tail: 0`
+    "#);
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),"#,
+    ]), @r#"
+    x.ron:2:25: error: `Subdivide` has both `patches` and `max_edge`
+    2 | Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),
+      |                         ^^^^^^^^^
+      = help: keep one of them
+    "#);
+}
+
+#[test]
+fn what_one_transport_has_and_the_other_has_not() {
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: "room.obj"), FirstShot(lines: 10),"#,
+        r#"Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)"#,
+    ]), @r"
+    x.ron:3:52: error: the transport `Batches` has no `replicas`
+    3 | Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)
+      |                                                    ^^
+      = help: leave `replicas` out, or write `transport: Replicas`
+
+    x.ron:3:52: error: `replicas` must be a whole number from 1 to 10, but it is the number 20
+    3 | Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)
+      |                                                    ^^
+      = help: write for instance `replicas: 8`
+
+    x.ron:3:62: error: the transport `Batches` has no `tail`
+    3 | Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)
+      |                                                              ^
+      = help: leave `tail` out, or write `transport: Replicas`
+    ");
+}
+
+#[test]
+fn paths() {
+    insta::assert_snapshot!(stages(&[
+        r#"Load(path: "Room.obj"), FirstShot(lines: 10),"#,
+        r#"Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),"#,
+        r#"Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),"#,
+    ]), @r#"
+    x.ron:2:12: error: the scene file Room.obj does not exist
+    2 | Load(path: "Room.obj"), FirstShot(lines: 10),
+      |            ^^^^^^^^^^
+      = help: did you mean `room.obj`?
+
+    x.ron:3:19: error: the name of the output "a.jpg" does not end in .png or .exr
+    3 | Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),
+      |                   ^^^^^^^
+      = help: write for instance `path: "result.png"`
+
+    x.ron:3:41: error: the name of the output "t.txt" does not end in .csv or .npy
+    3 | Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),
+      |                                         ^^^^^^^
+      = help: write for instance `path: "result.csv"`
+
+    x.ron:3:62: error: the name of the output "x.gltf" does not end in .glb
+    3 | Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),
+      |                                                              ^^^^^^^^
+      = help: write for instance `path: "result.glb"`
+
+    x.ron:4:19: error: the output path "/tmp/a.png" may lead out of the run directory
+    4 | Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),
+      |                   ^^^^^^^^^^^^
+      = help: write a relative path without `..`; `sir run --out` says where the run directory is
+
+    x.ron:4:46: error: the output path "../a.png" may lead out of the run directory
+    4 | Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),
+      |                                              ^^^^^^^^^^
+      = help: write a relative path without `..`; `sir run --out` says where the run directory is
+
+    x.ron:4:93: error: the output path "./B.png" is used twice
+    4 | Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),
+      |                                                                                             ^^^^^^^^^
+      = help: choose another name; "b.png" is in line 4
+    "#);
+    insta::assert_snapshot!(stages(&[r#"Load(path: "garden/tree.glb"), FirstShot(lines: 10),"#]), @r#"
+    x.ron:2:12: error: the scene file garden/tree.glb does not exist
+    2 | Load(path: "garden/tree.glb"), FirstShot(lines: 10),
+      |            ^^^^^^^^^^^^^^^^^
+      = help: paths are relative to the folder of the pipeline file
+    "#);
+    insta::assert_snapshot!(stages(&[r#"Load(path: "room.blend"), FirstShot(lines: 10),"#]), @r#"
+    x.ron:2:12: error: "room.blend" is not a scene file by its name
+    2 | Load(path: "room.blend"), FirstShot(lines: 10),
+      |            ^^^^^^^^^^^^
+      = help: scenes are read from .gltf, .glb and .obj files
+    "#);
+}
