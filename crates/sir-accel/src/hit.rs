@@ -29,12 +29,10 @@ pub(crate) const CONTACT: f64 = 1e-6;
 /// Largest squared sine of the angle between surfaces in contact.
 pub(crate) const PARALLEL: f64 = 1e-6;
 
-/// Whether, of two coincident hits, the one on `a` comes first.
-pub(crate) fn contact_order(a: (TriangleId, Side), b: (TriangleId, Side)) -> bool {
-    match (a.1, b.1) {
-        (Side::Front, Side::Back) => true,
-        (Side::Back, Side::Front) => false,
-        (Side::Front, Side::Front) => a.0 > b.0,
-        (Side::Back, Side::Back) => a.0 < b.0,
+/// The place of a triangle among coincident hits, which are in the order of these along a line.
+pub(crate) fn contact_rank(triangle: TriangleId, side: Side) -> (Side, u32) {
+    match side {
+        Side::Front => (side, !triangle.0),
+        Side::Back => (side, triangle.0),
     }
 }

@@ -235,14 +235,13 @@ impl<F> ClosestHits<'_, F> {
         let Accel { grid, tree, .. } = self.accel;
         let mut hits = vec![best.hit(grid, line)];
         self.close.retain(|(of_ray, crossing)| {
-            if *of_ray == index
-                && crossing.t <= best.t + SLACK
-                && hits.iter().all(|hit| hit.triangle != crossing.id)
-            {
+            if *of_ray == index && crossing.t <= best.t + SLACK {
                 hits.push(crossing.hit(grid, line));
             }
             *of_ray != index
         });
+        hits.sort_unstable_by_key(|hit| hit.triangle);
+        hits.dedup_by_key(|hit| hit.triangle);
         sort_contacts(&mut hits, grid.length(hit::CONTACT * RADIUS), tree);
         hits[0]
     }
@@ -265,20 +264,22 @@ fn is_on_top(leaving: TriangleId, other: &Crossing, line: &GridLine, tree: &Tree
     let along = triangle.scaled_normal().dot(line.direction) > 0.0;
     let side = if along { Side::Back } else { Side::Front };
     // A line that does not cross the start itself left it on an edge, and this is its neighbour there.
-    triangle.cross(line).is_some() && hit::contact_order((leaving, side), (other.id, other.side))
+    triangle.cross(line).is_some()
+        && hit::contact_rank(leaving, side) < hit::contact_rank(other.id, other.side)
 }
 
 /// Puts hits in contact, of those of a line in order of distance, in the order of their rule.
 #[cold]
 fn sort_contacts(hits: &mut [Hit], contact: f64, tree: &Tree) {
-    hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+    let rank = |hit: &Hit| hit::contact_rank(hit.triangle, hit.side);
+    // Copies of a triangle are met at the same distance: many of them must not take the square of their number below.
+    hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(rank(a).cmp(&rank(b))));
     for i in 1..hits.len() {
         for j in (1..=i).rev() {
             let (first, second) = (hits[j - 1], hits[j]);
             let apart = (first.t - second.t).abs() > contact
                 || !parallel(tree.triangle(first.triangle), tree.triangle(second.triangle));
-            let order = hit::contact_order((first.triangle, first.side), (second.triangle, second.side));
-            if apart || order {
+            if apart || rank(&first) < rank(&second) {
                 break;
             }
             hits.swap(j - 1, j);

@@ -47,6 +47,28 @@ fn of_two_sheets_back_to_back_each_shows_its_front() {
     }
 }
 
+/// Exact copies, as many as make the square of their number felt.
+#[test]
+fn a_thick_stack_of_copies_is_in_order() {
+    const COPIES: u32 = 4000;
+    let mut b = SceneBuilder::new();
+    let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+    let vertices =
+        [DVec3::ZERO, DVec3::new(1.0, 0.1, 0.3), DVec3::new(0.2, 1.0, 0.1)].map(|p| b.add_vertex(p));
+    let [first, second, third] = vertices;
+    for i in 0..COPIES {
+        let corners = if i % 2 == 0 { vertices } else { [first, third, second] };
+        b.add_polygon(&corners, m);
+    }
+    let scene = b.build().unwrap().scene;
+    let line = Line { origin: DVec3::new(0.4, 0.4, 2.0), direction: -DVec3::Z };
+    let accel = Accel::new(&scene);
+    let met: Vec<_> = accel.tracer().all_hits(&line).iter().map(|h| (h.triangle.0, h.side)).collect();
+    let fronts = (0..COPIES).rev().filter(|i| i % 2 == 0).map(|i| (i, Side::Front));
+    let backs = (0..COPIES).filter(|i| i % 2 == 1).map(|i| (i, Side::Back));
+    assert_eq!(met, fronts.chain(backs).collect::<Vec<_>>());
+}
+
 /// The other half of a square is in the same plane, but not on top of the first.
 #[test]
 fn a_ray_from_the_common_edge_of_coplanar_triangles_is_free() {
