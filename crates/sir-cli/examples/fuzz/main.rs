@@ -138,7 +138,12 @@ fn try_case(
     files: &[(&str, Vec<u8>)],
 ) -> Result<Result<Option<String>, String>, std::io::Error> {
     for (name, bytes) in files {
-        fs::write(folder.join(name), bytes)?;
+        // Some file systems take milliseconds to write a file anew in place, but not to remove it first.
+        let path = folder.join(name);
+        if path.exists() {
+            fs::remove_file(&path)?;
+        }
+        fs::write(path, bytes)?;
     }
     Ok(attempt(target, folder, files.iter().map(|(_, bytes)| bytes.len()).sum()))
 }

@@ -61,6 +61,10 @@ pub(crate) fn case(target: Target, dice: &mut Dice) -> Vec<(&'static str, Vec<u8
     files
 }
 
+/// Files do not grow beyond this number of bytes: repeated again and again they would have hundreds of millions, and only reading them takes
+/// longer than a case may.
+const LARGEST: usize = 4 << 20;
+
 fn change_bytes(bytes: &mut Vec<u8>, words: &[&str], dice: &mut Dice) {
     let range = dice.range(bytes.len());
     let word = words[dice.below(words.len())].as_bytes();
@@ -73,6 +77,7 @@ fn change_bytes(bytes: &mut Vec<u8>, words: &[&str], dice: &mut Dice) {
             // The same again, sometimes so often that depth or length becomes a trouble.
             let piece = bytes[range.clone()].to_vec();
             let times = if dice.chance(20) { 2000 } else { 1 + dice.below(4) };
+            let times = times.min(LARGEST.saturating_sub(bytes.len()) / piece.len().max(1));
             drop(bytes.splice(range.end..range.end, piece.repeat(times)));
         }
         5 => {
