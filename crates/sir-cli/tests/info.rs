@@ -230,6 +230,8 @@ fn units_places_and_planes_are_looked_at() {
     assert!((dominant.share - 1e6 / (1e6 + 94.0)).abs() < 1e-9);
     assert_eq!(dominant.rest.max, [4.0, 3.0, 5.0]);
     assert!(ground.findings.join("; ").contains("leave it out"), "{:?}", ground.findings);
+    let settings = settings(&ground);
+    assert!(settings.contains("Focus(min: (0.000, 0.000, 0.000), max: (4.000, 3.000, 5.000))"), "{settings}");
 }
 
 #[test]

@@ -71,8 +71,8 @@ fn far_away(info: &Info) -> Option<String> {
 fn dominated(info: &Info) -> Option<String> {
     let dominant = info.dominant.as_ref()?;
     Some(format!(
-        "{} has {} of the area, and everything else fits into {}: most global lines meet nothing else; leave it out of the file, \
-         or make it smaller",
+        "{} has {} of the area, and everything else fits into {}: most lines through the whole scene meet nothing else; leave it out of the \
+         file, or have a `Focus` on the rest",
         dominant.what,
         percent(dominant.share),
         dimensions(dominant.rest.size())
@@ -153,7 +153,7 @@ fn lamps(info: &Info) -> Option<String> {
 
 /// What a pipeline should set.
 pub(super) fn settings(info: &Info) -> Vec<Setting> {
-    sides(info).into_iter().chain(light(info)).chain(patches(info)).collect()
+    sides(info).into_iter().chain(light(info)).chain(focus(info)).chain(patches(info)).collect()
 }
 
 fn sides(info: &Info) -> Option<Setting> {
@@ -235,6 +235,27 @@ fn panel(info: &Info) -> String {
     let [corner, a, b] =
         [corner, a, b].map(|v| format!("({}, {}, {})", length(v.x), length(v.y), length(v.z)));
     format!("Light([Panel(corner: {corner}, edges: ({a}, {b}), power: 1000)])")
+}
+
+/// A box around all but what dwarfs it.
+fn focus(info: &Info) -> Option<Setting> {
+    let dominant = info.dominant.as_ref()?;
+    let rest = dominant.rest;
+    // Rounded outwards to a thousandth or so of the size.
+    let digits = 3 - rest.size().max_element().log10().floor() as i32;
+    let step = 10f64.powi(-digits);
+    let corner = |corner: [f64; 3], round: fn(f64) -> f64| {
+        let [x, y, z] = corner.map(|x| {
+            let rounded = round(x / step) * step;
+            format!("{:.*}", digits.max(0) as usize, if rounded == 0.0 { 0.0 } else { rounded })
+        });
+        format!("({x}, {y}, {z})")
+    };
+    let (min, max) = (corner(rest.min, f64::floor), corner(rest.max, f64::ceil));
+    Some(Setting {
+        set: format!("Focus(min: {min}, max: {max})"),
+        why: format!("lines and patches go where they matter, and not to {}", dominant.what),
+    })
 }
 
 fn patches(info: &Info) -> Option<Setting> {
