@@ -73,20 +73,11 @@ impl Reader<'_> {
     ) -> Result<Rc<[Vec2]>, LoadError> {
         use ComponentType::{F32, I8, I16, U8, U16};
         let what = format!("{what}, texture coordinates");
-        let places = match shared.places.get(&accessor.value()) {
-            Some(places) => Rc::clone(places),
-            None => {
-                // Signed numbers are those of KHR_mesh_quantization.
-                let places = self.elements::<2>(accessor, Type::Vec2, &[F32, I8, U8, I16, U16], &what)?;
-                self.coordinates += places.len();
-                self.check_size("texture coordinates and colours", self.coordinates)?;
-                let places: Rc<[Vec2]> =
-                    places.iter().map(|place| Vec2::from_array(place.map(|x| x as f32))).collect();
-                Rc::clone(shared.places.entry(accessor.value()).or_insert(places))
-            }
-        };
-        self.check_count(places.len(), vertices, &what)?;
-        Ok(places)
+        self.attribute(accessor, vertices, &mut shared.places, &what, |reader| {
+            // Signed numbers are those of KHR_mesh_quantization.
+            let places = reader.elements::<2>(accessor, Type::Vec2, &[F32, I8, U8, I16, U16], &what)?;
+            Ok(places.iter().map(|place| Vec2::from_array(place.map(|x| x as f32))).collect())
+        })
     }
 
     fn colours(
@@ -98,25 +89,41 @@ impl Reader<'_> {
     ) -> Result<Rc<[Vec4]>, LoadError> {
         use ComponentType::{F32, U8, U16};
         let what = format!("{what}, colours");
-        let colours = match shared.colours.get(&accessor.value()) {
-            Some(colours) => Rc::clone(colours),
+        self.attribute(accessor, vertices, &mut shared.colours, &what, |reader| {
+            let definition: Option<&Accessor> = reader.root.get(accessor);
+            let has_alpha = definition.is_some_and(|a| matches!(a.type_, Checked::Valid(Type::Vec4)));
+            if has_alpha {
+                let colours = reader.elements::<4>(accessor, Type::Vec4, &[F32, U8, U16], &what)?;
+                Ok(colours.into_iter().map(|c| DVec4::from_array(c).as_vec4()).collect())
+            } else {
+                let colours = reader.elements::<3>(accessor, Type::Vec3, &[F32, U8, U16], &what)?;
+                Ok(colours.into_iter().map(|[r, g, b]| DVec4::new(r, g, b, 1.0).as_vec4()).collect())
+            }
+        })
+    }
+
+    /// The values of an attribute, at least one for each vertex: read once, however many primitives share them.
+    fn attribute<T>(
+        &mut self,
+        accessor: Index<Accessor>,
+        vertices: usize,
+        known: &mut HashMap<usize, Rc<[T]>>,
+        what: &str,
+        read: impl FnOnce(&Self) -> Result<Rc<[T]>, LoadError>,
+    ) -> Result<Rc<[T]>, LoadError> {
+        let values = match known.get(&accessor.value()) {
+            Some(values) => Rc::clone(values),
             None => {
-                let accessors: Option<&Accessor> = self.root.get(accessor);
-                let has_alpha = accessors.is_some_and(|a| matches!(a.type_, Checked::Valid(Type::Vec4)));
-                let colours: Rc<[Vec4]> = if has_alpha {
-                    let colours = self.elements::<4>(accessor, Type::Vec4, &[F32, U8, U16], &what)?;
-                    colours.into_iter().map(|c| DVec4::from_array(c).as_vec4()).collect()
-                } else {
-                    let colours = self.elements::<3>(accessor, Type::Vec3, &[F32, U8, U16], &what)?;
-                    colours.into_iter().map(|[r, g, b]| DVec4::new(r, g, b, 1.0).as_vec4()).collect()
-                };
-                self.coordinates += colours.len();
+                let values = read(self)?;
+                self.coordinates += values.len();
                 self.check_size("texture coordinates and colours", self.coordinates)?;
-                Rc::clone(shared.colours.entry(accessor.value()).or_insert(colours))
+                Rc::clone(known.entry(accessor.value()).or_insert(values))
             }
         };
-        self.check_count(colours.len(), vertices, &what)?;
-        Ok(colours)
+        if values.len() >= vertices {
+            return Ok(values);
+        }
+        Err(self.invalid(format!("{what}: there are {} for {vertices} vertices", values.len())))
     }
 
     /// What colours multiply their material by; `None` if that changes nothing.
@@ -133,13 +140,6 @@ impl Reader<'_> {
             _ => Rc::clone(colours),
         };
         tints.iter().any(|&tint| tint != Vec4::ONE).then_some(tints)
-    }
-
-    fn check_count(&self, count: usize, vertices: usize, what: &str) -> Result<(), LoadError> {
-        if count >= vertices {
-            return Ok(());
-        }
-        Err(self.invalid(format!("{what}: there are {count} for {vertices} vertices")))
     }
 }
 

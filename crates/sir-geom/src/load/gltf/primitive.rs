@@ -114,8 +114,17 @@ impl Reader<'_> {
     }
 
     pub(super) fn check_size(&self, what: &'static str, count: usize) -> Result<(), LoadError> {
-        if count > MAX_ELEMENTS {
-            return Err(LoadError::TooLarge { path: self.path.to_owned(), what, limit: MAX_ELEMENTS });
+        self.check_limit(what, count, MAX_ELEMENTS)
+    }
+
+    pub(super) fn check_limit(
+        &self,
+        what: &'static str,
+        count: usize,
+        limit: usize,
+    ) -> Result<(), LoadError> {
+        if count > limit {
+            return Err(LoadError::TooLarge { path: self.path.to_owned(), what, limit });
         }
         Ok(())
     }

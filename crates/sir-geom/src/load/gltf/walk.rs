@@ -7,6 +7,9 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use super::primitive::Shared;
 use super::{LoadError, Reader, camera, lookup};
 
+/// The most mesh primitives once instances are laid out.
+const MAX_PRIMITIVES: usize = 1 << 23;
+
 impl Reader<'_> {
     /// Adds everything in the default scene, else in the first one, else below the nodes without a parent.
     pub(super) fn scene(mut self) -> Result<(), LoadError> {
@@ -53,7 +56,7 @@ impl Reader<'_> {
             self.builder.begin_group(node.name.as_deref().or(mesh.name.as_deref()).unwrap_or_default());
             // Also those without triangles take time, and a small file can ask for many.
             self.primitives += mesh.primitives.len();
-            self.check_size("mesh primitives", self.primitives)?;
+            self.check_limit("mesh primitives", self.primitives, MAX_PRIMITIVES)?;
             let mut shared = Shared::default();
             for (i, primitive) in mesh.primitives.iter().enumerate() {
                 let what = format!("mesh {}, primitive {i}", index.value());
