@@ -235,6 +235,16 @@ fn units_places_and_planes_are_looked_at() {
 }
 
 #[test]
+fn colours_of_corners_and_textures_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.obj");
+    let obj = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\nf 4 5 6\n";
+    std::fs::write(&path, obj).unwrap();
+    let textures = inspect(&path).unwrap().textures;
+    assert_eq!((textures.images, textures.texels, textures.triangles), (0, 0, 1));
+}
+
+#[test]
 fn the_same_file_gives_the_same_numbers_and_an_absent_one_an_error() {
     let json = || {
         let mut info = serde_json::to_value(room(true, |_, walls| walls.truncate(5))).unwrap();

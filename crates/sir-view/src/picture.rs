@@ -136,7 +136,8 @@ impl Shader<'_> {
             .collect();
         self.see(tracer, &rays, |ray, Seen { radiance, stopped }| {
             met += stopped;
-            let sky = || self.display.scene.sky().map_or(Rgb::ZERO, |sky| sky.radiance(ray.direction));
+            let sky = self.display.scene.sky().filter(|_| self.display.emits);
+            let sky = || sky.map_or(Rgb::ZERO, |sky| sky.radiance(ray.direction));
             let radiance = if stopped < 1.0 { radiance + (1.0 - stopped) * sky() } else { radiance };
             sum += radiance;
             let weight = 1.0 / (1.0 + luminance(radiance) / self.knee);

@@ -56,6 +56,25 @@ fn a_picture_of_errors_is_without_what_surfaces_emit() {
     assert_even(&render(&display, &Accel::new(&scene), &camera, settings(2)).unwrap());
 }
 
+#[test]
+fn a_picture_of_errors_is_black_where_it_shows_the_sky() {
+    let mut builder = SceneBuilder::new();
+    let m = builder.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [m; 6], Facing::Outward);
+    builder.set_sky(Sky::everywhere(Rgb::splat(7.0)).unwrap());
+    let scene = builder.build().unwrap().scene;
+    let mesh = PatchMesh::new(&scene, Subdivision::PerTriangle).unwrap();
+    let errors = vec![Rgb::ONE; mesh.side_count()];
+    let camera =
+        Camera::looking_at(DVec3::new(0.0, 0.0, 9.0), DVec3::new(0.0, 0.0, 10.0), DVec3::Y, 1.2).unwrap();
+    let accel = Accel::new(&scene);
+    let looks = |display: DisplayMesh<'_>| render(&display, &accel, &camera, settings(1)).unwrap();
+    let light = looks(DisplayMesh::new(&scene, &mesh, &errors));
+    let error = looks(DisplayMesh::of_errors(&scene, &mesh, &errors));
+    assert!(light.radiance.iter().all(|pixel| pixel[0] > 2.0));
+    assert!(error.radiance.iter().all(|pixel| *pixel == [0.0; 3]));
+}
+
 /// Surfaces that no light reaches, such as the outer sides of a room, are not what a mesh is exposed for, however large they are.
 #[test]
 fn what_is_dark_does_not_change_the_automatic_exposure_of_a_mesh() {

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 pub use advice::Setting;
 pub use lines::{Fates, Global, Lines};
-pub use numbers::{Group, Info, Lights, MaterialInfo, inspect};
+pub use numbers::{Group, Info, Lights, MaterialInfo, Textures, inspect};
 pub use shape::{Dominant, Extent, Twins};
 
 use crate::Error;

@@ -37,6 +37,8 @@ pub struct Info {
     pub vertices: usize,
     /// Polygons that the triangles are parts of.
     pub polygons: usize,
+    /// Images that materials use.
+    pub textures: Textures,
     /// Area of all triangles, one side each \[m²\].
     pub area: f64,
     /// Share of the area that the largest triangle has.
@@ -65,6 +67,17 @@ pub struct Info {
     pub findings: Vec<String>,
     /// What to set in a pipeline.
     pub settings: Vec<Setting>,
+}
+
+/// Images, and what has them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Textures {
+    /// Those that could be read and are not of a single colour.
+    pub images: usize,
+    /// Texels of all together.
+    pub texels: usize,
+    /// Triangles that differ from their material or from place to place, because of a texture or colours at their corners.
+    pub triangles: usize,
 }
 
 /// A material.
@@ -133,6 +146,11 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         vertices: scene.vertices().len(),
         // The triangles of a polygon follow each other.
         polygons: scene.triangles().chunk_by(|a, b| a.face == b.face).count(),
+        textures: Textures {
+            images: scene.textures().len(),
+            texels: scene.textures().iter().map(|texture| texture.texels().len()).sum(),
+            triangles: scene.triangle_ids().filter(|&id| scene.is_varied(id)).count(),
+        },
         area,
         largest_triangle: largest / area,
         extent,

@@ -2,7 +2,7 @@
 
 use super::advice::dimensions;
 use super::lines::Fates;
-use super::numbers::{Info, MaterialInfo};
+use super::numbers::{Info, MaterialInfo, Textures};
 use crate::fields::grouped;
 
 /// Most materials, warnings, parts and cameras that are listed.
@@ -35,6 +35,7 @@ fn overview(info: &Info) -> String {
         row("vertices", &count(info.vertices)),
         row("polygons", &count(info.polygons)),
         row("parts", &listed(names)),
+        row("textures", &textures(info)),
         row(
             "area",
             &format!("{} m²; the largest triangle has {}", length(info.area), percent(info.largest_triangle)),
@@ -50,6 +51,17 @@ fn overview(info: &Info) -> String {
         row("cameras", &listed(info.cameras.iter().map(String::as_str))),
     ]
     .concat()
+}
+
+fn textures(info: &Info) -> String {
+    let Textures { images, texels, triangles } = info.textures;
+    if triangles == 0 {
+        return "none".into();
+    }
+    let [images, texels, triangles] = [images, texels, triangles].map(|n| grouped(n as u64));
+    format!(
+        "{images} images with {texels} texels; {triangles} triangles have them, or colours at their corners"
+    )
 }
 
 fn row(what: &str, value: &str) -> String {

@@ -56,8 +56,8 @@ pub struct DisplayMesh<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) mesh: &'a PatchMesh,
     irradiance: &'a [Rgb],
-    /// Whether what surfaces emit is shown, too.
-    emits: bool,
+    /// Whether what surfaces and the sky emit is shown, too.
+    pub(crate) emits: bool,
     positions: Vec<DVec3>,
     vertices: Vec<DisplayVertex>,
     triangles: Vec<[u32; 3]>,
@@ -101,7 +101,7 @@ impl<'a> DisplayMesh<'a> {
     }
 
     /// The same mesh with the standard error of irradiance \[W/m²\] in its place: radiosity and radiance then are those standard
-    /// errors, and what surfaces emit, which has none, is left out.
+    /// errors, and what surfaces and the sky emit, which has none, is left out.
     ///
     /// Errors are interpolated as the irradiance is. That of an interpolated value is a little less, as far as the noise of the
     /// patches that it is made of is independent.
