@@ -52,20 +52,20 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     let mut options = LoadOptions::default();
     let mut all_lamps: &[Lamp] = &[];
     let mut subdivision = (Subdivision::PerTriangle, 0..0);
-    let mut box_that_matters = None;
+    let mut asked = None;
     for stage in &pipeline.stages {
         match &stage.action {
             Action::Load { sides, .. } => options.sides = *sides,
             Action::Light { lamps, .. } => all_lamps = lamps,
             Action::Subdivide(how) => subdivision = (*how, stage.span.clone()),
-            Action::Focus { bounds, .. } => box_that_matters = Some(bounds),
+            Action::Focus { bounds, share } => asked = Some((bounds, *share)),
             _ => {}
         }
     }
     let watch = Stopwatch::start();
     let built = sir_geom::load_with(pipeline.scene_path(), &options, |builder| {
         all_lamps.iter().for_each(|lamp| lamp.add_to(builder));
-        box_that_matters.iter().for_each(|bounds| builder.split_at(bounds));
+        asked.iter().for_each(|(bounds, _)| builder.split_at(bounds));
     })?;
     let load_seconds = watch.seconds();
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
@@ -77,7 +77,11 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     let mut problems = camera_problems(pipeline, &built.scene);
     let watch = Stopwatch::start();
     let (how, span) = subdivision;
-    let focus = focus(pipeline, &built.scene)?;
+    let focus = asked.map(|(&bounds, share)| {
+        let focus = Focus::new(bounds, share, &built.scene);
+        focus.ok_or_else(|| pipeline.diagnostics(nothing_inside(pipeline, &built.scene)))
+    });
+    let focus = focus.transpose()?;
     match Model::within(built.scene, how, focus.map(|focus| focus.bounds())) {
         Ok(model) if problems.is_empty() => {
             let build_seconds = watch.seconds();
@@ -98,19 +102,6 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
             Err(pipeline.diagnostics(problems).into())
         }
     }
-}
-
-/// What matters, if the pipeline says so.
-fn focus(pipeline: &Pipeline, scene: &Scene) -> Result<Option<Focus>, Error> {
-    for stage in &pipeline.stages {
-        let Action::Focus { bounds, share } = stage.action else { continue };
-        let focus = Focus::new(bounds, share, scene);
-        return match focus {
-            Some(_) => Ok(focus),
-            None => Err(pipeline.diagnostics(nothing_inside(pipeline, scene)).into()),
-        };
-    }
-    Ok(None)
 }
 
 /// That nothing is in the focus, said at its stage.

@@ -39,14 +39,14 @@ impl Corners {
 }
 
 impl Appearance {
-    /// Takes in values at the corners of a triangle; coordinates that are not finite are left out.
+    /// Takes in values at the corners of a triangle; those that are not finite are left out.
     pub(crate) fn add(&mut self, coordinates: &[[Vec2; 3]], tint: Option<[Vec4; 3]>) -> Corners {
         let mut corners = Corners { coordinates: self.coordinates.len() as u32, ..Corners::PLAIN };
         if coordinates.iter().flatten().all(|place| place.is_finite()) {
             corners.sets = coordinates.len().min(usize::from(u8::MAX)) as u8;
             self.coordinates.extend_from_slice(&coordinates[..usize::from(corners.sets)]);
         }
-        if let Some(tint) = tint {
+        if let Some(tint) = tint.filter(|tint| tint.iter().all(|corner| corner.is_finite())) {
             corners.tint = self.tints.len() as u32;
             self.tints.push(tint);
         }

@@ -9,8 +9,8 @@ use thiserror::Error;
 use crate::appearance::{Appearance, Corners};
 use crate::split::{Corner, split};
 use crate::{
-    Barycentric, BoundingBox, BoundingSphere, Camera, ColourMap, FaceId, GroupId, Light, MAX_REFLECTANCE,
-    Material, MaterialId, Rgb, Scene, Sky, Texture, TextureId, Triangle, VertexId, polygon,
+    BoundingBox, BoundingSphere, Camera, ColourMap, FaceId, GroupId, Light, MAX_REFLECTANCE, Material,
+    MaterialId, Rgb, Scene, Sky, Texture, TextureId, Triangle, VertexId, polygon,
 };
 
 /// Why a scene cannot be built.
@@ -241,7 +241,6 @@ impl SceneBuilder {
     /// material. Coordinates that are not finite are ignored, and the triangle has the mean colour of its texture.
     pub fn set_corners(&mut self, coordinates: &[[Vec2; 3]], tint: Option<[Vec4; 3]>) {
         if let Some(triangle) = self.triangles.last_mut() {
-            let tint = tint.filter(|tint| tint.iter().all(|corner| corner.is_finite()));
             triangle.corners = self.appearance.add(coordinates, tint);
         }
     }
@@ -265,7 +264,7 @@ impl SceneBuilder {
             };
             let sets: Vec<[Vec2; 3]> = coordinates.iter().map(|set| [a, b, c].map(|i| set[i])).collect();
             let tint = tint.map(|tint| [a, b, c].map(|i| tint[i]));
-            triangle.corners = self.appearance.add(&sets, tint.filter(|t| t.iter().all(|c| c.is_finite())));
+            triangle.corners = self.appearance.add(&sets, tint);
         }
     }
 
@@ -274,16 +273,9 @@ impl SceneBuilder {
     /// that only passes by the box stays whole.
     pub fn split_at(&mut self, bounds: &BoundingBox) {
         for triangle in std::mem::take(&mut self.triangles) {
-            let places = triangle.vertices.map(|v| self.vertices.get(v.index()).copied());
-            let parts = match places {
-                [Some(a), Some(b), Some(c)] if [a, b, c].iter().all(|place| place.is_finite()) => {
-                    let [first, second, third] = triangle.vertices.map(Some);
-                    let corner = |place, v, w, vertex| Corner { place, point: Barycentric { v, w }, vertex };
-                    let whole =
-                        [corner(a, 0.0, 0.0, first), corner(b, 1.0, 0.0, second), corner(c, 0.0, 1.0, third)];
-                    split(whole, bounds)
-                }
-                // Said when the scene is built.
+            // Vertices that were not added are an error when the scene is built.
+            let parts = match triangle.vertices.map(|v| self.vertices.get(v.index()).copied()) {
+                [Some(a), Some(b), Some(c)] => split([a, b, c], bounds),
                 _ => None,
             };
             let Some(parts) = parts else {
@@ -291,10 +283,11 @@ impl SceneBuilder {
                 continue;
             };
             for part in parts {
-                let vertices: Vec<VertexId> = part
-                    .iter()
-                    .map(|corner| corner.vertex.unwrap_or_else(|| self.add_vertex(corner.place)))
-                    .collect();
+                let vertex = |corner: &Corner| match corner.own {
+                    Some(i) => triangle.vertices[i],
+                    None => self.add_vertex(corner.place),
+                };
+                let vertices: Vec<VertexId> = part.iter().map(vertex).collect();
                 for i in 2..part.len() {
                     let [a, b, c] = [0, i - 1, i];
                     let corners = self.appearance.part(triangle.corners, [a, b, c].map(|i| part[i].point));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Barycentric, BoundingBox, VertexId};
+use crate::{Barycentric, BoundingBox};
 
 /// Corners that are no farther from a face than this part of the size of the box lie in it.
 const CLOSE: f64 = 1e-9;
@@ -13,16 +13,25 @@ pub(crate) struct Corner {
     pub(crate) place: DVec3,
     /// Where that is in the triangle.
     pub(crate) point: Barycentric,
-    /// Its number, if it is a corner of the triangle itself.
-    pub(crate) vertex: Option<VertexId>,
+    /// Which corner of the triangle it is, if it is one.
+    pub(crate) own: Option<usize>,
 }
 
-/// The convex parts of a triangle: the one in the box is the last. `None` if the triangle lies in the box, or outside of it, as a whole.
+/// The convex parts of a triangle: the one in the box is the last. `None` if the triangle lies in the box, or outside of it, as a whole, or
+/// is nowhere.
 ///
 /// Neighbours get the same corners, to the last bit, on an edge that is cut in both.
-pub(crate) fn split(triangle: [Corner; 3], bounds: &BoundingBox) -> Option<Vec<Vec<Corner>>> {
+pub(crate) fn split(triangle: [DVec3; 3], bounds: &BoundingBox) -> Option<Vec<Vec<Corner>>> {
+    if !triangle.iter().all(|place| place.is_finite()) {
+        return None;
+    }
     let close = CLOSE * bounds.size().max_element();
-    let mut within = triangle.to_vec();
+    let weight = |is: bool| f64::from(u8::from(is));
+    let corner = |(i, &place)| {
+        let point = Barycentric { v: weight(i == 1), w: weight(i == 2) };
+        Corner { place, point, own: Some(i) }
+    };
+    let mut within: Vec<Corner> = triangle.iter().enumerate().map(corner).collect();
     let mut parts = Vec::new();
     for axis in 0..3 {
         for (face, outwards) in [(bounds.min[axis], -1.0), (bounds.max[axis], 1.0)] {
@@ -72,7 +81,7 @@ fn crossing(from: &Corner, to: &Corner, axis: usize, plane: f64) -> Corner {
     let mut place = start.place + part * (end.place - start.place);
     place[axis] = plane;
     let point = Barycentric { v: mix(start.point.v, end.point.v), w: mix(start.point.w, end.point.w) };
-    Corner { place, point, vertex: None }
+    Corner { place, point, own: None }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 
 use crate::bounded::{alone, load_hostile, load_within_bounds, refused};
-use crate::files::{Gltf, png, warnings};
+use crate::files::{Gltf, encoded, png, warnings};
 
 /// Refuses the file of a triangle in whose JSON `change` was made.
 fn refused_after(change: impl FnOnce(&mut Value), words: &[&str]) -> String {
@@ -210,10 +210,7 @@ fn long_and_strange_names_do_not_flood_the_screen() {
 
 /// A PNG image of two colours, which a single one cannot stand for.
 fn two_colours() -> Vec<u8> {
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let image = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([255 * x as u8, 80, 9]));
-    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
-    bytes.into_inner()
+    encoded(image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([255 * x as u8, 80, 9])))
 }
 
 /// A PNG header that claims a size, and the start of its data.

@@ -50,8 +50,13 @@ pub(crate) fn chain(error: &dyn std::error::Error) -> String {
 
 /// A PNG image of one colour.
 pub(crate) fn png(rgb: [u8; 3]) -> Vec<u8> {
+    encoded(image::RgbImage::from_pixel(3, 2, image::Rgb(rgb)))
+}
+
+/// An image as a PNG file.
+pub(crate) fn encoded(image: impl Into<image::DynamicImage>) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
-    image::RgbImage::from_pixel(3, 2, image::Rgb(rgb)).write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    image.into().write_to(&mut bytes, image::ImageFormat::Png).unwrap();
     bytes.into_inner()
 }
 

@@ -1,19 +1,16 @@
 //! Textures, masks and colours of vertices, in both formats.
 
 use glam::{DVec2, DVec3};
-use image::{ImageFormat, Rgba, RgbaImage};
+use image::{Rgba, RgbaImage};
 use serde_json::{Value, json};
 use sir_geom::{Barycentric, Built, Opacity, Rgb, Scene, TextureSums, TriangleId, Wrap};
 
-use crate::files::{Gltf, load_from, warnings};
+use crate::files::{Gltf, encoded, load_from, warnings};
 
 /// An image of 2 × 2 texels: red, green; blue, white. Alpha 255, 128; 0, 51.
 fn four() -> Vec<u8> {
     let texels = [[255, 0, 0, 255], [0, 255, 0, 128], [0, 0, 255, 0], [255, 255, 255, 51]];
-    let image = RgbaImage::from_fn(2, 2, |x, y| Rgba(texels[(2 * y + x) as usize]));
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut bytes, ImageFormat::Png).unwrap();
-    bytes.into_inner()
+    encoded(RgbaImage::from_fn(2, 2, |x, y| Rgba(texels[(2 * y + x) as usize])))
 }
 
 const PLACES: [[f32; 2]; 3] = [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5]];
@@ -307,14 +304,10 @@ fn obj_masks_are_alpha_or_brightness() {
     let material = &alpha.scene.materials()[0];
     assert_eq!(material.opacity.map, material.reflectance_map.map(|colour| colour.map));
     assert_eq!((material.opacity.factor, alpha.scene.textures().len()), (0.5, 1));
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let grey = RgbaImage::from_fn(2, 1, |x, _| Rgba([51 * x as u8, 51 * x as u8, 51 * x as u8, 255]));
-    grey.write_to(&mut bytes, ImageFormat::Png).unwrap();
-    let files: [(&str, &[u8]); 3] = [
-        ("a.obj", text.as_bytes()),
-        ("a.mtl", b"newmtl a\nKd 1 0 0\nmap_d t.png\n"),
-        ("t.png", bytes.get_ref()),
-    ];
+    let grey =
+        encoded(RgbaImage::from_fn(2, 1, |x, _| Rgba([51 * x as u8, 51 * x as u8, 51 * x as u8, 255])));
+    let files: [(&str, &[u8]); 3] =
+        [("a.obj", text.as_bytes()), ("a.mtl", b"newmtl a\nKd 1 0 0\nmap_d t.png\n"), ("t.png", &grey)];
     let bright = load_from("a.obj", &files).unwrap().scene;
     let [texture] = bright.textures() else { panic!("{:?}", bright.textures()) };
     assert_eq!(texture.texels().iter().map(|texel| texel[3]).collect::<Vec<_>>(), [0, 51]);
