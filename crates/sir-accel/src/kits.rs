@@ -4,10 +4,12 @@
 use sir_geom::Line;
 
 use crate::grid::Grid;
-use crate::lanes::Portable;
 #[cfg(target_arch = "x86_64")]
-use crate::lanes::{Avx2, Avx512};
-use crate::search::{self, AllScratch, ClosestScratch, Rays};
+use crate::lanes::avx2::Avx2;
+use crate::lanes::avx512::Avx512;
+use crate::lanes::portable::Portable;
+use crate::search;
+use crate::search::{AllScratch, ClosestScratch, Rays};
 use crate::tree::Tree;
 
 /// The kits, and proof that the processor has what they need: values are only made by [`Kits::available`].
@@ -108,7 +110,9 @@ mod common;
 mod tests {
     use super::common::{KINDS, difficult_line, furnished_room, furnished_room_of};
     use super::*;
-    use crate::{Accel, Hit, Ray, Tracer};
+    use crate::Accel;
+    use crate::hit::Hit;
+    use crate::tracer::{Ray, Tracer};
     use sir_geom::{Opacity, Scene, TriangleId};
     use sir_lines::{Stage, Streams};
 

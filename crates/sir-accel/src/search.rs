@@ -6,7 +6,8 @@
 use sir_geom::{Barycentric, Line, Side, TriangleId};
 
 use crate::grid::{Grid, GridLine, RADIUS};
-use crate::hit::{self, Hit};
+use crate::hit;
+use crate::hit::Hit;
 use crate::lanes::{BOXES, Doubles, Kit, Packed, Singles, TRIANGLES};
 use crate::leaf::Span;
 use crate::tree::{Bound, LEAF, Node, Tree};

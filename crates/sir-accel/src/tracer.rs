@@ -6,7 +6,8 @@ use sir_geom::{Line, Side, TriangleId};
 
 use crate::Accel;
 use crate::grid::{GridLine, RADIUS};
-use crate::hit::{self, Hit};
+use crate::hit;
+use crate::hit::Hit;
 use crate::kits::Kits;
 use crate::leaf::Span;
 use crate::search::{AllScratch, ClosestScratch, LINES, Rays};

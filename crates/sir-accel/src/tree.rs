@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use sir_geom::{Scene, TriangleId};
 
-use crate::build::{self, Hierarchy};
+use crate::build;
+use crate::build::Hierarchy;
 use crate::grid::Grid;
 use crate::lanes::{BOXES, Kit};
 use crate::leaf::Leaf;
@@ -96,7 +97,7 @@ impl Tree {
     /// Begins to bring the place of a triangle to the caches.
     #[inline]
     pub(crate) fn prefetch_place(&self, id: TriangleId) {
-        crate::prefetch(&self.places[id.index()]);
+        crate::memory::prefetch(&self.places[id.index()]);
     }
 
     /// Begins to bring a triangle to the caches.

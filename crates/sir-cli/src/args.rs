@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 
-use crate::experiment::ExperimentArgs;
+use crate::experiment::options::ExperimentArgs;
 use crate::info::InfoArgs;
-use crate::scaling::ScalingArgs;
-use crate::validate::ValidateArgs;
-use crate::viewfactors::ViewFactorsArgs;
+use crate::scaling::options::ScalingArgs;
+use crate::validate::options::ValidateArgs;
+use crate::viewfactors::options::ViewFactorsArgs;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -10,7 +10,7 @@ use sir_radiosity::{
     Batches, Books, Emitter, FirstShot, Model, Quanta, Repeats, SecondShot, SolveError, Source,
 };
 
-use crate::Error;
+use crate::error::Error;
 use crate::fields::grouped;
 use crate::memory;
 use crate::pipeline::{Action, Content, Pipeline, Repeat, Until};

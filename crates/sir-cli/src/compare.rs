@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use sir_view::{BandComparison, Comparison, Table};
 
-use crate::Error;
+use crate::error::Error;
 use crate::run::read_report;
 
 /// Compares two results, each a table or a run directory with one. A run's last table counts.

@@ -9,7 +9,8 @@ use crate::diagnostic::Diagnostics;
 use crate::fields::{ABSURD, Reader, did_you_mean, list, resembling};
 use crate::order::{Named, check_order};
 use crate::pipeline::{Action, Body, Pipeline, Stage, Transport};
-use crate::ron_tree::{self, Node, Value};
+use crate::ron_tree;
+use crate::ron_tree::{Node, Value};
 use crate::units::Units;
 
 const STAGES: [&str; 10] = [

@@ -11,9 +11,9 @@ use sir_view::ViewError;
 use thiserror::Error;
 
 use crate::diagnostic::Diagnostics;
-use crate::experiment::ExperimentError;
-use crate::scaling::ScalingError;
-use crate::validate::ValidationError;
+use crate::experiment::error::ExperimentError;
+use crate::scaling::error::ScalingError;
+use crate::validate::error::ValidationError;
 use crate::viewfactors::ViewFactorsError;
 
 /// Why a command fails. Every message ends with what to do, where that is not obvious.

@@ -4,7 +4,8 @@ use std::fmt::Display;
 use std::ops::Range;
 
 use crate::diagnostic::{Diagnostic, Position};
-use crate::ron_tree::{self, Node, Value};
+use crate::ron_tree;
+use crate::ron_tree::{Node, Value};
 
 /// A largest number of lines or patches that is surely a slip of the pen.
 pub(crate) const ABSURD: u64 = 1_000_000_000_000_000;

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use sir_parallel::Communicator;
 
-use crate::Error;
 use crate::check::bytes;
+use crate::error::Error;
 
 /// Most memory that this process has had in use \[bytes\]; `None` if the operating system does not tell.
 fn peak() -> Option<u64> {

@@ -269,16 +269,17 @@ impl Pipeline {
     /// # Errors
     ///
     /// All problems of the file, or why it cannot be read.
-    pub fn read(path: &Path) -> Result<Self, crate::Error> {
+    pub fn read(path: &Path) -> Result<Self, crate::error::Error> {
         let mut bytes = Vec::new();
         // Also what never ends can be given as a file.
         std::fs::File::open(path)
             .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
-            .map_err(|source| crate::Error::ReadPipeline { path: path.to_owned(), source })?;
+            .map_err(|source| crate::error::Error::ReadPipeline { path: path.to_owned(), source })?;
         if bytes.len() as u64 > LONGEST {
-            return Err(crate::Error::LongPipeline { path: path.to_owned(), most: LONGEST });
+            return Err(crate::error::Error::LongPipeline { path: path.to_owned(), most: LONGEST });
         }
-        let text = String::from_utf8(bytes).map_err(|_| crate::Error::NotText { path: path.to_owned() })?;
+        let text =
+            String::from_utf8(bytes).map_err(|_| crate::error::Error::NotText { path: path.to_owned() })?;
         Ok(Self::parse(&text, path)?)
     }
 

@@ -10,14 +10,14 @@ use sir_mesh::{MeshError, Subdivision};
 use sir_radiosity::{Inside, Model, SolveError, Source, emits, sources};
 use sir_view::guess_up;
 
-use crate::Error;
 use crate::diagnostic::Diagnostic;
+use crate::error::Error;
 use crate::fields::did_you_mean;
 use crate::lights::Lamp;
 use crate::pipeline::{Action, CameraChoice, Content, Pipeline, Stage};
 use crate::progress::Progress;
 use crate::report::Stopwatch;
-use crate::sensors::Layout;
+use crate::sensors::layout::Layout;
 
 /// A pipeline's scene, ready for lines.
 #[derive(Clone, Debug)]

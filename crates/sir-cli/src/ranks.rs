@@ -2,7 +2,7 @@
 
 use sir_parallel::Communicator;
 
-use crate::Error;
+use crate::error::Error;
 use crate::fingerprint::Fingerprint;
 
 /// Lets all ranks fail if one does. The first of those that failed keeps its error, to say it; the others know who does.

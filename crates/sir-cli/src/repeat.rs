@@ -6,8 +6,8 @@ use sir_lines::seed_of_repeat;
 use sir_parallel::{Checkpoints, Communicator, Saved, StageTime};
 use sir_radiosity::{Inside, Model, PowerUnit, RepeatedBooks, Repeats, Solution, Visitor};
 
-use crate::Error;
 use crate::check::duration;
+use crate::error::Error;
 use crate::fields::grouped;
 use crate::lighting::{Done, Lighting};
 use crate::pipeline::{Repeat, Until};

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sir_parallel::{CheckpointError, Communicator, RunError, Saved};
 
-use crate::Error;
-use crate::fingerprint::{self, Fingerprint, PROGRAM};
+use crate::error::Error;
+use crate::fingerprint;
+use crate::fingerprint::{Fingerprint, PROGRAM};
 use crate::pipeline::Pipeline;
 use crate::ranks::{agree, broadcast_text};
 use crate::report::{FILE_NAME, Report};

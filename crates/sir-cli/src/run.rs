@@ -13,17 +13,19 @@ use sir_parallel::{Alone, Checkpoints, Communicator, RunError, Saved};
 use sir_radiosity::Model;
 use sir_view::ViewError;
 
-use crate::Error;
 use crate::check;
 use crate::directory::{absolute, check_given, make_given, make_new, run_name};
-use crate::fingerprint::{self, PROGRAM};
+use crate::error::Error;
+use crate::fingerprint;
+use crate::fingerprint::PROGRAM;
 use crate::memory::largest_peak;
 use crate::pipeline::Pipeline;
 use crate::prepare::{Prepared, prepare};
 use crate::progress::Progress;
 use crate::ranks::{agree, same_everywhere};
 use crate::report::{FILE_NAME, PipelineReport, Report, SceneReport, Stopwatch, Time, VERSION};
-use crate::resume::{self, CHECKPOINT, Head};
+use crate::resume;
+use crate::resume::{CHECKPOINT, Head};
 
 /// How to run a pipeline. None of this changes the result, but for the seed.
 #[derive(Clone, Debug)]

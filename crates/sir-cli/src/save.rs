@@ -8,7 +8,7 @@ use sir_radiosity::{Model, Solution};
 use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, ViewError};
 use sir_view::{default_camera, render, write_exr, write_glb, write_png};
 
-use crate::Error;
+use crate::error::Error;
 use crate::pipeline::{Content, Image, Output};
 use crate::prepare::{Prepared, chosen_camera};
 use crate::progress::Progress;

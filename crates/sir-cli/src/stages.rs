@@ -5,14 +5,15 @@ use std::sync::atomic::Ordering::Relaxed;
 use sir_parallel::{Checkpoints, Crew, RunError, Saved, cores};
 use sir_radiosity::Solution;
 
-use crate::Error;
+use crate::error::Error;
 use crate::lighting::Lighting;
 use crate::pipeline::{Action, Output, Stage, Transport};
 use crate::ranks::agree;
 use crate::report::{ErrorsFrom, ErrorsReport, LinesReport, OutputReport, StageReport, Stopwatch, Time};
 use crate::run::Run;
 use crate::save::save;
-use crate::sensors::{self, Sensors, SensorsReport};
+use crate::sensors;
+use crate::sensors::{Sensors, SensorsReport};
 
 impl Run<'_> {
     /// Runs all stages, or those from the one that `saved` is of.

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec4, Vec2, Vec4};
 
+use crate::color::Rgb;
 use crate::material::Opacity;
-use crate::{
-    Barycentric, ColourMap, MAX_REFLECTANCE, Material, Rgb, Scene, Side, Texture, TextureMap, Triangle,
-    TriangleId,
-};
+use crate::material::{MAX_REFLECTANCE, Material};
+use crate::scene::{Scene, Triangle};
+use crate::texture::{ColourMap, Texture, TextureMap};
+use sir_types::{Barycentric, Side, TriangleId};
 
 /// Textures, and what triangles have at their corners.
 #[derive(Clone, Debug, Default)]

@@ -7,11 +7,17 @@ use glam::{DVec3, Vec2, Vec4};
 use thiserror::Error;
 
 use crate::appearance::{Appearance, Corners};
+use crate::camera::Camera;
+use crate::color::Rgb;
+use crate::index::{FaceId, GroupId, MaterialId, VertexId};
+use crate::light::Light;
+use crate::material::{MAX_REFLECTANCE, Material};
+use crate::polygon;
+use crate::scene::{Scene, Triangle};
+use crate::sky::Sky;
 use crate::split::{Corner, split};
-use crate::{
-    BoundingBox, BoundingSphere, Camera, ColourMap, FaceId, GroupId, Light, MAX_REFLECTANCE, Material,
-    MaterialId, Rgb, Scene, Sky, Texture, TextureId, Triangle, VertexId, polygon,
-};
+use crate::texture::{ColourMap, Texture, TextureId};
+use sir_types::{BoundingBox, BoundingSphere};
 
 /// Why a scene cannot be built.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -445,7 +451,7 @@ impl SceneBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{LightKind, Spread};
+    use crate::light::{LightKind, Spread};
 
     fn corner_triangle(builder: &mut SceneBuilder, scale: f64, material: MaterialId) {
         let v = [DVec3::ZERO, DVec3::X * scale, DVec3::Y * scale].map(|p| builder.add_vertex(p));

@@ -39,13 +39,12 @@
 //! ```
 
 mod appearance;
-mod bounds;
 mod builder;
 mod camera;
+mod color;
 mod hull;
 mod index;
 mod light;
-mod line;
 mod load;
 mod material;
 mod polygon;
@@ -56,26 +55,15 @@ mod split;
 mod texture;
 
 pub use appearance::Opacities;
-pub use bounds::{BoundingBox, BoundingSphere};
 pub use builder::{Built, SceneBuilder, SceneError, Warning};
 pub use camera::{Camera, Projection};
+pub use color::{Rgb, luminance};
 pub use hull::ConvexHull;
-pub use index::{FaceId, GroupId, MaterialId, TriangleId, VertexId};
+pub use index::{FaceId, GroupId, MaterialId, VertexId};
 pub use light::{Arrival, Light, LightKind, Spread};
-pub use line::{Barycentric, Line};
 pub use load::{LoadError, LoadOptions, SidesPolicy, load, load_with};
 pub use material::{MAX_REFLECTANCE, Material, Opacity, Sides};
-pub use scene::{Scene, Side, Triangle};
+pub use scene::{Scene, Triangle};
+pub use sir_types::{Barycentric, BoundingBox, BoundingSphere, Line, Side, TriangleId, typed_index};
 pub use sky::{Sky, SkyModel};
 pub use texture::{ColourMap, Texture, TextureId, TextureMap, TextureMean, TextureSums, Wrap};
-
-/// A colour or a spectral quantity in three bands: linear Rec. 709 red, green and blue.
-///
-/// The unit is that of the quantity: 1 for a reflectance, W/m² for a radiosity, W for a power.
-pub type Rgb = glam::DVec3;
-
-/// A colour weighted as the eye does: the luminance `Y` of linear Rec. 709, `0.2126 R + 0.7152 G + 0.0722 B`.
-#[must_use]
-pub fn luminance(rgb: Rgb) -> f64 {
-    rgb.dot(Rgb::new(0.2126, 0.7152, 0.0722))
-}

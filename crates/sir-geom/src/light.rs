@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::Rgb;
+use crate::color::Rgb;
 
 /// A light that is a point, or infinitely far.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Diffuse materials.
 
-use crate::{ColourMap, Rgb, TextureMap};
+use crate::color::Rgb;
+use crate::texture::{ColourMap, TextureMap};
 
 /// The largest reflectance of a scene in any band.
 ///

@@ -5,32 +5,14 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::appearance::{Appearance, Corners};
+use sir_types::Side;
 
-use crate::{
-    BoundingBox, BoundingSphere, Camera, FaceId, GroupId, Light, Material, MaterialId, Sides, Sky,
-    TriangleId, VertexId,
-};
-
-/// One side of a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Side {
-    /// The side from which the corners run counter-clockwise.
-    Front,
-    /// The other one.
-    Back,
-}
-
-impl Side {
-    /// The opposite side.
-    #[inline]
-    #[must_use]
-    pub fn flip(self) -> Self {
-        match self {
-            Self::Front => Self::Back,
-            Self::Back => Self::Front,
-        }
-    }
-}
+use crate::camera::Camera;
+use crate::index::{FaceId, GroupId, MaterialId, VertexId};
+use crate::light::Light;
+use crate::material::{Material, Sides};
+use crate::sky::Sky;
+use sir_types::{BoundingBox, BoundingSphere, TriangleId};
 
 /// A triangle of a [`Scene`]. Its area is never zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,12 +146,12 @@ impl Scene {
 
     /// Emitted exitance `M` \[W/m²\] of a side of a triangle; with a texture, its mean over the image.
     #[must_use]
-    pub fn exitance(&self, id: TriangleId, side: Side) -> crate::Rgb {
+    pub fn exitance(&self, id: TriangleId, side: Side) -> crate::color::Rgb {
         let material = self.material(id);
         match side {
             Side::Front => material.exitance,
             Side::Back if material.sides == Sides::Both && material.back_emits => material.exitance,
-            Side::Back => crate::Rgb::ZERO,
+            Side::Back => crate::color::Rgb::ZERO,
         }
     }
 

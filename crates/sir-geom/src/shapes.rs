@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::{FaceId, MaterialId, SceneBuilder, VertexId};
+use crate::builder::SceneBuilder;
+use crate::index::{FaceId, MaterialId, VertexId};
 
 /// Where the fronts of a closed shape point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,7 +131,8 @@ fn icosahedron() -> (Vec<DVec3>, Vec<[usize; 3]>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Material, Rgb};
+    use crate::color::Rgb;
+    use crate::material::Material;
 
     #[test]
     fn fronts_point_where_asked() {

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 
-use crate::Rgb;
+use crate::color::Rgb;
 
 /// What lines meet that leave the scene: a dome above, and below it a ground of one radiance.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Barycentric, BoundingBox};
+use sir_types::{Barycentric, BoundingBox};
 
 /// Corners that are no farther from a face than this part of the size of the box lie in it.
 const CLOSE: f64 = 1e-9;
@@ -91,8 +91,12 @@ mod tests {
     use glam::{Vec2, Vec4};
 
     use super::*;
-    use crate::shapes::{self, Facing};
-    use crate::{Material, Rgb, SceneBuilder, TriangleId};
+    use crate::builder::SceneBuilder;
+    use crate::color::Rgb;
+    use crate::material::Material;
+    use crate::shapes;
+    use crate::shapes::Facing;
+    use sir_types::TriangleId;
 
     fn bounds(min: [f64; 3], max: [f64; 3]) -> BoundingBox {
         BoundingBox { min: min.into(), max: max.into() }

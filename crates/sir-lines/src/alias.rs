@@ -1,6 +1,6 @@
 //! Choosing at random in proportion to weights.
 
-use crate::Stream;
+use crate::stream::Stream;
 
 /// A choice among things in proportion to their weights, in the same time for any number of them (Walker 1977; Vose
 /// 1991).
@@ -54,7 +54,7 @@ impl AliasTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Stage, Streams};
+    use crate::stream::{Stage, Streams};
     use proptest::prelude::*;
 
     proptest! {

@@ -5,7 +5,10 @@ use std::sync::Arc;
 use glam::DVec3;
 use sir_geom::{BoundingBox, BoundingSphere, ConvexHull, Line, Scene};
 
-use crate::{Facets, Forecast, Stream, cosine_direction, unit_vector};
+use crate::facets::Facets;
+use crate::forecast::Forecast;
+use crate::local::{cosine_direction, unit_vector};
+use crate::stream::Stream;
 
 /// A convex body around the scene, and the uniform (isotropic) lines through it.
 ///

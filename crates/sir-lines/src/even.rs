@@ -1,6 +1,6 @@
 //! Points that fill a square more evenly than random ones.
 
-use crate::Stream;
+use crate::stream::Stream;
 
 /// The first two powers of the inverse of the plastic number, the real root of `x³ = x + 1`.
 const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
@@ -35,7 +35,7 @@ impl EvenPoints {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Stage, Streams};
+    use crate::stream::{Stage, Streams};
 
     /// Means of a smooth and of a broken function: right on average, with much smaller errors than by independent points.
     #[test]

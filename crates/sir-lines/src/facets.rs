@@ -4,7 +4,8 @@ use glam::DVec3;
 use sir_geom::{ConvexHull, Line};
 
 use crate::alias::AliasTable;
-use crate::{Stream, cosine_direction, point_on_triangle};
+use crate::local::{cosine_direction, point_on_triangle};
+use crate::stream::Stream;
 
 /// The surface of a convex body of flat facets, ready to draw lines from.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,7 +9,9 @@
 
 use sir_geom::{BoundingBox, Line, Scene};
 
-use crate::{Domain, Forecast, Stream};
+use crate::domain::Domain;
+use crate::forecast::Forecast;
+use crate::stream::Stream;
 
 /// How many times as dense lines may be in a focus as elsewhere: power is counted in whole numbers, which have to do for both.
 pub const DENSEST: u32 = 4096;
@@ -189,7 +191,7 @@ mod tests {
     use sir_geom::{Material, Rgb, SceneBuilder};
 
     use super::*;
-    use crate::{Stage, Streams};
+    use crate::stream::{Stage, Streams};
 
     /// A box of 20 × 2 × 20 m, and a focus in a corner of it that reaches beyond the scene.
     fn corner(share: f64) -> GlobalLines {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sir_geom::Barycentric;
 
-use crate::Stream;
+use crate::stream::Stream;
 use crate::turn::sin_cos_of_turn;
 
 /// A uniform point of the unit sphere: its height is uniform (Archimedes), and so is its longitude.
@@ -81,7 +81,7 @@ pub fn point_on_triangle_of([s, t]: [f64; 2]) -> Barycentric {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Stage, Streams};
+    use crate::stream::{Stage, Streams};
 
     #[test]
     fn cosines_have_the_density_of_diffuse_light() {

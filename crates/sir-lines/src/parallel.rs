@@ -3,8 +3,8 @@
 use glam::DVec3;
 use sir_geom::{BoundingBox, Line};
 
-use crate::Stream;
 use crate::domain::axis_of;
+use crate::stream::Stream;
 
 /// The lines of one direction that meet a box, uniform in the plane across them.
 ///
@@ -57,7 +57,7 @@ impl ParallelLines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Stage, Streams};
+    use crate::stream::{Stage, Streams};
 
     /// Any area across the lines gets its share of them: here the shadow of a ball in the box.
     #[test]

@@ -7,7 +7,7 @@ use sir_geom::{
     TextureSums, TriangleId, Wrap,
 };
 
-use crate::{PatchId, PatchMesh};
+use crate::patches::{PatchId, PatchMesh};
 
 /// Properties of the patches of some triangles. Uses 4 bytes per triangle of a scene that has any, and 12 to 28 bytes per
 /// patch of such a triangle.
@@ -198,7 +198,7 @@ impl Images<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Subdivision;
+    use crate::divisions::Subdivision;
     use glam::{DVec3, Vec2, Vec4};
     use sir_geom::{SceneBuilder, Side, Sides, Texture};
 

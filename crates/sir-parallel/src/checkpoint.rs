@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 use sha2::{Digest, Sha256};
 use sir_radiosity::Visitor;
 
-use crate::{CheckpointError, Communicator};
+use crate::communicator::Communicator;
+use crate::error::CheckpointError;
 
 /// First line of a checkpoint: what it is, and the version of its layout.
 const MAGIC: &str = "SIR checkpoint 3";

@@ -8,7 +8,10 @@ use std::time::{Duration, Instant};
 
 use sir_radiosity::{Books, Visitor, share};
 
-use crate::{Alone, CheckpointError, Checkpoints, Communicator, Observer, RunError, Saved, Silent};
+use crate::checkpoint::{Checkpoints, Saved};
+use crate::communicator::{Alone, Communicator};
+use crate::error::{CheckpointError, RunError};
+use crate::observer::{Observer, Silent};
 
 /// Most lines that a thread traces at a time: some milliseconds of work.
 const BLOCK: u64 = 1 << 10;

@@ -4,8 +4,11 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use sir_radiosity::{Measurement, Model, Sensor, SensorSettings, Sensors, Solution, share};
 
+use crate::communicator::Communicator;
+use crate::crew::Crew;
 use crate::crew::{Shift, each};
-use crate::{Communicator, Crew, RunError, StageRun};
+use crate::error::RunError;
+use crate::stages::StageRun;
 
 /// Measures the light of a solution at sensors, in their order. Each is measured by one thread; the numbers are the same whoever it is.
 ///

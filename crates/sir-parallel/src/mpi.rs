@@ -8,7 +8,7 @@ use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator as _, CommunicatorCollectives as _};
 
-use crate::Communicator;
+use crate::communicator::Communicator;
 
 /// Numbers in one message: MPI counts in 32 bits, and a chunk of 512 kB stays in the cache.
 const CHUNK: usize = 1 << 16;

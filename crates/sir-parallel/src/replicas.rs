@@ -5,8 +5,10 @@ use std::sync::Mutex;
 
 use sir_radiosity::{Books, Multipath, MultipathSettings, Replica, Transported, Visitor};
 
+use crate::checkpoint::Saved;
+use crate::communicator::Communicator;
 use crate::crew::{Position, Shift, each};
-use crate::{CheckpointError, Communicator, RunError, Saved};
+use crate::error::{CheckpointError, RunError};
 
 /// The replicas of a transport. Those whose numbers leave the remainder `rank` when divided by the number of ranks belong
 /// to this rank; its threads take them one after the other.

@@ -8,9 +8,11 @@ use sir_radiosity::{
     Transported, Visitor,
 };
 
+use crate::checkpoint::Saved;
+use crate::crew::{Crew, StageTime};
 use crate::crew::{Position, Shift, Work, each};
+use crate::error::RunError;
 use crate::replicas::Replicas;
-use crate::{Crew, RunError, Saved, StageTime};
 
 /// The outcome of a stage and how long it took.
 #[derive(Clone, Debug)]

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use sir_radiosity::{Books, Grouping, Model, ViewFactorLines, ViewFactorSettings, ViewFactors, Visitor};
 
+use crate::crew::Crew;
 use crate::crew::{Position, Shift, Work};
-use crate::{Crew, RunError};
+use crate::error::RunError;
 
 impl Work for ViewFactorLines<'_> {
     fn trace(&self, _thread: usize, lines: Range<u64>, books: &mut Books) {

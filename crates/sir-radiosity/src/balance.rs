@@ -2,7 +2,8 @@
 
 use std::ops::AddAssign;
 
-use crate::{Quanta, Visitor};
+use crate::power::Quanta;
+use crate::state::Visitor;
 
 /// Energy balance of a stage. It closes exactly: `emitted = absorbed + blocked + escaped + unshot`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

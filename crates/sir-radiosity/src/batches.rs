@@ -31,14 +31,20 @@ use sir_geom::TriangleId;
 use sir_lines::{GlobalLines, Stage, Streams};
 use sir_mesh::SideId;
 
+use crate::balance::{Balance, Books};
+use crate::error::SolveError;
+use crate::first_shot::Shot;
 use crate::global;
+use crate::inside::Inside;
 use crate::ledger::{Counters, Ledger, Page, SquareUnit};
+use crate::model::Model;
+use crate::multipath::Transported;
+use crate::power::{PowerUnit, Quanta};
+use crate::received::Received;
 use crate::segments::{End, Segment};
+use crate::solution::Solution;
+use crate::state::Visitor;
 use crate::state::{from_word, to_word, visit_counts, visit_float, visit_slice};
-use crate::{
-    Balance, Books, Inside, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Transported,
-    Visitor,
-};
 
 /// Most parts in which the sources are sent out.
 ///

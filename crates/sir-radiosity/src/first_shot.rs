@@ -9,11 +9,17 @@ use sir_geom::Rgb;
 use sir_lines::{Allocation, LocalLines, Stage, Streams};
 use sir_mesh::SideId;
 
+use crate::balance::{Balance, Books, Counts};
+use crate::error::SolveError;
 use crate::global::AHEAD;
 use crate::ledger::{Counters, HEADROOM, Ledger, SquareUnit};
+use crate::model::Model;
+use crate::power::{PowerUnit, Quanta};
+use crate::received::Received;
+use crate::solution::Solution;
 use crate::sources::{Aimed, Source};
+use crate::state::Visitor;
 use crate::state::visit_counts;
-use crate::{Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Solution, SolveError, Visitor};
 
 /// Rays that are made at a time.
 const RAYS: usize = 1024;

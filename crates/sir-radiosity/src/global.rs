@@ -5,8 +5,9 @@ use std::ops::Range;
 use sir_geom::Line;
 use sir_mesh::SideId;
 
+use crate::balance::Counts;
+use crate::model::Model;
 use crate::segments::{End, Segment, Segments};
-use crate::{Counts, Model};
 
 /// How many records ahead memory is asked for.
 pub(crate) const AHEAD: usize = 40;

@@ -4,7 +4,7 @@ use sir_geom::Side;
 use sir_lines::Focus;
 use sir_mesh::{PatchId, SideId};
 
-use crate::Model;
+use crate::model::Model;
 
 /// The sides that matter: those whose patch lies in the focus with all of its corners. Without a focus, all of them.
 ///

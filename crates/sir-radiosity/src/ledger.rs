@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicI64, AtomicU32};
 
 use sir_mesh::SideId;
 
-use crate::{Quanta, Received, Visitor};
+use crate::power::Quanta;
+use crate::received::Received;
+use crate::state::Visitor;
 
 /// What one side receives and gives: one cache line, so that a line of light touches one place per side.
 ///

@@ -19,13 +19,18 @@ use sir_geom::TriangleId;
 use sir_lines::{Domain, Stage, Streams};
 use sir_mesh::SideId;
 
+use crate::balance::{Balance, Books, Counts};
+use crate::error::SolveError;
+use crate::first_shot::Shot;
 use crate::global;
 use crate::ledger::{Counters, Ledger, Page, SquareUnit};
+use crate::model::Model;
+use crate::power::{PowerUnit, Quanta};
+use crate::received::Received;
 use crate::segments::{End, Segment};
+use crate::solution::Solution;
+use crate::state::Visitor;
 use crate::state::visit_quanta;
-use crate::{
-    Balance, Books, Counts, Model, PowerUnit, Quanta, Received, Shot, Solution, SolveError, Visitor,
-};
 
 /// A sequential transport of power along global lines, in independent replicas.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use std::ops::{Add, AddAssign, Sub};
 
 use sir_geom::Rgb;
 
-use crate::Visitor;
+use crate::state::Visitor;
 use crate::state::visit_float;
 
 /// Power per band in whole quanta of a [`PowerUnit`].

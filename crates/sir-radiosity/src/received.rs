@@ -2,8 +2,9 @@
 
 use sha2::{Digest, Sha256};
 
+use crate::power::Quanta;
+use crate::state::Visitor;
 use crate::state::{visit_floats, visit_quanta};
-use crate::{Quanta, Visitor};
 
 /// Power received per side, with its variance.
 #[derive(Clone, Debug, PartialEq)]

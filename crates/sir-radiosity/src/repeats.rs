@@ -10,8 +10,11 @@
 
 use std::ops::AddAssign;
 
+use crate::balance::{Balance, Counts};
+use crate::power::Quanta;
+use crate::received::Received;
+use crate::state::Visitor;
 use crate::state::{from_word, to_word, visit_counts, visit_slice};
-use crate::{Balance, Counts, Quanta, Received, Visitor};
 
 /// Repeats from which on errors come from their spread.
 pub const ENOUGH: u64 = 8;

@@ -9,10 +9,14 @@ use sir_geom::{Rgb, Side};
 use sir_lines::{LocalLines, Stage};
 use sir_mesh::{PatchId, SideId};
 
+use crate::balance::Books;
 use crate::emitter::Emitter;
+use crate::error::SolveError;
 use crate::first_shot::{FirstShot, FirstShotTally, Shot};
+use crate::inside::Inside;
+use crate::model::Model;
+use crate::power::Quanta;
 use crate::sources::{Aimed, Source};
-use crate::{Books, Inside, Model, Quanta, SolveError};
 
 /// The lines of a second shot.
 #[derive(Clone, Debug)]

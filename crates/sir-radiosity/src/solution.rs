@@ -3,7 +3,9 @@
 use sir_geom::{Rgb, Side, TriangleId};
 use sir_mesh::SideId;
 
-use crate::{Model, PowerUnit, Received};
+use crate::model::Model;
+use crate::power::PowerUnit;
+use crate::received::Received;
 
 /// Irradiance of every side of every patch, with standard errors.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use sir_geom::{LightKind, Rgb, Scene, Side};
 use sir_lines::{DENSEST, Focus, ParallelLines};
 use sir_mesh::{PatchId, PatchMesh};
 
-use crate::Model;
 use crate::emitter::{Emitter, Opening};
+use crate::model::Model;
 
 /// Something that emits.
 #[derive(Clone, Copy, Debug, PartialEq)]

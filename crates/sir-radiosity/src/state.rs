@@ -1,6 +1,6 @@
 //! The state of a stage as a sequence of numbers.
 
-use crate::Quanta;
+use crate::power::Quanta;
 
 /// Goes through the state of a stage.
 ///

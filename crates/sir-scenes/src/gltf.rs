@@ -10,7 +10,7 @@ use glam::{DMat3, DQuat, DVec3};
 use serde_json::{Value, json};
 use sir_geom::{Camera, Material, MaterialId, Projection, Scene, Sides};
 
-use crate::Error;
+use crate::error::Error;
 
 /// `componentType` of 16-bit indices.
 const UNSIGNED_SHORT: u32 = 5123;

@@ -2,9 +2,8 @@
 
 use sir_geom::{Rgb, Scene, SceneError};
 
-use crate::{
-    SphereShell, airplane_cabin, concentric_spheres, cornell_box, furnace, museum_stairs, reading_room,
-};
+use crate::exact::{SphereShell, concentric_spheres, furnace};
+use crate::{airplane_cabin, cornell_box, museum_stairs, reading_room};
 
 /// Reflectance of the stored furnace: the radiosity is 2, 5 and 10 W/m².
 pub const FURNACE_REFLECTANCE: Rgb = Rgb::new(0.5, 0.8, 0.9);

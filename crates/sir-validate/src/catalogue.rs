@@ -1,9 +1,10 @@
 //! Which case is run how.
 
 use crate::data::Case;
+use crate::error::ValidateError;
 use crate::points::Setting;
 use crate::trial::Trial;
-use crate::{ValidateError, cube, factors, flux, points, radiosity};
+use crate::{cube, factors, flux, points, radiosity};
 
 /// What is to be done for a case.
 pub(crate) enum Plan<'a> {

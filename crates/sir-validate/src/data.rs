@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::ValidateError;
+use crate::error::ValidateError;
 
 /// The file names, in the order of [`Reference::parse`].
 pub const FILES: [&str; 3] = ["view-factors.json", "radiosity-exact.json", "cie171.json"];

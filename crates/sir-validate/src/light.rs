@@ -6,8 +6,8 @@ use sir_mesh::Subdivision;
 use sir_parallel::{Crew, RunError, batches, first_shot, second_shot};
 use sir_radiosity::{Model, Solution};
 
-use crate::ValidateError;
 use crate::data::Surface;
+use crate::error::ValidateError;
 use crate::shape;
 
 /// What a surface emits (exitance `M`) and reflects, per band.

@@ -6,10 +6,11 @@ use serde::Deserialize;
 use sir_geom::Rgb;
 
 use crate::data::{Case, Shape, Surface};
+use crate::error::ValidateError;
 use crate::light::{Paint, means, per_face, scene, solve};
 use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
-use crate::{Effort, ValidateError};
+use crate::validate::Effort;
 
 /// Lines of a run in a room of flat walls.
 const FLAT_LINES: u64 = 400_000;
@@ -186,7 +187,7 @@ mod tests {
     use std::num::NonZeroUsize;
 
     use super::*;
-    use crate::Reference;
+    use crate::data::Reference;
     use crate::estimate::Estimate;
     use sir_parallel::Crew;
 

@@ -1,6 +1,7 @@
 //! The report as text.
 
-use crate::{Check, Effort, LIMIT, Outcome, Report, Verdict};
+use crate::check::{Check, LIMIT, Verdict};
+use crate::validate::{Effort, Outcome, Report};
 
 /// The rows of a table: answers that stand alone, and of each group the one that is farthest off.
 fn rows(checks: &[Check]) -> Vec<(String, &Check)> {

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use sir_geom::{Light, LightKind, Material, Rgb, SceneBuilder, Sky, SkyModel, Spread};
 
-use crate::ValidateError;
 use crate::data::{Case, PointSource, Shape, Surface};
+use crate::error::ValidateError;
 use crate::light::{Paint, builder};
 use crate::shape::SEGMENTS;
 

@@ -3,9 +3,10 @@
 use sir_parallel::{Crew, RunError};
 
 use crate::bench::Bench;
+use crate::check::Check;
+use crate::error::ValidateError;
 use crate::estimate::Estimate;
 use crate::validate::Effort;
-use crate::{Check, ValidateError};
 
 /// Runs of which a first estimate of the noise is made.
 const FIRST_RUNS: usize = 16;

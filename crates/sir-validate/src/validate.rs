@@ -6,8 +6,10 @@ use serde::Serialize;
 
 use crate::bench::{Bench, Watcher};
 use crate::catalogue::plan;
+use crate::check::{Check, Verdict};
 use crate::data::Case;
-use crate::{Check, Reference, ValidateError, Verdict};
+use crate::data::Reference;
+use crate::error::ValidateError;
 
 /// How precise answers have to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

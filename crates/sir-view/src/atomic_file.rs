@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::ViewError;
+use crate::error::ViewError;
 
 /// Writes a file by way of a temporary one beside it, which takes the file's name only when it is complete and
 /// on disk. Nobody ever sees half a file, and an older file of that name stays until the new one is there.

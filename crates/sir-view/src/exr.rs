@@ -9,7 +9,9 @@ use exr::prelude::{
     WritableImage,
 };
 
-use crate::{Picture, ViewError, write_atomically};
+use crate::atomic_file::write_atomically;
+use crate::error::ViewError;
+use crate::picture::Picture;
 
 /// Rec. 709 primaries and D65 white, CIE 1931 xy.
 const REC_709: Chromaticities = Chromaticities {

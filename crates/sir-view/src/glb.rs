@@ -10,9 +10,12 @@ use glam::{DQuat, DVec3, Vec3};
 use serde_json::{Value, json};
 use sir_geom::{Barycentric, Camera, Projection, TriangleId};
 
+use crate::atomic_file::write_atomically;
+use crate::display::DisplayMesh;
+use crate::error::ViewError;
 use crate::picture::camera_axes;
+use crate::tone::Exposure;
 use crate::tone::{rgb, tone_map};
-use crate::{DisplayMesh, Exposure, ViewError, write_atomically};
 
 const ARRAY_BUFFER: u32 = 34_962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;

@@ -7,7 +7,10 @@ use sir_accel::{Accel, Hit, Ray, Tracer};
 use sir_geom::{Camera, Line, Projection, Rgb, Scene};
 use sir_lines::{Stage, Streams};
 
-use crate::{DisplayMesh, Exposure, ViewError, luminance};
+use crate::display::DisplayMesh;
+use crate::error::ViewError;
+use crate::tone::Exposure;
+use sir_geom::luminance;
 
 /// A picture of linear radiance.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,8 +7,11 @@ use image::ExtendedColorType;
 use image::ImageEncoder;
 use image::codecs::png::PngEncoder;
 
+use crate::atomic_file::write_atomically;
+use crate::error::ViewError;
+use crate::picture::Picture;
+use crate::tone::Exposure;
 use crate::tone::{rgb, srgb, tone_map};
-use crate::{Exposure, Picture, ViewError, write_atomically};
 
 /// Writes a picture as PNG: 8-bit sRGB after exposure and tone curve.
 ///

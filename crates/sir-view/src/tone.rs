@@ -2,7 +2,8 @@
 
 use sir_geom::{Rgb, luminance};
 
-use crate::{DisplayMesh, Picture};
+use crate::display::DisplayMesh;
+use crate::picture::Picture;
 
 /// How bright a picture is made.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

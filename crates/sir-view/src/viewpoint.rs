@@ -6,8 +6,9 @@ use glam::DVec3;
 use sir_accel::{Accel, Tracer};
 use sir_geom::{Camera, Scene, TriangleId};
 
+use crate::display::DisplayMesh;
 use crate::picture::CameraRays;
-use crate::{DisplayMesh, luminance};
+use sir_geom::luminance;
 
 /// Vertical field of view \[rad\]: about 65°, wide enough for rooms.
 const FIELD: f64 = 1.13;

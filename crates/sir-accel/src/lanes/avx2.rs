@@ -3,7 +3,7 @@
 
 use std::arch::x86_64::*;
 
-use super::{BOXES, Doubles, Kit, Packed, Singles, TRIANGLES, sort_by_insertion};
+use crate::lanes::{BOXES, Doubles, Kit, Packed, Singles, TRIANGLES, sort_by_insertion};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx2;

@@ -3,8 +3,8 @@
 
 use std::arch::x86_64::*;
 
-use super::avx2::{Float8, sort4, sort8};
-use super::{BOXES, Doubles, Kit, Packed, Singles, TRIANGLES, sort_by_insertion};
+use crate::lanes::avx2::{Float8, sort4, sort8};
+use crate::lanes::{BOXES, Doubles, Kit, Packed, Singles, TRIANGLES, sort_by_insertion};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512;

@@ -1,6 +1,6 @@
 //! Arrays, for any processor.
 
-use super::{BOXES, Doubles, Kit, Packed, Singles, TRIANGLES, sort_by_insertion};
+use crate::lanes::{BOXES, Doubles, Kit, Packed, Singles, TRIANGLES, sort_by_insertion};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Portable;

@@ -4,9 +4,9 @@ use serde::Serialize;
 use sir_geom::Rgb;
 use sir_view::{Table, compare, luminance};
 
-use super::runs::Done;
-use super::subject::{DIRECT, TABLE};
-use crate::Error;
+use crate::error::Error;
+use crate::experiment::runs::Done;
+use crate::experiment::subject::{DIRECT, TABLE};
 
 /// A number for luminance and for each band.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

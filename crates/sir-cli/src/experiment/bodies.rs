@@ -3,10 +3,11 @@
 use serde::Serialize;
 use sir_radiosity::Model;
 
-use super::crossings::{count, scaled};
-use super::markdown::{self, Grid, percent};
-use super::runs::Runs;
-use crate::Error;
+use crate::error::Error;
+use crate::experiment::crossings::{count, scaled};
+use crate::experiment::markdown;
+use crate::experiment::markdown::{Grid, percent};
+use crate::experiment::runs::Runs;
 use crate::pipeline::Body;
 
 /// Lines through each body, before they are scaled, and how few they may be.

@@ -5,8 +5,8 @@ use std::ops::Range;
 use sir_lines::{Domain, Stage, Streams};
 use sir_radiosity::Model;
 
-use super::runs::Runs;
-use crate::Error;
+use crate::error::Error;
+use crate::experiment::runs::Runs;
 
 /// Lines that are drawn before they are traced together.
 const BLOCK: u64 = 1 << 12;

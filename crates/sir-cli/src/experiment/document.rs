@@ -2,19 +2,20 @@
 
 use serde::Serialize;
 
-use super::Part;
-use super::bodies::Bodies;
-use super::farm::Farm;
-use super::lines::Lines;
-use super::machine::Machine;
-use super::markdown::{Grid, count, megabytes};
-use super::mix::Mix;
-use super::paper::CITATION;
-use super::precision::Precision;
-use super::speed::Speed;
-use super::spread::Unevenness;
-use super::verdict::{self, Claim};
-use crate::scaling::counted;
+use crate::experiment::bodies::Bodies;
+use crate::experiment::farm::Farm;
+use crate::experiment::lines::Lines;
+use crate::experiment::machine::Machine;
+use crate::experiment::markdown::{Grid, count, megabytes};
+use crate::experiment::mix::Mix;
+use crate::experiment::options::Part;
+use crate::experiment::paper::CITATION;
+use crate::experiment::precision::Precision;
+use crate::experiment::speed::Speed;
+use crate::experiment::spread::Unevenness;
+use crate::experiment::verdict;
+use crate::experiment::verdict::Claim;
+use crate::scaling::workers::counted;
 
 /// Version of the layout of `report.json`.
 pub(crate) const VERSION: u32 = 1;

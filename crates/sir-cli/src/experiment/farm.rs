@@ -2,15 +2,15 @@
 
 use serde::Serialize;
 
-use super::accuracy::{Bands, Reference, power};
-use super::markdown::{Grid, percent, signed_percent};
-use super::runs::{Done, Runs, Wanted};
-use super::speed;
-use super::subject::{Changes, DIRECT, Subject, TABLE};
-use crate::Error;
+use crate::error::Error;
+use crate::experiment::accuracy::{Bands, Reference, power};
+use crate::experiment::markdown::{Grid, percent, signed_percent};
+use crate::experiment::runs::{Done, Runs, Wanted};
+use crate::experiment::speed;
+use crate::experiment::subject::{Changes, DIRECT, Subject, TABLE};
 use crate::pipeline::Transport;
 use crate::report::Report;
-use crate::scaling::seconds;
+use crate::scaling::table::seconds;
 
 /// Numbers of replicas.
 const REPLICAS: [u64; 3] = [1, 8, 64];

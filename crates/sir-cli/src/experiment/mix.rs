@@ -4,16 +4,16 @@ use std::io;
 
 use serde::Serialize;
 
-use super::accuracy::{Accuracy, Reference};
-use super::curves::Diagram;
-use super::lines::{Lines, Rates};
-use super::markdown::{Grid, count, percent, whole_percent};
-use super::paper::BEST_SHARE;
-use super::runs::{Runs, Wanted};
-use super::speed;
-use super::subject::{Changes, Subject, TABLE};
-use crate::Error;
-use crate::scaling::seconds;
+use crate::error::Error;
+use crate::experiment::accuracy::{Accuracy, Reference};
+use crate::experiment::curves::Diagram;
+use crate::experiment::lines::{Lines, Rates};
+use crate::experiment::markdown::{Grid, count, percent, whole_percent};
+use crate::experiment::paper::BEST_SHARE;
+use crate::experiment::runs::{Runs, Wanted};
+use crate::experiment::speed;
+use crate::experiment::subject::{Changes, Subject, TABLE};
+use crate::scaling::table::seconds;
 
 /// Shares of local lines that are tried \[%\].
 const SHARES: [u32; 10] = [5, 10, 20, 30, 40, 50, 60, 70, 80, 90];

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use serde::Serialize;
 
-use crate::scaling::Plan;
 use crate::scaling::options::{MPIRUN, command, workers};
+use crate::scaling::workers::Plan;
 
 /// What to redo, and how.
 #[derive(Debug, clap::Args)]

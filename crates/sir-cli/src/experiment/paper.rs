@@ -4,8 +4,10 @@
 
 use serde::Serialize;
 
-use super::lines::Lines;
-use crate::scaling::{Overhead, Part, Row, Spread, Workers};
+use crate::experiment::lines::Lines;
+use crate::scaling::statistics::{Overhead, Part, Spread};
+use crate::scaling::study::Row;
+use crate::scaling::workers::Workers;
 
 /// The publication, for the report.
 pub(crate) const CITATION: &str =

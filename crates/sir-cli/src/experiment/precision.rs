@@ -3,11 +3,11 @@
 use serde::Serialize;
 use sir_view::Table;
 
-use super::accuracy::{Accuracy, Bands, Reference};
-use super::lines::Lines;
-use super::markdown::{Grid, count, percent, signed_percent};
-use crate::Error;
 use crate::check::duration;
+use crate::error::Error;
+use crate::experiment::accuracy::{Accuracy, Bands, Reference};
+use crate::experiment::lines::Lines;
+use crate::experiment::markdown::{Grid, count, percent, signed_percent};
 
 /// What the part finds.
 #[derive(Clone, Debug, PartialEq, Serialize)]

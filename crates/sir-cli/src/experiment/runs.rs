@@ -8,17 +8,17 @@ use std::path::{Path, PathBuf};
 
 use sir_view::Table;
 
-use super::agenda::Agenda;
-use super::subject::{Changes, Subject, TABLE};
-use crate::Error;
 use crate::check::duration;
+use crate::error::Error;
+use crate::experiment::agenda::Agenda;
+use crate::experiment::subject::{Changes, Subject, TABLE};
 use crate::fingerprint::PROGRAM;
 use crate::progress::Progress;
 use crate::report::{Report, Stopwatch};
 use crate::resume::CHECKPOINT;
 use crate::run::read_report;
-use crate::scaling::Workers;
 use crate::scaling::launch::{Launcher, NO_CHECKPOINTS};
+use crate::scaling::workers::Workers;
 
 /// Name of the pipeline file in a run's directory.
 const PIPELINE: &str = "pipeline.ron";

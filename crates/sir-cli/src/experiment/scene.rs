@@ -2,15 +2,16 @@
 
 use std::fs;
 
-use super::accuracy::Reference;
-use super::document::{SceneFindings, figures};
-use super::runs::{Done, Runs, Wanted};
-use super::subject::{Changes, Subject, TABLE};
-use super::{ExperimentArgs, Part, bodies, farm, mix, precision, speed, spread, write_file};
-use crate::Error;
+use crate::error::Error;
+use crate::experiment::accuracy::Reference;
+use crate::experiment::document::{SceneFindings, figures};
+use crate::experiment::options::{ExperimentArgs, Part};
+use crate::experiment::runs::{Done, Runs, Wanted};
+use crate::experiment::subject::{Changes, Subject, TABLE};
+use crate::experiment::{bodies, farm, mix, precision, speed, spread, write_file};
 use crate::prepare::prepare;
 use crate::progress::Progress;
-use crate::scaling::{Plan, Workers};
+use crate::scaling::workers::{Plan, Workers};
 
 /// Parts that compare with the reference.
 const COMPARING: [Part; 3] = [Part::Error, Part::Mix, Part::Farm];

@@ -4,15 +4,21 @@ use std::io;
 
 use serde::Serialize;
 
-use super::lines::Rates;
-use super::markdown::{Grid, megabytes};
-use super::paper::{self, MACHINE, P, Published, Times};
-use super::runs::{Runs, Wanted};
-use super::subject::Subject;
-use crate::Error;
+use crate::error::Error;
+use crate::experiment::lines::Rates;
+use crate::experiment::markdown::{Grid, megabytes};
+use crate::experiment::paper;
+use crate::experiment::paper::{MACHINE, P, Published, Times};
+use crate::experiment::runs::{Runs, Wanted};
+use crate::experiment::subject::Subject;
 use crate::progress::Progress;
 use crate::report::Report;
-use crate::scaling::{Part, Plan, Row, Study, Workers, markdown, measure, seconds, svg_beside};
+use crate::scaling::measure;
+use crate::scaling::plot::svg_beside;
+use crate::scaling::statistics::Part;
+use crate::scaling::study::{Row, Study};
+use crate::scaling::table::{markdown, seconds};
+use crate::scaling::workers::{Plan, Workers};
 
 /// How long the parts of one run took \[s\], and its memory.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

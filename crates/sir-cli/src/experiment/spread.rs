@@ -3,14 +3,15 @@
 use serde::Serialize;
 use sir_radiosity::Model;
 
-use super::crossings::{count, scaled};
-use super::markdown::{self, Grid, percent, signed_percent};
-use super::paper::P;
-use super::runs::Runs;
-use super::subject::Subject;
-use crate::Error;
+use crate::error::Error;
+use crate::experiment::crossings::{count, scaled};
+use crate::experiment::markdown;
+use crate::experiment::markdown::{Grid, percent, signed_percent};
+use crate::experiment::paper::P;
+use crate::experiment::runs::Runs;
+use crate::experiment::subject::Subject;
 use crate::report::Stopwatch;
-use crate::scaling::seconds;
+use crate::scaling::table::seconds;
 
 /// Lines, before they are scaled, and how few they may be.
 const LINES: (u64, u64) = (4_000_000, 200_000);

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-use super::ExperimentError;
-use super::lines::{Lines, fitted};
-use super::ron_text;
-use crate::Error;
 use crate::directory::{absolute, run_name};
+use crate::error::Error;
+use crate::experiment::error::ExperimentError;
+use crate::experiment::lines::{Lines, fitted};
+use crate::experiment::ron_text;
 use crate::fingerprint::hex;
 use crate::pipeline::{Action, Body, Content, Output, Pipeline, Stage, Transport};
 

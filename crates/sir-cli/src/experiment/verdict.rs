@@ -4,14 +4,14 @@
 
 use serde::Serialize;
 
-use super::bodies::Bodies;
-use super::farm::Farm;
-use super::markdown::{percent, signed_percent, whole_percent};
-use super::mix::{Best, Mix};
-use super::paper::{BEST_SHARE, EFFICIENCY, EMPTY_SHARE, P, SPHERE_TO_BOX};
-use super::speed::Speed;
-use super::spread::Unevenness;
-use crate::scaling::Row;
+use crate::experiment::bodies::Bodies;
+use crate::experiment::farm::Farm;
+use crate::experiment::markdown::{percent, signed_percent, whole_percent};
+use crate::experiment::mix::{Best, Mix};
+use crate::experiment::paper::{BEST_SHARE, EFFICIENCY, EMPTY_SHARE, P, SPHERE_TO_BOX};
+use crate::experiment::speed::Speed;
+use crate::experiment::spread::Unevenness;
+use crate::scaling::study::Row;
 
 /// Whether a claim holds here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -220,7 +220,8 @@ pub(crate) fn of_farm(farm: &Farm) -> Vec<Claim> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scaling::{Plan, Study, Timing};
+    use crate::scaling::study::{Study, Timing};
+    use crate::scaling::workers::Plan;
     use std::num::NonZeroUsize;
 
     /// Verdicts on runs of 1, 2, … threads that take so long.

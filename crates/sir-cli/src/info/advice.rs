@@ -3,10 +3,10 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use super::lines::{Fates, Lines};
-use super::numbers::Info;
-use super::text::{length, percent};
 use crate::fields::grouped;
+use crate::info::lines::{Fates, Lines};
+use crate::info::numbers::Info;
+use crate::info::text::{length, percent};
 
 /// A share of lines that is more than a crack between surfaces.
 const SOME: f64 = 0.01;

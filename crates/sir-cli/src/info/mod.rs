@@ -13,7 +13,7 @@ pub use lines::{Fates, Global, Lines};
 pub use numbers::{Group, Info, Lights, MaterialInfo, Textures, inspect};
 pub use shape::{Dominant, Extent, Twins};
 
-use crate::Error;
+use crate::error::Error;
 
 /// What to read, and how to tell it.
 #[derive(Debug, clap::Args)]

@@ -9,12 +9,15 @@ use sir_geom::{LoadOptions, Scene, Sides, Warning};
 use sir_mesh::{PatchMesh, Subdivision};
 use sir_radiosity::{Source, sources};
 
-use super::advice::{self, Setting};
-use super::lines::{self, Lines};
-use super::shape::{self, Dominant, Extent, Twins, sums};
-use crate::Error;
 use crate::check::kinds;
+use crate::error::Error;
 use crate::fingerprint::PROGRAM;
+use crate::info::advice;
+use crate::info::advice::Setting;
+use crate::info::lines;
+use crate::info::lines::Lines;
+use crate::info::shape;
+use crate::info::shape::{Dominant, Extent, Twins, sums};
 use crate::prepare::up;
 
 /// Version of the JSON text.

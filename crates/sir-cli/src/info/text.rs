@@ -1,9 +1,9 @@
 //! What is in a scene, for people.
 
-use super::advice::dimensions;
-use super::lines::Fates;
-use super::numbers::{Info, MaterialInfo, Textures};
 use crate::fields::grouped;
+use crate::info::advice::dimensions;
+use crate::info::lines::Fates;
+use crate::info::numbers::{Info, MaterialInfo, Textures};
 
 /// Most materials, warnings, parts and cameras that are listed.
 const MOST: usize = 20;

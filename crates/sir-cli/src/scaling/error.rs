@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::Workers;
+use crate::scaling::workers::Workers;
 
 /// Why speed-ups cannot be measured.
 #[derive(Debug, Error)]

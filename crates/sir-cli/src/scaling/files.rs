@@ -3,10 +3,10 @@
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use super::statistics::{Overhead, Part, Spread};
-use super::study::{Row, Study};
-use super::{plot, table};
-use crate::Error;
+use crate::error::Error;
+use crate::scaling::statistics::{Overhead, Part, Spread};
+use crate::scaling::study::{Row, Study};
+use crate::scaling::{plot, table};
 
 /// The file that tells that a directory has a measurement: it is written last.
 pub(crate) const JSON: &str = "scaling.json";

@@ -7,9 +7,10 @@ use std::process::{Command, Output, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-use super::{ScalingError, Workers};
-use crate::Error;
+use crate::error::Error;
 use crate::report::Report;
+use crate::scaling::error::ScalingError;
+use crate::scaling::workers::Workers;
 
 /// Open MPI refuses to start as root, as which one is in a container, unless it is told twice. Others ignore
 /// it.

@@ -6,7 +6,7 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::series::{Kind, Stage};
+use crate::scaling::series::{Kind, Stage};
 
 /// The picture.
 pub(crate) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;

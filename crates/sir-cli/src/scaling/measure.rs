@@ -1,11 +1,13 @@
 //! Measuring: all runs of a plan, one after the other.
 
-use super::study::Timing;
-use super::{Plan, Study, Workers, same};
-use crate::Error;
 use crate::check::duration;
+use crate::error::Error;
 use crate::progress::Progress;
 use crate::report::{Report, Stopwatch};
+use crate::scaling::same;
+use crate::scaling::study::Study;
+use crate::scaling::study::Timing;
+use crate::scaling::workers::{Plan, Workers};
 
 /// Makes the runs of a plan with `run`, one at a time and interleaved, and evaluates their times. `name` is
 /// that of the pipeline, `cores` the number of cores of the machine.

@@ -13,18 +13,18 @@
 //! * [`Study`]: times, speed-ups and efficiencies, as [`text`], [`markdown`], [`csv`], [`json`] and [`svg`].
 
 pub(crate) mod axis;
-mod error;
+pub(crate) mod error;
 mod files;
 pub(crate) mod launch;
 pub(crate) mod legend;
 mod measure;
 pub(crate) mod options;
-mod plot;
+pub(crate) mod plot;
 mod same;
 mod series;
-mod statistics;
-mod study;
-mod table;
+pub(crate) mod statistics;
+pub(crate) mod study;
+pub(crate) mod table;
 pub(crate) mod workers;
 
 use std::fs;
@@ -37,13 +37,11 @@ pub use options::ScalingArgs;
 pub use plot::{svg, svg_beside};
 pub use statistics::{Overhead, Part, Spread};
 pub use study::{Row, Study, Timing, VERSION};
-pub(crate) use table::seconds;
 pub use table::{markdown, text};
-pub(crate) use workers::counted;
 pub use workers::{Plan, Workers};
 
-use crate::Error;
 use crate::directory::{absolute, make_new, run_name};
+use crate::error::Error;
 use crate::interrupt;
 use crate::pipeline::Pipeline;
 use crate::progress::Progress;

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use super::Plan;
+use crate::scaling::workers::Plan;
 
 /// What to measure.
 #[derive(Debug, clap::Args)]

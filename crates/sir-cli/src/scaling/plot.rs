@@ -5,12 +5,14 @@ use std::io;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use super::axis::Axis;
-use super::legend::{Canvas, Failure, GREY, INK, Pixel, ROW, draw_legend, draw_line, draw_mark, write};
-use super::series::{Kind, Stage, kinds, stages};
-use super::statistics::Part;
-use super::study::{Row, Study};
-use super::workers::counted;
+use crate::scaling::axis::Axis;
+use crate::scaling::legend::{
+    Canvas, Failure, GREY, INK, Pixel, ROW, draw_legend, draw_line, draw_mark, write,
+};
+use crate::scaling::series::{Kind, Stage, kinds, stages};
+use crate::scaling::statistics::Part;
+use crate::scaling::study::{Row, Study};
+use crate::scaling::workers::counted;
 
 const WIDTH: u32 = 1000;
 const TITLE: u32 = 44;

@@ -1,7 +1,8 @@
 //! All runs of a measurement must have the same result.
 
-use super::{ScalingError, Workers};
 use crate::report::{Report, StageReport};
+use crate::scaling::error::ScalingError;
+use crate::scaling::workers::Workers;
 
 /// A run: its workers, and which repeat it is, from 1.
 pub(crate) type Which = (Workers, usize);

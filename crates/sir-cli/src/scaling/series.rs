@@ -2,9 +2,9 @@
 
 use plotters::style::RGBColor;
 
-use super::statistics::Part;
-use super::study::{Row, Study};
-use super::workers::{Workers, counted};
+use crate::scaling::statistics::Part;
+use crate::scaling::study::{Row, Study};
+use crate::scaling::workers::{Workers, counted};
 
 /// A part of the run, and how its lines look. The colours differ for the colour-blind, too (Okabe and Ito).
 #[derive(Clone, Copy)]
@@ -95,7 +95,8 @@ pub(crate) fn kinds(study: &Study) -> Vec<Kind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scaling::{Plan, Timing};
+    use crate::scaling::study::Timing;
+    use crate::scaling::workers::Plan;
     use std::num::NonZeroUsize;
 
     fn study(ranks: &[usize], threads: &[usize]) -> Study {

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::statistics::{Overhead, Part, Spread};
-use super::workers::counted;
-use super::{Plan, Workers};
 use crate::report::Report;
+use crate::scaling::statistics::{Overhead, Part, Spread};
+use crate::scaling::workers::counted;
+use crate::scaling::workers::{Plan, Workers};
 
 /// Version of the layout of `scaling.json`.
 pub const VERSION: u32 = 1;

@@ -1,8 +1,8 @@
 //! The measurements as a table, for people.
 
-use super::series::stages;
-use super::statistics::{Overhead, Part};
-use super::study::{MARK, Row, Study};
+use crate::scaling::series::stages;
+use crate::scaling::statistics::{Overhead, Part};
+use crate::scaling::study::{MARK, Row, Study};
 
 /// Columns about one thing.
 struct Group {

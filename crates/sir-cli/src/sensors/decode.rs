@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use glam::DVec3;
 use sir_radiosity::{Sensor, SensorSettings};
 
-use super::{Grid, Place, Plane, Sensors, points_file};
 use crate::decode::Decoder;
 use crate::fields::Fields;
 use crate::pipeline::Action;
 use crate::ron_tree::{Node, Value};
+use crate::sensors::{Grid, Place, Plane, Sensors, points_file};
 
 const PLACES: [&str; 4] = ["Points", "File", "Grid", "Plane"];
 const DEFAULT_RAYS: u64 = 16_384;

@@ -5,7 +5,7 @@ use sir_accel::{Ray, Tracer};
 use sir_geom::{Line, Scene};
 use sir_radiosity::{LIFT, Model, Sensor};
 
-use super::{Grid, Place, Plane};
+use crate::sensors::{Grid, Place, Plane};
 
 /// Most cells of a grid.
 const MOST: f64 = 1e6;

@@ -1,7 +1,7 @@
 //! The stage `Sensors`: irradiance at points and on grids.
 
 mod decode;
-mod layout;
+pub(crate) mod layout;
 mod points_file;
 mod write;
 

@@ -7,9 +7,10 @@ use std::path::Path;
 use sir_radiosity::{Measurement, Sensor};
 use sir_view::{Map, ViewError, write_atomically, write_map};
 
-use super::{Cells, Layout, Sensors, SensorsReport};
-use crate::Error;
+use crate::error::Error;
 use crate::report::OutputReport;
+use crate::sensors::layout::{Cells, Layout};
+use crate::sensors::{Sensors, SensorsReport};
 use crate::units::Units;
 
 /// Columns of the table.

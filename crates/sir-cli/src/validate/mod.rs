@@ -1,7 +1,7 @@
 //! `sir validate`: cases whose answers are known.
 
-mod error;
-mod options;
+pub(crate) mod error;
+pub(crate) mod options;
 mod watch;
 
 use std::fs;
@@ -12,7 +12,7 @@ pub use error::ValidationError;
 pub use options::ValidateArgs;
 use sir_validate::{Effort, FILES, Reference, Settings, validate};
 
-use crate::Error;
+use crate::error::Error;
 use crate::interrupt;
 use crate::progress::Progress;
 use watch::Watch;

@@ -3,8 +3,8 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::report::{Matrix, Report};
-use crate::Error;
+use crate::error::Error;
+use crate::viewfactors::report::{Matrix, Report};
 
 /// The file that tells that a directory has view factors: it is written last.
 pub(super) const JSON: &str = "viewfactors.json";

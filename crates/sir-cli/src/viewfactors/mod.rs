@@ -1,7 +1,7 @@
 //! `sir viewfactors`: view factors between the materials or the named parts of a scene.
 
 mod files;
-mod options;
+pub(crate) mod options;
 mod report;
 mod text;
 
@@ -18,7 +18,7 @@ use thiserror::Error as ThisError;
 
 pub use options::{By, SidesOption, ViewFactorsArgs};
 
-use crate::Error;
+use crate::error::Error;
 use crate::fields::grouped;
 use crate::fingerprint;
 use crate::progress::Progress;

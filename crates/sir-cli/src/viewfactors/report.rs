@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use sir_radiosity::{Closed, ClosureError, Receiver, ViewFactors};
 
-use super::{By, SidesOption, ViewFactorsArgs};
 use crate::fingerprint::PROGRAM;
+use crate::viewfactors::options::{By, SidesOption, ViewFactorsArgs};
 
 /// Version of the JSON file.
 const VERSION: u32 = 1;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::report::{Matrix, Report};
 use crate::fields::grouped;
+use crate::viewfactors::report::{Matrix, Report};
 
 /// Most groups whose table is printed.
 const GROUPS: usize = 12;

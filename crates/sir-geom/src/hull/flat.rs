@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::grid::winding;
+use crate::hull::grid::winding;
 
 /// The triangles of a polygon and, turned over, of its other side, by the numbers of the points. `base` is a triangle
 /// with an area.

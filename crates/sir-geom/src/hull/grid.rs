@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::BoundingBox;
+use sir_types::BoundingBox;
 
 /// Most steps of the grid along an axis: 128 bits then hold every determinant.
 const STEPS: f64 = (1u64 << 40) as f64;

@@ -12,7 +12,7 @@
 
 use glam::DVec3;
 
-use super::grid::{Plane, volume};
+use crate::hull::grid::{Plane, volume};
 
 /// No facet, or no point.
 const NONE: u32 = u32::MAX;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::SceneError;
+use crate::builder::SceneError;
 
 /// Why a scene file cannot be read. Every message names the file and says what to do where that is not obvious.
 #[derive(Debug, Error)]

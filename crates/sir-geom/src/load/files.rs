@@ -8,7 +8,7 @@ use base64::Engine as _;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::percent_decode_str;
 
-use super::LoadError;
+use crate::load::error::LoadError;
 
 /// The most bytes of a name in a reference.
 const LONGEST_NAME: usize = 500;

@@ -15,7 +15,8 @@ use std::path::Path;
 
 pub use error::LoadError;
 
-use crate::{Built, Material, SceneBuilder, Sides};
+use crate::builder::{Built, SceneBuilder};
+use crate::material::{Material, Sides};
 use notes::Notes;
 
 /// The most vertices or triangles of a glTF scene. Without a limit, a small file with many instances of its

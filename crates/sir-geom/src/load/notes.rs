@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use super::files::shortened;
-use crate::{SceneBuilder, Warning};
+use crate::builder::{SceneBuilder, Warning};
+use crate::load::files::shortened;
 
 /// How many names a line gives before it only counts.
 const NAMES: usize = 5;
@@ -106,7 +106,7 @@ mod tests {
         notes.count("lines were skipped", 0);
         let mut builder = SceneBuilder::new();
         notes.warn(&mut builder);
-        let m = builder.add_material(crate::Material::diffuse("m", crate::Rgb::splat(0.5)));
+        let m = builder.add_material(crate::material::Material::diffuse("m", crate::color::Rgb::splat(0.5)));
         let z = glam::DVec3::ZERO;
         crate::shapes::quad(&mut builder, [z, glam::DVec3::X, glam::DVec3::ONE, glam::DVec3::Y], m);
         let lines: Vec<String> = builder.build().unwrap().warnings.iter().map(ToString::to_string).collect();

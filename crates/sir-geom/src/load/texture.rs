@@ -5,8 +5,11 @@ use std::io::Cursor;
 use glam::{DVec2, Vec2};
 use image::{ImageReader, Limits};
 
-use super::notes::Notes;
-use crate::{ColourMap, Opacity, Rgb, SceneBuilder, Texture, TextureId, TextureMap, Wrap};
+use crate::builder::SceneBuilder;
+use crate::color::Rgb;
+use crate::load::notes::Notes;
+use crate::material::Opacity;
+use crate::texture::{ColourMap, Texture, TextureId, TextureMap, Wrap};
 
 /// The kind of warning about textures of which nothing is known.
 pub(super) const UNREADABLE: &str = "textures cannot be read, and their colour factor alone is used";

@@ -7,7 +7,8 @@ use std::sync::LazyLock;
 
 use glam::{DVec2, IVec2};
 
-use crate::{Rgb, typed_index};
+use crate::color::Rgb;
+use sir_types::typed_index;
 
 pub use sums::{TextureMean, TextureSums};
 

@@ -7,9 +7,11 @@ use glam::DVec3;
 use sir_geom::{Rgb, Side, TriangleId};
 use sir_mesh::PatchId;
 
-use super::Sensor;
-use super::tree::{Leaf, MOST_GROUPS, Tree};
-use crate::{Emitter, Model, sources};
+use crate::emitter::Emitter;
+use crate::model::Model;
+use crate::sensors::Sensor;
+use crate::sensors::tree::{Leaf, MOST_GROUPS, Tree};
+use crate::sources;
 
 /// All emitting surfaces of a scene.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use sir_geom::{Rgb, luminance};
 
-use super::replication::{Gathered, Replication};
+use crate::sensors::replication::{Gathered, Replication};
 
 /// The irradiance at a sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -17,7 +17,8 @@ use sir_lines::{Stage, Streams};
 
 pub use measurement::Measurement;
 
-use crate::{Model, Solution};
+use crate::model::Model;
+use crate::solution::Solution;
 use emitters::Emitters;
 use replication::{Met, Replication};
 

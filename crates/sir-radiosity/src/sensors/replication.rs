@@ -8,9 +8,10 @@ use sir_geom::{Line, Rgb, TriangleId};
 use sir_lines::{EvenPoints, Stream, cosine_direction_of};
 use sir_mesh::SideId;
 
-use super::Sensors;
-use super::emitters::{Aim, Choice};
-use crate::{Model, Solution};
+use crate::model::Model;
+use crate::sensors::Sensors;
+use crate::sensors::emitters::{Aim, Choice};
+use crate::solution::Solution;
 
 /// Rays that are made at a time.
 const RAYS: u64 = 1024;

@@ -15,7 +15,7 @@
 
 use thiserror::Error;
 
-use super::{Receiver, ViewFactors};
+use crate::view_factors::{Receiver, ViewFactors};
 
 /// Most steps of Newton's method; a few are enough where there is a solution.
 const STEPS: usize = 50;

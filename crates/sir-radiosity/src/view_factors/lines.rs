@@ -7,11 +7,15 @@ use sir_accel::Ray;
 use sir_geom::{Line, Side, TriangleId};
 use sir_lines::{Allocation, Stage, Streams, cosine_direction};
 
-use super::ViewFactors;
-use super::effort::{Next, ViewFactorSettings};
+use crate::balance::Books;
 use crate::emitter::point_on_surface;
+use crate::error::SolveError;
+use crate::grouping::Grouping;
 use crate::grouping::active_area;
-use crate::{Books, Grouping, Model, SolveError, Visitor};
+use crate::model::Model;
+use crate::state::Visitor;
+use crate::view_factors::ViewFactors;
+use crate::view_factors::effort::{Next, ViewFactorSettings};
 
 /// Most groups: the tables grow with their square.
 pub const MAX_GROUPS: usize = 4096;

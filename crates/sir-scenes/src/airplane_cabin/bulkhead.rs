@@ -5,9 +5,11 @@ use std::f64::consts::{PI, TAU};
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use super::size::{FRONT, REAR, WALL_LINES, ceiling, half_width};
-use crate::model::{Ends, GAP, Model, lines};
+use crate::airplane_cabin::palette::Palette;
+use crate::airplane_cabin::size::{FRONT, REAR, WALL_LINES, ceiling, half_width};
+use crate::model::pillow::Ends;
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
 
 /// Half the width of a doorway \[m\].
 pub(super) const DOORWAY: f64 = 0.33;

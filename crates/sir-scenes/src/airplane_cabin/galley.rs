@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
-use super::bulkhead::DOORWAY;
-use super::palette::Palette;
-use super::size::{FRONT, LENGTH, REAR};
-use crate::model::{GAP, Model, lines};
+use crate::airplane_cabin::bulkhead::DOORWAY;
+use crate::airplane_cabin::palette::Palette;
+use crate::airplane_cabin::size::{FRONT, LENGTH, REAR};
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
 
 /// Both galleys.
 pub(super) fn galleys(palette: &Palette) -> Model {

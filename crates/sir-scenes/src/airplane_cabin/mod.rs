@@ -17,7 +17,8 @@ mod window;
 
 use sir_geom::{Built, SceneBuilder, SceneError};
 
-use crate::model::{GAP, Model, add_cameras};
+use crate::model::furnish::add_cameras;
+use crate::model::{GAP, Model};
 use crate::random::Random;
 use palette::Palette;
 use seat::HALF_GROUP;

@@ -7,9 +7,11 @@ use std::f64::consts::PI;
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use super::size::{FRONT, PITCH, UNIT, UNITS};
-use crate::model::{Ends, GAP, Model, lines};
+use crate::airplane_cabin::palette::Palette;
+use crate::airplane_cabin::size::{FRONT, PITCH, UNIT, UNITS};
+use crate::model::pillow::Ends;
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
 use crate::random::Random;
 
 /// Section of a bin, from the outer end of its top around its curved front to its underside.

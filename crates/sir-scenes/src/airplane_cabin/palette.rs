@@ -2,7 +2,7 @@
 
 use sir_geom::{Material, MaterialId, Rgb, SceneBuilder};
 
-use crate::model::lamp;
+use crate::model::furnish::lamp;
 
 /// Numbers of the materials.
 pub(super) struct Palette {

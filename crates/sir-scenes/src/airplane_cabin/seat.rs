@@ -5,9 +5,10 @@
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use super::seat_back::{PIVOT, back_things};
-use crate::model::{Ends, GAP, Model};
+use crate::airplane_cabin::palette::Palette;
+use crate::airplane_cabin::seat_back::{PIVOT, back_things};
+use crate::model::pillow::Ends;
+use crate::model::{GAP, Model};
 use crate::random::Random;
 
 /// Distance of seats side by side \[m\].

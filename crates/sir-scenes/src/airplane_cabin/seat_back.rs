@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::palette::Palette;
-use super::seat::HALF_BACK;
+use crate::airplane_cabin::palette::Palette;
+use crate::airplane_cabin::seat::HALF_BACK;
 use crate::model::{GAP, Model};
 use crate::random::Random;
 

@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use super::palette::Palette;
-use super::size::{
+use crate::airplane_cabin::palette::Palette;
+use crate::airplane_cabin::size::{
     AISLE, BEFORE, BEHIND, CEILING, CELLS, LENGTH, WALL_LINES, WINDOW_LINES, WINDOW_PITCH, half_width,
 };
-use super::window::{Wall, window};
-use crate::model::{Model, lines};
+use crate::airplane_cabin::window::{Wall, window};
+use crate::model::Model;
+use crate::model::sheet::lines;
 use crate::random::Random;
 
 /// Cells of the runner along each window pitch, and across.

@@ -1,8 +1,10 @@
 //! The middle of the ceiling: panels that hang under it and hide lamps on their upper side, and signs under them.
 
-use super::palette::Palette;
-use super::size::{FRONT, UNIT, UNITS};
-use crate::model::{Ends, Model, lines};
+use crate::airplane_cabin::palette::Palette;
+use crate::airplane_cabin::size::{FRONT, UNIT, UNITS};
+use crate::model::Model;
+use crate::model::pillow::Ends;
+use crate::model::sheet::lines;
 
 /// Half the width of the panels \[m\].
 const HALF: f64 = 0.20;

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::palette::Palette;
-use super::size::{FRONT, WALL_LINES, WINDOW_LINES, half_width, near};
+use crate::airplane_cabin::palette::Palette;
+use crate::airplane_cabin::size::{FRONT, WALL_LINES, WINDOW_LINES, half_width, near};
 use crate::model::Model;
 use crate::random::Random;
 

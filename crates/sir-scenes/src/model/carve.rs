@@ -5,7 +5,7 @@ use std::{array, collections::BTreeMap};
 use glam::{DVec3, IVec3};
 use sir_geom::MaterialId;
 
-use super::Model;
+use crate::model::Model;
 
 impl Model {
     /// Adds the surface of the body in which `distance` is negative, which must lie within the box from `min` to

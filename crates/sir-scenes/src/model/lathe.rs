@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use sir_geom::MaterialId;
 
-use super::Model;
+use crate::model::Model;
 
 impl Model {
     /// Adds a turned solid. `profile` lists (radius, height) from the bottom to the top; the outermost two points

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sir_geom::MaterialId;
 
-use super::Model;
+use crate::model::Model;
 
 impl Model {
     /// Adds a closed skin over rings of points. `point(i, j)` is the `j`-th of `columns` points of ring `i`,

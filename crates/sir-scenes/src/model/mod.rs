@@ -8,21 +8,16 @@
 //! * Positions are multiples of 2⁻¹⁶ m (see [`Model::store`]).
 
 mod carve;
-mod furnish;
+pub(crate) mod furnish;
 mod lathe;
 mod loft;
-mod pillow;
+pub(crate) mod pillow;
 mod prism;
-mod sheet;
-mod wall;
+pub(crate) mod sheet;
+pub(crate) mod wall;
 
 use glam::{DAffine3, DVec3};
 use sir_geom::{MaterialId, SceneBuilder};
-
-pub(crate) use furnish::{add_cameras, lamp};
-pub(crate) use pillow::Ends;
-pub(crate) use sheet::lines;
-pub(crate) use wall::{Wall, half_rings};
 
 /// Distance between things that stand on or lean against each other \[m\].
 pub(crate) const GAP: f64 = 0.001;

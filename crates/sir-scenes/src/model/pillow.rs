@@ -3,7 +3,8 @@
 use glam::{DVec2, DVec3};
 use sir_geom::MaterialId;
 
-use super::{Model, lines};
+use crate::model::Model;
+use crate::model::sheet::lines;
 
 /// How the ends of a pillow are rounded, and how it is cut along its length.
 #[derive(Clone, Copy)]

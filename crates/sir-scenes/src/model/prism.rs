@@ -3,7 +3,8 @@
 use glam::{DVec2, DVec3};
 use sir_geom::MaterialId;
 
-use super::{Model, lines};
+use crate::model::Model;
+use crate::model::sheet::lines;
 
 impl Model {
     /// Adds a solid with the given simple, counter-clockwise cross-section in the `xy` plane from `z = from` to

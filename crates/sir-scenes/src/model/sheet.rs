@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sir_geom::MaterialId;
 
-use super::Model;
+use crate::model::Model;
 
 /// Coordinates from `from` to `to`, both included, in equal steps of at most `cell`.
 pub(crate) fn lines(from: f64, to: f64, cell: f64) -> Vec<f64> {

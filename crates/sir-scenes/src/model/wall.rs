@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use sir_geom::MaterialId;
 
-use super::{Model, lines};
+use crate::model::Model;
+use crate::model::sheet::lines;
 
 /// A wall seen from inside: `u` metres from its left end, `v` above the floor, `w` behind its surface.
 #[derive(Clone, Copy)]

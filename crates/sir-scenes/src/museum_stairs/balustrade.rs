@@ -2,9 +2,10 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::palette::Palette;
-use super::size::RAIL;
-use crate::model::{GAP, Model, lines};
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::RAIL;
 
 /// Distance of the balusters.
 const PITCH: f64 = 0.315;

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use super::palette::Palette;
-use super::size::{CELL, EDGE, HEIGHT, SOUTH_EDGE};
-use crate::model::{GAP, Model, lines};
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::{CELL, EDGE, HEIGHT, SOUTH_EDGE};
 
 /// A coffer is two cells wide, a rib one.
 const MODULE: f64 = 3.0 * CELL;

@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::palette::Palette;
-use super::size::{
+use crate::model::{GAP, Model};
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::{
     BAY, COLUMN, DOOR_COLUMN, EDGE, GALLERY, HALF_WIDTH, LOWER_BEAM, RAIL, SOUTH_EDGE, UPPER_BEAM,
     bay_middles, column_places,
 };
-use crate::model::{GAP, Model};
 
 /// Half the width of the pedestals of the upper columns \[m\].
 pub(super) const PEDESTAL: f64 = 0.24;

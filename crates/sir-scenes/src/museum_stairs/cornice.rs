@@ -2,9 +2,10 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::palette::Palette;
-use super::size::{AISLE, EDGE, SOUTH_EDGE};
-use crate::model::{GAP, Model, lines};
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::{AISLE, EDGE, SOUTH_EDGE};
 
 /// How far it stands out \[m\].
 const OUT: f64 = 0.62;

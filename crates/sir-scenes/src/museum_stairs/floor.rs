@@ -3,9 +3,10 @@
 use glam::DVec3;
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use super::size::{CELL, EDGE, HALF_WIDTH, LENGTH, SOUTH_EDGE};
-use crate::model::{Model, lines};
+use crate::model::Model;
+use crate::model::sheet::lines;
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::{CELL, EDGE, HALF_WIDTH, LENGTH, SOUTH_EDGE};
 
 /// Adds the floor: every cell is two triangles, of two colours where a lozenge has its edge.
 pub(super) fn floor(m: &mut Model, palette: &Palette) {

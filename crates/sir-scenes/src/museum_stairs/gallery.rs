@@ -4,14 +4,15 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DAffine3, DVec3};
 
-use super::balustrade;
-use super::columns::PEDESTAL;
-use super::palette::Palette;
-use super::size::{
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
+use crate::museum_stairs::balustrade;
+use crate::museum_stairs::columns::PEDESTAL;
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::{
     AISLE, CELL, COLUMN, DOOR_COLUMN, EDGE, GALLERY, HALF_WIDTH, LENGTH, LOWER_BEAM, SIDE, SOUTH_EDGE,
     UNDER_GALLERY, UPPER_BEAM, column_places,
 };
-use crate::model::{GAP, Model, lines};
 
 /// Half the width of the beams \[m\].
 const BEAM: f64 = 0.24;

@@ -2,11 +2,11 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::palette::Palette;
-use super::shell::APSE;
-use super::size::{DOOR_COLUMN, GALLERY, HALF_WIDTH, LENGTH, column_places};
-use super::stair;
 use crate::model::{GAP, Model};
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::shell::APSE;
+use crate::museum_stairs::size::{DOOR_COLUMN, GALLERY, HALF_WIDTH, LENGTH, column_places};
+use crate::museum_stairs::stair;
 
 /// All lamps but those on the cornice and in the vitrines.
 pub(super) fn lamps(palette: &Palette) -> Model {

@@ -23,7 +23,9 @@ mod vitrines;
 use glam::DVec3;
 use sir_geom::{Built, SceneBuilder, SceneError};
 
-use crate::model::{GAP, Model, add_cameras, lines};
+use crate::model::furnish::add_cameras;
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
 use palette::Palette;
 use size::{FOOT, GALLERY, LENGTH};
 

@@ -5,9 +5,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use super::size::{GALLERY, HALF_WIDTH, LENGTH, bay_middles};
-use crate::model::{GAP, Model, lines};
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::{GALLERY, HALF_WIDTH, LENGTH, bay_middles};
 
 /// All pictures and doors.
 pub(super) fn pictures(palette: &Palette) -> Model {

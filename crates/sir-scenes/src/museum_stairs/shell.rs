@@ -5,10 +5,12 @@
 use glam::DVec3;
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use super::size::{AISLE, CELL, EDGE, HALF_WIDTH, HEIGHT, LENGTH, SOUTH_EDGE, bay_middles};
-use super::{coffers, floor};
-use crate::model::{Model, Wall, half_rings, lines};
+use crate::model::Model;
+use crate::model::sheet::lines;
+use crate::model::wall::{Wall, half_rings};
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::{AISLE, CELL, EDGE, HALF_WIDTH, HEIGHT, LENGTH, SOUTH_EDGE, bay_middles};
+use crate::museum_stairs::{coffers, floor};
 
 /// A niche with a round arch. Its edges lie on the lines of cells.
 #[derive(Clone, Copy)]

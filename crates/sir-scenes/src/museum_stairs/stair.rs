@@ -3,11 +3,12 @@
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
-use super::balustrade;
-use super::columns::{self, PEDESTAL};
-use super::palette::Palette;
-use super::size::{EDGE, FLIGHT, FOOT, GALLERY, LANDING, PARAPET, RISER, SIDE, TREAD};
 use crate::model::{GAP, Model};
+use crate::museum_stairs::balustrade;
+use crate::museum_stairs::columns;
+use crate::museum_stairs::columns::PEDESTAL;
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::{EDGE, FLIGHT, FOOT, GALLERY, LANDING, PARAPET, RISER, SIDE, TREAD};
 
 /// Half the width of the carpet.
 pub(super) const CARPET: f64 = 1.15;

@@ -5,11 +5,12 @@ use std::f64::consts::{PI, TAU};
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use super::sculptor::{Figure, bust, figure};
-use super::shell::{APSE, SMALL};
-use super::size::{EDGE, FOOT, GALLERY, HALF_WIDTH, LENGTH, bay_middles};
-use crate::model::{GAP, Model, lines};
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::sculptor::{Figure, bust, figure};
+use crate::museum_stairs::shell::{APSE, SMALL};
+use crate::museum_stairs::size::{EDGE, FOOT, GALLERY, HALF_WIDTH, LENGTH, bay_middles};
 
 /// All statues.
 pub(super) fn statues(palette: &Palette) -> Model {

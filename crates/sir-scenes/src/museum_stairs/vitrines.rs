@@ -3,10 +3,10 @@
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use super::size::{FOOT, SOUTH_EDGE};
-use super::statues::amphora;
 use crate::model::{GAP, Model};
+use crate::museum_stairs::palette::Palette;
+use crate::museum_stairs::size::{FOOT, SOUTH_EDGE};
+use crate::museum_stairs::statues::amphora;
 
 /// All vitrines.
 pub(super) fn vitrines(palette: &Palette) -> Model {

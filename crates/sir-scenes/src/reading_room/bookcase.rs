@@ -3,9 +3,10 @@
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use crate::model::{GAP, Model, lines};
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
 use crate::random::Random;
+use crate::reading_room::palette::Palette;
 
 /// Thickness of boards \[m\].
 const BOARD: f64 = 0.035;

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use glam::{DAffine3, DVec3};
 
-use super::palette::Palette;
-use super::size::{ARC, BAY, BAYS, COLUMN, CORNICE, DAIS, HALF_WIDTH, LENGTH, SPRING};
 use crate::model::{GAP, Model};
+use crate::reading_room::palette::Palette;
+use crate::reading_room::size::{ARC, BAY, BAYS, COLUMN, CORNICE, DAIS, HALF_WIDTH, LENGTH, SPRING};
 
 /// All that carries the vault.
 pub(super) fn columns(palette: &Palette) -> Model {
@@ -67,7 +67,7 @@ fn cornice(palette: &Palette) -> Model {
     ];
     m.prism(&section, [GAP, LENGTH - GAP], 0.75, palette.stone);
     let lamp = |d: DVec3, _| if d.y > 0.0 { palette.cove_lamp } else { palette.stone };
-    let z = crate::model::lines(0.05, LENGTH - 0.05, 0.5);
+    let z = crate::model::sheet::lines(0.05, LENGTH - 0.05, 0.5);
     m.grid_block([&[0.45, 0.65], &[4.32 + GAP, 4.35], &z], lamp);
     m
 }

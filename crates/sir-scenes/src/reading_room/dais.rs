@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use super::palette::Palette;
-use super::size::{DAIS, DAIS_DEPTH, HALF_WIDTH, OPENING, TILE};
-use crate::model::{GAP, Model, lines};
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
+use crate::reading_room::palette::Palette;
+use crate::reading_room::size::{DAIS, DAIS_DEPTH, HALF_WIDTH, OPENING, TILE};
 
 /// Half the width of the steps \[m\].
 const STEPS: f64 = 1.5;

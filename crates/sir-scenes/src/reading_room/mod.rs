@@ -18,7 +18,9 @@ use std::f64::consts::PI;
 use glam::{DAffine3, DVec3};
 use sir_geom::{Built, SceneBuilder, SceneError};
 
-use crate::model::{GAP, Model, add_cameras, lines};
+use crate::model::furnish::add_cameras;
+use crate::model::sheet::lines;
+use crate::model::{GAP, Model};
 use crate::random::Random;
 use bookcase::{Bookcase, books_on_table, ladder};
 use palette::Palette;

@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use glam::{DAffine3, DVec3};
 
-use super::palette::Palette;
-use super::shell::{LUNETTE_DEPTH, LUNETTE_RADIUS, WINDOW_DEPTH};
-use super::size::{BAY, BAYS, HALF_WIDTH, LENGTH, OPENING, SPRING};
 use crate::model::{GAP, Model};
+use crate::reading_room::palette::Palette;
+use crate::reading_room::shell::{LUNETTE_DEPTH, LUNETTE_RADIUS, WINDOW_DEPTH};
+use crate::reading_room::size::{BAY, BAYS, HALF_WIDTH, LENGTH, OPENING, SPRING};
 
 /// Bars in front of all panes, and the door opposite the dais.
 pub(super) fn openings(palette: &Palette) -> Model {

@@ -5,9 +5,11 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use sir_geom::MaterialId;
 
-use super::palette::Palette;
-use super::size::{ARC, BAY, BAYS, HALF_WIDTH, LENGTH, OPENING, SPRING, TILE};
-use crate::model::{Model, Wall, half_rings, lines};
+use crate::model::Model;
+use crate::model::sheet::lines;
+use crate::model::wall::{Wall, half_rings};
+use crate::reading_room::palette::Palette;
+use crate::reading_room::size::{ARC, BAY, BAYS, HALF_WIDTH, LENGTH, OPENING, SPRING, TILE};
 
 /// Depth of the window recesses \[m\].
 pub(super) const WINDOW_DEPTH: f64 = 0.4;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::palette::Palette;
 use crate::model::{GAP, Model};
+use crate::reading_room::palette::Palette;
 
 /// Height of the table tops \[m\].
 pub(super) const TABLE_HEIGHT: f64 = 0.77;

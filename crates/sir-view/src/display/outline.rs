@@ -4,7 +4,7 @@ use glam::DVec3;
 use sir_geom::{Scene, TriangleId};
 use sir_mesh::{PatchId, PatchMesh};
 
-use super::seams::Seams;
+use crate::display::seams::Seams;
 
 /// One triangle, its patches and the points on its rim. Reused from triangle to triangle.
 ///

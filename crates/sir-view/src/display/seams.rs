@@ -8,7 +8,7 @@ use sir_mesh::PatchMesh;
 
 use glam::DVec3;
 
-use super::points::{PointTree, Weld};
+use crate::display::points::{PointTree, Weld};
 
 /// Points closer than this, in radii of the scene's sphere, are one.
 const TOLERANCE: f64 = 1e-6;

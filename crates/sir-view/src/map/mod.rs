@@ -9,7 +9,8 @@ use std::path::Path;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, Rgb};
 
-use crate::{ViewError, write_atomically};
+use crate::atomic_file::write_atomically;
+use crate::error::ViewError;
 use canvas::{Anchor, Canvas};
 use colours::viridis;
 

@@ -2,8 +2,9 @@
 
 use sir_geom::Rgb;
 
-use super::Table;
-use crate::{ViewError, luminance};
+use crate::error::ViewError;
+use crate::table::Table;
+use sir_geom::luminance;
 
 /// The difference of the radiosities in one band, or in luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]

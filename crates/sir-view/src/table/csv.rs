@@ -3,8 +3,8 @@
 use std::io::{self, BufRead, Write};
 use std::path::Path;
 
-use super::{COLUMNS, Table, bad_value, checked, row};
-use crate::ViewError;
+use crate::error::ViewError;
+use crate::table::{COLUMNS, Table, bad_value, checked, row};
 
 pub(super) fn write(table: &Table, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "{}", COLUMNS.join(","))?;

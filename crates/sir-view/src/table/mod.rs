@@ -12,7 +12,8 @@ use glam::DVec3;
 use sir_geom::{Rgb, Scene, Side};
 use sir_mesh::{PatchId, PatchMesh};
 
-use crate::{ViewError, write_atomically};
+use crate::atomic_file::write_atomically;
+use crate::error::ViewError;
 
 pub use compare::{BandComparison, Comparison, WorstRow, compare};
 

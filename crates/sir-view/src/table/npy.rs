@@ -7,8 +7,8 @@
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-use super::{COLUMNS, Table, WHOLE_COLUMNS, bad_value, checked, row};
-use crate::ViewError;
+use crate::error::ViewError;
+use crate::table::{COLUMNS, Table, WHOLE_COLUMNS, bad_value, checked, row};
 
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 

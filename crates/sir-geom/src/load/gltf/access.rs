@@ -4,7 +4,8 @@ use ::gltf::json::accessor::{Accessor, ComponentType, Type};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Index, buffer};
 
-use super::{LoadError, Reader, lookup};
+use crate::load::error::LoadError;
+use crate::load::gltf::{Reader, lookup};
 
 /// The most elements that no buffer view backs, of all accessors together, as often as they are read: zeros cost a file nothing.
 const MAX_UNBACKED: usize = 1 << 16;

@@ -4,7 +4,7 @@ use ::gltf::json::camera::{Camera as Source, Type};
 use ::gltf::json::validation::Checked;
 use glam::{DAffine3, DVec3};
 
-use crate::{Camera, Projection};
+use crate::camera::{Camera, Projection};
 
 /// A camera in world space: it looks along −z, with y up (glTF 2.0 specification, section 3.10).
 ///

@@ -6,8 +6,9 @@ use std::rc::Rc;
 
 use ::gltf::json::{Root, Value, deserialize};
 
-use super::super::files::{self, Reference};
-use super::LoadError;
+use crate::load::error::LoadError;
+use crate::load::files;
+use crate::load::files::Reference;
 
 /// The most characters of what a parser says, which may quote the file at length.
 const MESSAGE: usize = 160;

@@ -9,9 +9,10 @@ use ::gltf::json::mesh::{Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use glam::{DVec4, Vec2, Vec4};
 
-use super::super::texture::Placement;
-use super::material::{Alpha, Known};
-use super::{LoadError, Reader};
+use crate::load::error::LoadError;
+use crate::load::gltf::Reader;
+use crate::load::gltf::material::{Alpha, Known};
+use crate::load::texture::Placement;
 
 /// The most sets of coordinates of a material: it has two textures.
 pub(super) const MOST_SETS: usize = 2;

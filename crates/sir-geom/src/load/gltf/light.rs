@@ -5,8 +5,10 @@ use ::gltf::json::scene::Node;
 use ::gltf::json::validation::Checked;
 use glam::{DAffine3, DVec3};
 
-use super::{LoadError, Reader, lookup};
-use crate::{Light, LightKind, Rgb, Spread};
+use crate::color::Rgb;
+use crate::light::{Light, LightKind, Spread};
+use crate::load::error::LoadError;
+use crate::load::gltf::{Reader, lookup};
 
 impl Reader<'_> {
     /// Adds the light of a node, if it has one.

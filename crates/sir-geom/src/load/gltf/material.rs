@@ -10,11 +10,17 @@ use ::gltf::json::texture::{Info, WrappingMode};
 use ::gltf::json::validation::Checked;
 use glam::DVec2;
 
-use super::super::files::{self, Reference};
-use super::super::texture::{self, Image, Layer, Placement};
-use super::super::{DEFAULT_REFLECTANCE, notes};
-use super::{LoadError, Reader, lookup};
-use crate::{MAX_REFLECTANCE, Material, MaterialId, Opacity, Rgb, Sides, Wrap};
+use crate::color::Rgb;
+use crate::index::MaterialId;
+use crate::load::error::LoadError;
+use crate::load::files;
+use crate::load::files::Reference;
+use crate::load::gltf::{Reader, lookup};
+use crate::load::texture;
+use crate::load::texture::{Image, Layer, Placement};
+use crate::load::{DEFAULT_REFLECTANCE, notes};
+use crate::material::{MAX_REFLECTANCE, Material, Opacity, Sides};
+use crate::texture::Wrap;
 
 /// Where the encoded bytes of an image lie. Images may share them, and large ones take time to decode.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]

@@ -20,10 +20,11 @@ use std::rc::Rc;
 
 use ::gltf::json::{Index, Root, root::Get};
 
-use super::notes::Notes;
-use super::texture::{Image, Images};
-use super::{LoadError, LoadOptions, files};
-use crate::SceneBuilder;
+use crate::builder::SceneBuilder;
+use crate::load::error::LoadError;
+use crate::load::notes::Notes;
+use crate::load::texture::{Image, Images};
+use crate::load::{LoadOptions, files};
 
 /// Extensions whose meaning is taken in, or does not change a diffuse scene.
 const KNOWN_EXTENSIONS: [&str; 6] = [

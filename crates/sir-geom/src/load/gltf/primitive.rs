@@ -9,10 +9,11 @@ use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use glam::{DAffine3, DVec3, Vec2};
 
-use super::super::MAX_ELEMENTS;
-use super::corners::{Attributes, MOST_SETS, Values};
-use super::{LoadError, Reader};
-use crate::VertexId;
+use crate::index::VertexId;
+use crate::load::MAX_ELEMENTS;
+use crate::load::error::LoadError;
+use crate::load::gltf::Reader;
+use crate::load::gltf::corners::{Attributes, MOST_SETS, Values};
 
 /// What the primitives of one instance of a mesh share, by the number of its accessor.
 #[derive(Default)]

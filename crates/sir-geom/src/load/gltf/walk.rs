@@ -4,8 +4,9 @@ use ::gltf::json::scene::Node;
 use ::gltf::json::{Index, Root};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use super::primitive::Shared;
-use super::{LoadError, Reader, camera, lookup};
+use crate::load::error::LoadError;
+use crate::load::gltf::primitive::Shared;
+use crate::load::gltf::{Reader, camera, lookup};
 
 /// The most mesh primitives once instances are laid out.
 const MAX_PRIMITIVES: usize = 1 << 23;

@@ -7,8 +7,8 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use super::super::files::shortened;
-use super::corners::Corners;
+use crate::load::files::shortened;
+use crate::load::obj::corners::Corners;
 
 /// An OBJ file in plain form.
 #[derive(Debug, Default)]

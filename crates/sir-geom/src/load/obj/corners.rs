@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec4};
 
-use crate::Rgb;
+use crate::color::Rgb;
 use crate::texture::srgb_to_linear_at;
 
 /// In place of a number: a corner has no texture coordinates.

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::super::texture::Placement;
-use super::clean::split_word;
-use crate::Wrap;
+use crate::load::obj::clean::split_word;
+use crate::load::texture::Placement;
+use crate::texture::Wrap;
 
 /// A texture and how it lies.
 #[derive(Debug, PartialEq)]

@@ -13,10 +13,14 @@ use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec4};
 
-use super::notes::Notes;
-use super::texture::Placement;
-use super::{DEFAULT_REFLECTANCE, LoadError, LoadOptions, files};
-use crate::{MAX_REFLECTANCE, Material, Rgb, SceneBuilder, Sides, VertexId};
+use crate::builder::SceneBuilder;
+use crate::color::Rgb;
+use crate::index::VertexId;
+use crate::load::error::LoadError;
+use crate::load::notes::Notes;
+use crate::load::texture::Placement;
+use crate::load::{DEFAULT_REFLECTANCE, LoadOptions, files};
+use crate::material::{MAX_REFLECTANCE, Material, Sides};
 use corners::Corners;
 
 /// A statement that makes `tobj` ask for materials, which all are at hand by then.

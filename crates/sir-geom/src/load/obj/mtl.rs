@@ -4,11 +4,17 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
-use super::super::notes::{Notes, quoted};
-use super::super::texture::{self, Image, Images, Layer, Placement};
-use super::super::{DEFAULT_REFLECTANCE, LoadError, LoadOptions, files};
-use super::{clean, line_at, map};
-use crate::{MAX_REFLECTANCE, Material, MaterialId, Opacity, Rgb, SceneBuilder, Sides, Texture};
+use crate::builder::SceneBuilder;
+use crate::color::Rgb;
+use crate::index::MaterialId;
+use crate::load::error::LoadError;
+use crate::load::notes::{Notes, quoted};
+use crate::load::obj::{clean, line_at, map};
+use crate::load::texture;
+use crate::load::texture::{Image, Images, Layer, Placement};
+use crate::load::{DEFAULT_REFLECTANCE, LoadOptions, files};
+use crate::material::{MAX_REFLECTANCE, Material, Opacity, Sides};
+use crate::texture::Texture;
 
 /// The materials of all libraries of an OBJ file, as far as its faces use them.
 #[derive(Debug)]

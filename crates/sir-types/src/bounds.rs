@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::Line;
+use crate::line::Line;
 
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]

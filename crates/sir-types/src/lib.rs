@@ -1,0 +1,27 @@
+//! Plain types that every crate of SIR shares: lines, sides of triangles, points on triangles, boxes and spheres.
+//!
+//! # Design
+//!
+//! A triangle tracer needs neither a scene nor a file reader, and a sampler of lines needs no triangles. What they do have in
+//! common stands here, below all other crates, so that each can be used alone. The types are plain values in double
+//! precision; none of them allocates, fails or knows where it comes from.
+//!
+//! # Example
+//!
+//! ```
+//! use glam::DVec3;
+//! use sir_types::{BoundingBox, Line};
+//!
+//! let unit = BoundingBox { min: DVec3::ZERO, max: DVec3::ONE };
+//! assert!(unit.meets(&Line { origin: DVec3::splat(-1.0), direction: DVec3::ONE.normalize() }));
+//! ```
+
+mod bounds;
+mod index;
+mod line;
+mod side;
+
+pub use bounds::{BoundingBox, BoundingSphere};
+pub use index::TriangleId;
+pub use line::{Barycentric, Line};
+pub use side::Side;

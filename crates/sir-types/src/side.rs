@@ -1,0 +1,22 @@
+//! The two sides of a triangle.
+
+/// One side of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Side {
+    /// The side from which the corners run counter-clockwise.
+    Front,
+    /// The other one.
+    Back,
+}
+
+impl Side {
+    /// The opposite side.
+    #[inline]
+    #[must_use]
+    pub fn flip(self) -> Self {
+        match self {
+            Self::Front => Self::Back,
+            Self::Back => Self::Front,
+        }
+    }
+}
