@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
+use crate::effort::Effort;
 use crate::estimate::Estimate;
 use crate::trial::Quantity;
-use crate::validate::Effort;
 
 /// Largest deviation that passes, in standard errors of a normal variable: one of 16,000 right answers exceeds it by chance.
 pub const LIMIT: f64 = 4.0;

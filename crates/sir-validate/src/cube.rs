@@ -9,13 +9,13 @@ use sir_mesh::Subdivision;
 use sir_radiosity::Model;
 
 use crate::data::{Case, FaceAverage, Point, Shape, Surface};
+use crate::effort::Effort;
 use crate::error::ValidateError;
 use crate::light::{Paint, builder, means, per_face, solve};
 use crate::points::{irradiances, sensors};
 use crate::room::{add_point, flux};
 use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
-use crate::validate::Effort;
 
 /// Patches and lines of a run for the averages of faces. Those are right whatever the patches, since all faces are alike.
 const AVERAGES: (u64, u64) = (2_400, 800_000);

@@ -7,11 +7,11 @@ use sir_parallel::view_factors;
 use sir_radiosity::{Grouping, Model, ViewFactorSettings};
 
 use crate::data::{Case, Surface};
+use crate::effort::Effort;
 use crate::error::ValidateError;
 use crate::light::{Paint, scene};
 use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
-use crate::validate::Effort;
 
 /// Lines of a run, from all surfaces together.
 const LINES: u64 = 1_000_000;

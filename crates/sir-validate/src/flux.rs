@@ -7,11 +7,11 @@ use sir_parallel::first_shot;
 use sir_radiosity::Model;
 
 use crate::data::{Case, Surface};
+use crate::effort::Effort;
 use crate::error::ValidateError;
 use crate::light::{means, per_face};
 use crate::room::{add_point, black, flux, open_to_sky};
 use crate::trial::{Quantity, Sample, Trial};
-use crate::validate::Effort;
 
 /// Lines of a run.
 const LINES: u64 = 500_000;

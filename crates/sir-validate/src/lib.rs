@@ -10,7 +10,7 @@
 //!
 //! * `shape`: triangles for the shapes of the reference; `light`: scenes, and the mean light of their surfaces.
 //! * A module for each kind of case makes *trials* of it: quantities, and a function that estimates them with a seed.
-//! * `trial` repeats it, `estimate` and [`Check`] judge, `bench` counts lines, `report` makes tables.
+//! * `repeat` repeats them, `estimate` and [`Check`] judge, `bench` counts lines, `report` makes tables.
 //!
 //! A report is a function of reference, effort, seed and chosen cases; threads make it faster, not different.
 //!
@@ -39,6 +39,7 @@ mod catalogue;
 mod check;
 mod cube;
 mod data;
+mod effort;
 mod error;
 mod estimate;
 mod factors;
@@ -46,6 +47,7 @@ mod flux;
 mod light;
 mod points;
 mod radiosity;
+mod repeat;
 mod report;
 mod room;
 mod shape;
@@ -55,5 +57,7 @@ mod validate;
 pub use bench::Watcher;
 pub use check::{Check, LIMIT, Verdict};
 pub use data::{FILES, Reference};
+pub use effort::Effort;
 pub use error::ValidateError;
-pub use validate::{Effort, Outcome, Report, Settings, validate};
+pub use report::{Outcome, Report};
+pub use validate::{Settings, validate};

@@ -7,10 +7,10 @@ use sir_parallel::{Crew, RunError, measure};
 use sir_radiosity::{LIFT, Model, Sensor, SensorSettings, Shot, Solution};
 
 use crate::data::{Case, Point, Surface};
+use crate::effort::Effort;
 use crate::error::ValidateError;
 use crate::room::{add_point, black, exitance, flux, open_to_sky};
 use crate::trial::{Quantity, Sample, Trial};
-use crate::validate::Effort;
 
 /// Rays over the hemisphere of a point where only emitting surfaces shine, which are aimed at besides.
 const RAYS: u64 = 2_000;

@@ -6,11 +6,11 @@ use serde::Deserialize;
 use sir_geom::Rgb;
 
 use crate::data::{Case, Shape, Surface};
+use crate::effort::Effort;
 use crate::error::ValidateError;
 use crate::light::{Paint, means, per_face, scene, solve};
 use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
-use crate::validate::Effort;
 
 /// Lines of a run in a room of flat walls.
 const FLAT_LINES: u64 = 400_000;

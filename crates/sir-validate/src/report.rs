@@ -1,7 +1,53 @@
-//! The report as text.
+//! The report, and its text.
+
+use serde::Serialize;
 
 use crate::check::{Check, LIMIT, Verdict};
-use crate::validate::{Effort, Outcome, Report};
+use crate::effort::Effort;
+
+/// What became of a case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Its name.
+    pub case: String,
+    /// What it is about.
+    pub title: String,
+    /// Why it was not run, if it was not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skipped: Option<String>,
+    /// The answers.
+    pub checks: Vec<Check>,
+}
+
+/// The outcome of all cases that were asked for.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// How precise answers had to be.
+    pub effort: Effort,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// The cases in the order of the reference.
+    pub cases: Vec<Outcome>,
+}
+
+impl Report {
+    /// All answers.
+    pub fn checks(&self) -> impl Iterator<Item = &Check> {
+        self.cases.iter().flat_map(|case| &case.checks)
+    }
+
+    /// Number of answers with this verdict.
+    #[must_use]
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.checks().filter(|check| check.verdict == verdict).count()
+    }
+
+    /// Whether all answers are right and precise enough.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.checks().all(|check| check.verdict == Verdict::Passed)
+    }
+}
 
 /// The rows of a table: answers that stand alone, and of each group the one that is farthest off.
 fn rows(checks: &[Check]) -> Vec<(String, &Check)> {

@@ -2,51 +2,13 @@
 
 use std::num::NonZeroUsize;
 
-use serde::Serialize;
-
 use crate::bench::{Bench, Watcher};
 use crate::catalogue::plan;
-use crate::check::{Check, Verdict};
-use crate::data::Case;
-use crate::data::Reference;
+use crate::data::{Case, Reference};
+use crate::effort::Effort;
 use crate::error::ValidateError;
-
-/// How precise answers have to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Effort {
-    /// Standard errors of at most 0.5 % of the exact answer.
-    Quick,
-    /// Standard errors of at most 0.1 % of the exact answer.
-    Full,
-}
-
-impl Effort {
-    /// The largest standard error, relative to the exact answer.
-    #[must_use]
-    pub fn precision(self) -> f64 {
-        match self {
-            Self::Quick => 5e-3,
-            Self::Full => 1e-3,
-        }
-    }
-
-    /// Lines of a run that has this many in full.
-    pub(crate) fn lines(self, full: u64) -> u64 {
-        match self {
-            Self::Quick => full / 20,
-            Self::Full => full,
-        }
-    }
-
-    /// Parts of a circle that has this many in full. Each facet needs some lines, so there are fewer where lines are few.
-    pub(crate) fn segments(self, full: u32) -> u32 {
-        match self {
-            Self::Quick => full / 4,
-            Self::Full => full,
-        }
-    }
-}
+use crate::repeat::{least_lines, repeat};
+use crate::report::{Outcome, Report};
 
 /// What to run, and how.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,50 +21,6 @@ pub struct Settings {
     pub threads: NonZeroUsize,
     /// Names of cases, or their beginnings, in any case of letters; all if there are none.
     pub cases: Vec<String>,
-}
-
-/// What became of a case.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Outcome {
-    /// Its name.
-    pub case: String,
-    /// What it is about.
-    pub title: String,
-    /// Why it was not run, if it was not.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub skipped: Option<String>,
-    /// The answers.
-    pub checks: Vec<Check>,
-}
-
-/// The outcome of all cases that were asked for.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
-    /// How precise answers had to be.
-    pub effort: Effort,
-    /// Seed of the random numbers.
-    pub seed: u64,
-    /// The cases in the order of the reference.
-    pub cases: Vec<Outcome>,
-}
-
-impl Report {
-    /// All answers.
-    pub fn checks(&self) -> impl Iterator<Item = &Check> {
-        self.cases.iter().flat_map(|case| &case.checks)
-    }
-
-    /// Number of answers with this verdict.
-    #[must_use]
-    pub fn count(&self, verdict: Verdict) -> usize {
-        self.checks().filter(|check| check.verdict == verdict).count()
-    }
-
-    /// Whether all answers are right and precise enough.
-    #[must_use]
-    pub fn passed(&self) -> bool {
-        self.checks().all(|check| check.verdict == Verdict::Passed)
-    }
 }
 
 /// Runs all cases that are asked for.
@@ -125,7 +43,7 @@ pub fn validate(
     let effort = settings.effort;
     let mut bench = Bench::new(watcher, settings.threads);
     for trial in plans.iter().flat_map(|(_, _, plan)| plan.trials()) {
-        bench.expect(trial.least_lines(effort));
+        bench.expect(least_lines(trial, effort));
     }
     let mut cases = Vec::new();
     for (number, case, plan) in &plans {
@@ -136,7 +54,7 @@ pub fn validate(
         for (part, trial) in (0..).zip(plan.trials()) {
             // No two runs have random numbers in common.
             let stream: u64 = (number << 32) | (part << 16);
-            checks.extend(trial.check(effort, settings.seed.wrapping_add(stream), &mut bench)?);
+            checks.extend(repeat(trial, effort, settings.seed.wrapping_add(stream), &mut bench)?);
         }
         let skipped = plan.skipped().map(str::to_owned);
         cases.push(Outcome { case: case.id.clone(), title: case.title.clone(), skipped, checks });

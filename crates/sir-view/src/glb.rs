@@ -11,10 +11,10 @@ use serde_json::{Value, json};
 use sir_geom::{Barycentric, Camera, Projection, TriangleId};
 
 use crate::atomic_file::write_atomically;
+use crate::camera_rays::camera_axes;
 use crate::display::DisplayMesh;
 use crate::error::ViewError;
-use crate::picture::camera_axes;
-use crate::tone::Exposure;
+use crate::exposure::Exposure;
 use crate::tone::{rgb, tone_map};
 
 const ARRAY_BUFFER: u32 = 34_962;

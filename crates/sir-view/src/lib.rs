@@ -58,13 +58,16 @@
 //! ```
 
 mod atomic_file;
+mod camera_rays;
 mod display;
 mod error;
+mod exposure;
 mod exr;
 mod glb;
 mod map;
 mod picture;
 mod png;
+mod render;
 mod table;
 mod tone;
 mod viewpoint;
@@ -72,12 +75,14 @@ mod viewpoint;
 pub use atomic_file::write_atomically;
 pub use display::{DisplayMesh, DisplayVertex, Piece};
 pub use error::ViewError;
+pub use exposure::Exposure;
 pub use exr::write_exr;
 pub use glb::write_glb;
 pub use map::{Map, write_map};
-pub use picture::{Picture, PictureSettings, render};
+pub use picture::{Picture, PictureSettings};
 pub use png::write_png;
+pub use render::render;
 pub use sir_geom::luminance;
 pub use table::{BandComparison, COLUMNS, Comparison, Row, Table, WorstRow, compare};
-pub use tone::{Exposure, srgb, tone_map};
+pub use tone::{srgb, tone_map};
 pub use viewpoint::{default_camera, guess_up};

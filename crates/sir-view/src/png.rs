@@ -9,8 +9,8 @@ use image::codecs::png::PngEncoder;
 
 use crate::atomic_file::write_atomically;
 use crate::error::ViewError;
+use crate::exposure::Exposure;
 use crate::picture::Picture;
-use crate::tone::Exposure;
 use crate::tone::{rgb, srgb, tone_map};
 
 /// Writes a picture as PNG: 8-bit sRGB after exposure and tone curve.

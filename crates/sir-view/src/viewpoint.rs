@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use sir_accel::{Accel, Tracer};
-use sir_geom::{Camera, Scene, TriangleId};
+use sir_geom::{Camera, Scene, TriangleId, luminance};
 
+use crate::camera_rays::CameraRays;
 use crate::display::DisplayMesh;
-use crate::picture::CameraRays;
-use sir_geom::luminance;
 
 /// Vertical field of view \[rad\]: about 65°, wide enough for rooms.
 const FIELD: f64 = 1.13;

@@ -10,6 +10,7 @@ mod overhead;
 mod palette;
 mod seat;
 mod seat_back;
+mod seat_size;
 mod shell;
 mod size;
 mod spine;
@@ -21,7 +22,7 @@ use crate::model::furnish::add_cameras;
 use crate::model::{GAP, Model};
 use crate::random::Random;
 use palette::Palette;
-use seat::HALF_GROUP;
+use seat_size::HALF_GROUP;
 use size::{AISLE, FIRST_ROW, FRONT, PITCH, REAR, ROWS, near};
 
 /// The cabin of an airliner with one aisle, 3.7 m wide and 27 m long, with 29 rows of six seats between two galleys. It is

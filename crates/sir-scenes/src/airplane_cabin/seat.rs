@@ -6,19 +6,11 @@ use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
 
 use crate::airplane_cabin::palette::Palette;
-use crate::airplane_cabin::seat_back::{PIVOT, back_things};
+use crate::airplane_cabin::seat_back::back_things;
+use crate::airplane_cabin::seat_size::{ARM, HALF_BACK, HALF_GROUP, PIVOT, PLACE};
 use crate::model::pillow::Ends;
 use crate::model::{GAP, Model};
 use crate::random::Random;
-
-/// Distance of seats side by side \[m\].
-const PLACE: f64 = 0.475;
-/// Width of an arm rest \[m\].
-const ARM: f64 = 0.042;
-/// Half the width of a backrest \[m\].
-pub(super) const HALF_BACK: f64 = 0.5 * (PLACE - ARM) - 0.006;
-/// Half the width of a group, with the arm rests at its ends \[m\].
-pub(super) const HALF_GROUP: f64 = 1.5 * PLACE + 0.5 * ARM;
 
 /// Sections seen from the side, counter-clockwise; the ends of each pair from outside in face each other \[m\].
 const CUSHION: [[f64; 2]; 8] = [

@@ -3,12 +3,10 @@
 use glam::{DAffine3, DVec3};
 
 use crate::airplane_cabin::palette::Palette;
-use crate::airplane_cabin::seat::HALF_BACK;
+use crate::airplane_cabin::seat_size::HALF_BACK;
 use crate::model::{GAP, Model};
 use crate::random::Random;
 
-/// Axis about which backs recline, in the coordinates of a seat.
-pub(super) const PIVOT: DVec3 = DVec3::new(0.48, 0.42, 0.0);
 /// Lower end of the flat part of the rear \[m\], and its slope from the vertical.
 const FOOT: DVec3 = DVec3::new(0.5365, 0.45, 0.0);
 const SLOPE: f64 = 0.1975;

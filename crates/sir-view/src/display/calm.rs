@@ -17,7 +17,7 @@ use std::thread;
 use glam::DVec3;
 use sir_geom::{Rgb, Side};
 
-use crate::display::DisplayMesh;
+use crate::display::mesh::DisplayMesh;
 
 /// How often patches take the mean of their neighbours. Each time adds the area of about ten of them to what a value
 /// stands for, so that 10 % of noise become 1 %.

@@ -1,10 +1,9 @@
 //! How far two solutions of the same patches are apart.
 
-use sir_geom::Rgb;
+use sir_geom::{Rgb, luminance};
 
 use crate::error::ViewError;
-use crate::table::Table;
-use sir_geom::luminance;
+use crate::table::patch_table::Table;
 
 /// The difference of the radiosities in one band, or in luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]

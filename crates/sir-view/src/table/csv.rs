@@ -4,11 +4,11 @@ use std::io::{self, BufRead, Write};
 use std::path::Path;
 
 use crate::error::ViewError;
-use crate::table::{COLUMNS, Table, bad_value, checked, row};
+use crate::table::row::{COLUMNS, Row, bad_value, checked, row};
 
-pub(super) fn write(table: &Table, out: &mut impl Write) -> io::Result<()> {
+pub(super) fn write(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "{}", COLUMNS.join(","))?;
-    for row in &table.rows {
+    for row in rows {
         write!(out, "{},{}", row.patch, row.triangle)?;
         for x in row.numbers() {
             // The debug form is the shortest that reads back to the same number, with an exponent if that is short.
@@ -19,7 +19,7 @@ pub(super) fn write(table: &Table, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-pub(super) fn read(path: &Path, file: impl BufRead) -> Result<Table, ViewError> {
+pub(super) fn read(path: &Path, file: impl BufRead) -> Result<Vec<Row>, ViewError> {
     let mut lines = file.lines();
     let header = match lines.next() {
         Some(line) => line.map_err(ViewError::reading(path))?,
@@ -33,7 +33,7 @@ pub(super) fn read(path: &Path, file: impl BufRead) -> Result<Table, ViewError> 
             why: format!("its first line does not name the column {column}; expected {}", COLUMNS.join(",")),
         })?;
     }
-    let mut table = Table::default();
+    let mut rows = Vec::new();
     for (number, line) in (1..).zip(lines) {
         let line = line.map_err(ViewError::reading(path))?;
         if line.trim().is_empty() {
@@ -51,7 +51,7 @@ pub(super) fn read(path: &Path, file: impl BufRead) -> Result<Table, ViewError> 
             };
             values[column] = value.map_err(|why| bad_value(path, number, column, why))?;
         }
-        table.rows.push(row(&values));
+        rows.push(row(&values));
     }
-    Ok(table)
+    Ok(rows)
 }

@@ -8,7 +8,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use crate::error::ViewError;
-use crate::table::{COLUMNS, Table, WHOLE_COLUMNS, bad_value, checked, row};
+use crate::table::row::{COLUMNS, Row, WHOLE_COLUMNS, bad_value, checked, row};
 
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
@@ -25,9 +25,8 @@ fn description() -> String {
     format!("'descr': [{}]", columns.join(", "))
 }
 
-pub(super) fn write(table: &Table, out: &mut impl Write) -> io::Result<()> {
-    let mut header =
-        format!("{{{}, 'fortran_order': False, 'shape': ({},), }}", description(), table.rows.len());
+pub(super) fn write(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
+    let mut header = format!("{{{}, 'fortran_order': False, 'shape': ({},), }}", description(), rows.len());
     let fixed = MAGIC.len() + 4;
     let padded = (fixed + header.len() + 1).next_multiple_of(64) - fixed;
     header.extend(std::iter::repeat_n(' ', padded - 1 - header.len()));
@@ -36,7 +35,7 @@ pub(super) fn write(table: &Table, out: &mut impl Write) -> io::Result<()> {
     out.write_all(&[1, 0])?;
     out.write_all(&(header.len() as u16).to_le_bytes())?;
     out.write_all(header.as_bytes())?;
-    for row in &table.rows {
+    for row in rows {
         out.write_all(&row.patch.to_le_bytes())?;
         out.write_all(&row.triangle.to_le_bytes())?;
         for x in row.numbers() {
@@ -46,7 +45,7 @@ pub(super) fn write(table: &Table, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-pub(super) fn read(path: &Path, mut file: impl Read) -> Result<Table, ViewError> {
+pub(super) fn read(path: &Path, mut file: impl Read) -> Result<Vec<Row>, ViewError> {
     let not_a_table = |why: &str| ViewError::NotATable { path: path.to_owned(), why: why.to_owned() };
     let mut start = [0; 10];
     file.read_exact(&mut start).map_err(ViewError::reading(path))?;
@@ -67,7 +66,7 @@ pub(super) fn read(path: &Path, mut file: impl Read) -> Result<Table, ViewError>
         .and_then(|(_, rest)| rest.split_once(','))
         .and_then(|(count, _)| count.trim().parse::<usize>().ok())
         .ok_or_else(|| not_a_table("its header does not say how many rows there are"))?;
-    let mut table = Table::default();
+    let mut rows = Vec::new();
     let mut bytes = [0; ROW];
     for number in 1..=count {
         if file.read_exact(&mut bytes).is_err() {
@@ -82,7 +81,7 @@ pub(super) fn read(path: &Path, mut file: impl Read) -> Result<Table, ViewError>
         for (column, value) in whole.chain(numbers).enumerate() {
             values[column] = checked(column, value).map_err(|why| bad_value(path, number, column, why))?;
         }
-        table.rows.push(row(&values));
+        rows.push(row(&values));
     }
-    Ok(table)
+    Ok(rows)
 }

@@ -1,0 +1,189 @@
+//! Pictures drawn by rays from the camera.
+
+use std::thread;
+
+use sir_accel::{Accel, Hit, Ray, Tracer};
+use sir_geom::{Camera, Line, Rgb, Scene, luminance};
+use sir_lines::{Stage, Streams};
+
+use crate::camera_rays::CameraRays;
+use crate::display::DisplayMesh;
+use crate::error::ViewError;
+use crate::exposure::Exposure;
+use crate::picture::{Picture, PictureSettings};
+
+/// Draws what a camera sees.
+///
+/// Backs of one-sided surfaces are transparent to the camera, though they are opaque to light: one looks into a
+/// closed room from outside as if the walls in front were cut away. Where a ray meets nothing it sees the sky of the scene, or black.
+/// Surfaces with gaps are seen through without noise: each shows its share of what those before it let through. Textures are
+/// shown as fine as pixels are. A picture of errors adds up those of all that is seen.
+///
+/// The camera's vertical field of view is kept whatever the shape of the picture.
+///
+/// # Errors
+///
+/// If the picture is empty or larger than 65,535 pixels in one direction.
+pub fn render(
+    display: &DisplayMesh<'_>,
+    accel: &Accel,
+    camera: &Camera,
+    settings: PictureSettings,
+) -> Result<Picture, ViewError> {
+    settings.check()?;
+    let PictureSettings { width, height, threads, .. } = settings;
+    let shader = Shader {
+        display,
+        rays: CameraRays::new(camera, f64::from(width) / f64::from(height)),
+        settings,
+        knee: 1.0 / Exposure::Auto.factor_for_mesh(display),
+    };
+    let mut pixels = vec![Pixel::default(); width as usize * height as usize];
+    // Rows are dealt out in turn, since some parts of a picture take longer than others.
+    let count = threads.clamp(1, height as usize);
+    let mut hands: Vec<Vec<_>> = (0..count).map(|_| Vec::new()).collect();
+    for (y, row) in (0..).zip(pixels.chunks_exact_mut(width as usize)) {
+        hands[y as usize % count].push((y, row));
+    }
+    thread::scope(|scope| {
+        for hand in hands {
+            scope.spawn(|| {
+                let mut tracer = accel.tracer();
+                for (y, row) in hand {
+                    for (x, pixel) in (0..).zip(row) {
+                        *pixel = shader.pixel(&mut tracer, x, y);
+                    }
+                }
+            });
+        }
+    });
+    let radiance = pixels.iter().map(|p| p.radiance).collect();
+    let shown = pixels.iter().map(|p| p.shown).collect();
+    let surface = pixels.iter().map(|p| p.surface).collect();
+    Ok(Picture { width, height, radiance, shown, surface })
+}
+
+#[derive(Clone, Copy, Default)]
+struct Pixel {
+    radiance: [f32; 3],
+    shown: [f32; 3],
+    surface: f32,
+}
+
+struct Shader<'a> {
+    display: &'a DisplayMesh<'a>,
+    rays: CameraRays,
+    settings: PictureSettings,
+    /// Radiance above which a ray counts less for the screen.
+    knee: f64,
+}
+
+impl Shader<'_> {
+    fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Pixel {
+        let PictureSettings { width, height, grid, .. } = self.settings;
+        let index = u64::from(y) * u64::from(width) + u64::from(x);
+        let mut stream = Streams::new(0, Stage::PICTURE).line(index);
+        let grid = grid.max(1);
+        let (mut sum, mut weighted, mut weights, mut met) = (Rgb::ZERO, Rgb::ZERO, 0.0, 0.0);
+        let rays: Vec<Line> = (0..grid * grid)
+            .map(|cell| {
+                let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
+                let right = (f64::from(x) + within(cell % grid, stream.unit())) / f64::from(width);
+                let down = (f64::from(y) + within(cell / grid, stream.unit())) / f64::from(height);
+                self.rays.ray(right, down)
+            })
+            .collect();
+        self.see(tracer, &rays, |ray, Seen { radiance, stopped }| {
+            met += stopped;
+            let sky = self.display.scene.sky().filter(|_| self.display.emits);
+            let sky = || sky.map_or(Rgb::ZERO, |sky| sky.radiance(ray.direction));
+            let radiance = if stopped < 1.0 { radiance + (1.0 - stopped) * sky() } else { radiance };
+            sum += radiance;
+            let weight = 1.0 / (1.0 + luminance(radiance) / self.knee);
+            weighted += weight * radiance;
+            weights += weight;
+        });
+        Pixel {
+            radiance: (sum / f64::from(grid * grid)).as_vec3().to_array(),
+            shown: (weighted / weights).as_vec3().to_array(),
+            surface: (met / f64::from(grid * grid)) as f32,
+        }
+    }
+}
+
+/// What a ray sees of surfaces.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// Radiance \[W/(m² sr)\].
+    radiance: Rgb,
+    /// The share of the ray that ends at one of them.
+    stopped: f64,
+}
+
+/// As many surfaces with gaps are seen through one another.
+const LAYERS: usize = 64;
+
+impl Shader<'_> {
+    /// Looks along rays, in order.
+    fn see(&self, tracer: &mut Tracer<'_>, rays: &[Line], mut visit: impl FnMut(&Line, Seen)) {
+        if tracer.lets_lines_pass() {
+            let mut next = 0;
+            tracer.all_crossings_each(rays, |crossings| {
+                for (range, ray) in crossings.lines().zip(&rays[next..]) {
+                    visit(ray, self.through(ray, &crossings.hits()[range]));
+                    next += 1;
+                }
+            });
+            return;
+        }
+        let from: Vec<Ray> = rays.iter().map(|&ray| ray.into()).collect();
+        let mut firsts = vec![None; rays.len()];
+        tracer.closest_each(&from, |i, first| firsts[i] = first);
+        for (ray, first) in rays.iter().zip(firsts) {
+            let hit = first_visible(self.display.scene, tracer, ray, first);
+            let radiance = hit.map(|hit| self.radiance(ray, &hit));
+            visit(
+                ray,
+                Seen { radiance: radiance.unwrap_or(Rgb::ZERO), stopped: f64::from(u8::from(hit.is_some())) },
+            );
+        }
+    }
+
+    /// Looks through the gaps of surfaces: each shows its share of what the ones before it let through.
+    fn through(&self, ray: &Line, crossings: &[Hit]) -> Seen {
+        let scene = self.display.scene;
+        let visible = |hit: &&Hit| hit.t >= 0.0 && scene.is_active(hit.triangle, hit.side);
+        let opacity = |hit: &Hit| scene.opacity_at(hit.triangle, hit.point);
+        let layers = crossings.iter().filter(visible).map(|hit| (hit, opacity(hit)));
+        let (mut radiance, mut left) = (Rgb::ZERO, 1.0);
+        for (hit, opacity) in layers.filter(|layer| layer.1 > 0.0).take(LAYERS) {
+            radiance += left * opacity * self.radiance(ray, hit);
+            left *= 1.0 - opacity;
+            if left == 0.0 {
+                break;
+            }
+        }
+        Seen { radiance, stopped: 1.0 - left }
+    }
+
+    /// Radiance `B/π` of a side that a ray meets.
+    fn radiance(&self, ray: &Line, hit: &Hit) -> Rgb {
+        let Self { display, rays, settings, .. } = self;
+        let Hit { t, triangle, point, side } = *hit;
+        let Some(e) = display.irradiance_at(triangle, point, side) else { return Rgb::ZERO };
+        let slant = display.scene.normal(triangle).dot(ray.direction).abs().max(1e-3);
+        // The root of the area that the ray stands for.
+        let width = rays.spacing(t) / f64::from(settings.height * settings.grid.max(1)) / slant.sqrt();
+        display.radiosity_at(triangle, point, side, e, width) / std::f64::consts::PI
+    }
+}
+
+/// The first side along a ray that is not the back of a one-sided surface, given its first hit.
+fn first_visible(scene: &Scene, tracer: &mut Tracer<'_>, ray: &Line, first: Option<Hit>) -> Option<Hit> {
+    let is_visible = |hit: &Hit| scene.is_active(hit.triangle, hit.side);
+    let first = first?;
+    if is_visible(&first) {
+        return Some(first);
+    }
+    tracer.all_hits(ray).iter().find(|hit| hit.t >= first.t && is_visible(hit)).copied()
+}

@@ -1,0 +1,113 @@
+//! The table of a solution: made, written and read.
+
+use std::fs::File;
+use std::io::{BufReader, Read, Seek};
+use std::path::Path;
+
+use glam::DVec3;
+use sir_geom::{Rgb, Scene, Side};
+use sir_mesh::{PatchId, PatchMesh};
+
+use crate::atomic_file::write_atomically;
+use crate::error::ViewError;
+use crate::table::row::Row;
+use crate::table::{csv, npy};
+
+/// One row for every active side of every patch, in the order of their numbers.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Table {
+    /// The rows.
+    pub rows: Vec<Row>,
+}
+
+impl Table {
+    /// The table of a solution: the irradiance `E` \[W/m²\] of every [`SideId`](sir_mesh::SideId), and its
+    /// standard error.
+    ///
+    /// A two-sided patch has two rows, with opposite normals. A face that is one patch has the centre and the mean
+    /// normal of all its triangles, and the number of the first one.
+    ///
+    /// # Panics
+    ///
+    /// If there is not one irradiance and one error for every side.
+    #[must_use]
+    pub fn new(scene: &Scene, mesh: &PatchMesh, irradiance: &[Rgb], error: &[Rgb]) -> Self {
+        assert_eq!(irradiance.len(), mesh.side_count(), "one irradiance for every side of the mesh");
+        assert_eq!(error.len(), mesh.side_count(), "one error for every side of the mesh");
+        let mut rows: Vec<Row> = Vec::with_capacity(mesh.side_count());
+        mesh.for_each_side(|t, patch, side, id| {
+            let (e, se) = (irradiance[id.index()], error[id.index()]);
+            let reflectance = mesh.reflectance(scene, t, patch);
+            rows.push(Row {
+                patch: patch.0,
+                triangle: scene.triangle(t).source,
+                area: mesh.patch_area(t),
+                centre: DVec3::ZERO,
+                normal: DVec3::ZERO,
+                radiosity: mesh.exitance(scene, t, patch, side) + reflectance * e,
+                irradiance: e,
+                error: reflectance * se,
+            });
+        });
+        // Centres and normals are means over all triangles of a patch, which are several if faces are patches.
+        for t in scene.triangle_ids() {
+            let (corners, normal) = (scene.corners(t), scene.normal(t));
+            let patches = mesh.patches_of(t);
+            let part = scene.area(t) / patches.len() as f64;
+            for patch in patches.map(PatchId) {
+                let c = mesh.patch_corners(t, patch).map(|b| b.point(corners));
+                for (side, outward) in [(Side::Front, normal), (Side::Back, -normal)] {
+                    if let Some(id) = mesh.side_of(t, patch, side) {
+                        let row = &mut rows[id.index()];
+                        row.centre += part / row.area * (c[0] + c[1] + c[2]) / 3.0;
+                        row.normal += part / row.area * outward;
+                    }
+                }
+            }
+        }
+        for row in &mut rows {
+            row.normal = row.normal.normalize_or_zero();
+        }
+        Self { rows }
+    }
+
+    /// Writes comma-separated values: a line with the names of the columns, then a line for each row. Numbers are
+    /// as short as they can be without loss.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub fn write_csv(&self, path: &Path) -> Result<(), ViewError> {
+        write_atomically(path, |file| csv::write(&self.rows, file))
+    }
+
+    /// Writes a NumPy file: a structured array with the same columns, `<u4` for the first two and `<f8` for the
+    /// others. `numpy.load(path)['B_r']` is a column.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub fn write_npy(&self, path: &Path) -> Result<(), ViewError> {
+        write_atomically(path, |file| npy::write(&self.rows, file))
+    }
+
+    /// Reads a file that one of the above has written; its first bytes tell which. A CSV file may have its columns
+    /// in another order, and further ones.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read, a column is missing, or a value is not a number; the message names the row and
+    /// the column.
+    pub fn read(path: &Path) -> Result<Self, ViewError> {
+        let mut file = File::open(path).map_err(ViewError::reading(path))?;
+        let mut start = Vec::new();
+        (&mut file)
+            .take(npy::MAGIC.len() as u64)
+            .read_to_end(&mut start)
+            .map_err(ViewError::reading(path))?;
+        file.rewind().map_err(ViewError::reading(path))?;
+        let file = BufReader::new(file);
+        let rows = if start == npy::MAGIC { npy::read(path, file) } else { csv::read(path, file) };
+        Ok(Self { rows: rows? })
+    }
+}
