@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (crew, seed) = (&mut Crew::default(), 1);
     let shot = first_shot(&model, 2_000_000, seed, crew, None)?.outcome;
-    let domain = Domain::hull(&model.scene);
+    let domain = Domain::hull(model.scene.vertices());
     let solution = batches(&model, shot, 4_000_000, domain, seed, crew, None)?.outcome.solution;
 
     // Mean irradiance of the upward faces of each material at desk height.

@@ -11,7 +11,7 @@ const LAYERS: [(&str, &[&str]); 12] = [
     ("sir-types", &[]),
     ("sir-geom", &["sir-types"]),
     ("sir-mesh", &["sir-geom"]),
-    ("sir-lines", &["sir-geom"]),
+    ("sir-lines", &["sir-types"]),
     ("sir-scenes", &["sir-geom"]),
     // Rays do not know where lines come from, nor that triangles are cut into patches.
     ("sir-accel", &["sir-geom"]),

@@ -79,7 +79,7 @@ struct Effort {
 /// Mean radiosity of the fronts of every triangle, one list per run.
 fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
     let (local, global) = effort.lines;
-    let domain = Domain::hull(&model.scene);
+    let domain = Domain::hull(model.scene.vertices());
     let one = |seed| {
         let crew = &mut Crew::default();
         let shot = first_shot(model, local, seed, crew, None).unwrap().outcome;

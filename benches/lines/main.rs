@@ -150,8 +150,8 @@ fn cosine_rays(scene: &Scene, rays: u64) -> Vec<Ray> {
             let k = areas.partition_point(|&a| a <= area);
             let triangle = scene.triangle_ids().nth(k).unwrap();
             let normal = if stream.unit() < 0.5 { scene.normal(triangle) } else { -scene.normal(triangle) };
-            let origin = point_on_triangle(&mut stream).point(scene.corners(triangle));
-            let direction = cosine_direction(normal, &mut stream);
+            let origin = point_on_triangle(stream.point()).point(scene.corners(triangle));
+            let direction = cosine_direction(normal, stream.point());
             Ray { line: sir::geom::Line { origin, direction }, leaving: Some(triangle) }
         })
         .collect()
@@ -200,7 +200,7 @@ fn compare_all(name: &str, model: &Model, lines: u64, peer: Option<&Peer<'_>>, r
     let sphere = model.scene.bounding_sphere();
     let domain = Domain::Sphere(sphere);
     let streams = Streams::new(1, Stage::GLOBAL);
-    let lines: Vec<_> = (0..lines).map(|i| domain.sample(&mut streams.line(i))).collect();
+    let lines: Vec<_> = (0..lines).map(|i| domain.line(streams.line(i).point())).collect();
     let (mut hits, mut odd) = (0, 0);
     model.accel.tracer().all_hits_each(&lines, |found| {
         hits += found.hits().len();
@@ -257,7 +257,7 @@ fn patches(options: &Options) {
         let models = [few, 10 * few].map(|n| Model::new(scene.clone(), Subdivision::Patches(n)).unwrap());
         let domain = Domain::Sphere(scene.bounding_sphere());
         let streams = Streams::new(1, Stage::GLOBAL);
-        let lines: Vec<_> = (0..options.lines).map(|i| domain.sample(&mut streams.line(i))).collect();
+        let lines: Vec<_> = (0..options.lines).map(|i| domain.line(streams.line(i).point())).collect();
         let mut sides = 0;
         let mut find = |model: &Model| {
             let mut segments = Segments::default();
@@ -306,7 +306,7 @@ fn experiment(embree: Option<&Embree>, options: &Options) {
         let Some(scene) = scenes::ALL.iter().find(|s| s.0 == name).and_then(|s| s.1()) else { continue };
         let model = Model::new(scene, Subdivision::Patches(patches)).unwrap();
         let (local, global) = (options.lines, options.lines * 13 / 10);
-        let domain = Domain::hull(&model.scene);
+        let domain = Domain::hull(model.scene.vertices());
         let shoot = || {
             let stage = FirstShot::new(&model, local, 1).unwrap();
             let (tally, mut books) = (stage.tally(1), Books::default());
@@ -332,7 +332,7 @@ fn experiment(embree: Option<&Embree>, options: &Options) {
             let (stage, streams) =
                 (FirstShot::new(&model, local, 1).unwrap(), Streams::new(1, Stage::GLOBAL));
             let rays: Vec<_> = (0..local).map(|i| RayHit::new(&stage.ray(i).line, 1e-5)).collect();
-            let lines = (0..global).map(|i| RayHit::new(&domain.sample(&mut streams.line(i)), 0.0));
+            let lines = (0..global).map(|i| RayHit::new(&domain.line(streams.line(i).point()), 0.0));
             let lines: Vec<_> = lines.collect();
             let [closest, all] = [(Quality::High, false), (Quality::Medium, true)]
                 .map(|(quality, all)| e.scene(&model.scene, quality, all));
@@ -377,7 +377,7 @@ fn growth(embree: Option<&Embree>, options: &Options) {
         let rays = cosine_rays(&scene, options.lines / 4);
         let domain = Domain::Sphere(scene.bounding_sphere());
         let streams = Streams::new(1, Stage::GLOBAL);
-        let lines: Vec<_> = (0..options.lines / 4).map(|i| domain.sample(&mut streams.line(i))).collect();
+        let lines: Vec<_> = (0..options.lines / 4).map(|i| domain.line(streams.line(i).point())).collect();
         let n = rays.len() as f64;
         let mut sum = 0;
         let mut sum2 = 0;

@@ -22,7 +22,7 @@ fn main() -> Result<(), SceneError> {
     let start = std::time::Instant::now();
     let (mut empty, mut odd, mut hits) = (0u64, 0u64, 0u64);
     for i in 0..lines {
-        let count = tracer.all_hits(&domain.sample(&mut streams.line(i))).len() as u64;
+        let count = tracer.all_hits(&domain.line(streams.line(i).point())).len() as u64;
         empty += u64::from(count == 0);
         odd += count % 2;
         hits += count;

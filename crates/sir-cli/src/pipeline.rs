@@ -149,7 +149,7 @@ impl Body {
         match self {
             Self::Sphere => Domain::Sphere(scene.bounding_sphere()),
             Self::Box => Domain::Box(scene.bounding_box()),
-            Self::Hull => Domain::hull(scene),
+            Self::Hull => Domain::hull(scene.vertices()),
         }
     }
 

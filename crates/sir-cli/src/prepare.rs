@@ -78,7 +78,7 @@ pub fn prepare(pipeline: &Pipeline, progress: Progress) -> Result<Prepared, Erro
     let watch = Stopwatch::start();
     let (how, span) = subdivision;
     let focus = asked.map(|(&bounds, share)| {
-        let focus = Focus::new(bounds, share, &built.scene);
+        let focus = Focus::new(bounds, share, built.scene.bounding_box(), built.scene.bounding_sphere());
         focus.ok_or_else(|| pipeline.diagnostics(nothing_inside(pipeline, &built.scene)))
     });
     let focus = focus.transpose()?;

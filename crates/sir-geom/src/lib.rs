@@ -11,7 +11,7 @@
 //! What a reader had to leave out or change is never silent: it comes back beside the scene as a list of
 //! [`Warning`]s.
 //!
-//! [`BoundingBox`], [`BoundingSphere`] and [`ConvexHull`] enclose what there is; the hull is exact for any points.
+//! [`BoundingBox`] and [`BoundingSphere`] enclose what there is.
 //!
 //! Indices are typed ([`TriangleId`], [`MaterialId`], …): a triangle number cannot be used where a material
 //! number is meant.
@@ -42,7 +42,6 @@ mod appearance;
 mod builder;
 mod camera;
 mod color;
-mod hull;
 mod index;
 mod light;
 mod load;
@@ -58,7 +57,6 @@ pub use appearance::Opacities;
 pub use builder::{Built, SceneBuilder, SceneError, Warning};
 pub use camera::{Camera, Projection};
 pub use color::{Rgb, luminance};
-pub use hull::ConvexHull;
 pub use index::{FaceId, GroupId, MaterialId, VertexId};
 pub use light::{Arrival, Light, LightKind, Spread};
 pub use load::{LoadError, LoadOptions, SidesPolicy, load, load_with};

@@ -1,7 +1,5 @@
 //! Choosing at random in proportion to weights.
 
-use crate::stream::Stream;
-
 /// A choice among things in proportion to their weights, in the same time for any number of them (Walker 1977; Vose
 /// 1991).
 ///
@@ -29,25 +27,25 @@ impl AliasTable {
             (0..columns.len() as u32).partition(|&i| columns[i as usize].own < 1.0);
         // What fills up a column is left with less. When there is nothing left to fill up with, or to be filled up, all
         // that remain are full, but for rounding.
-        while let (Some(&poor), Some(&rich)) = (small.last(), large.last()) {
+        while let (Some(&under), Some(&over)) = (small.last(), large.last()) {
             small.pop();
-            columns[poor as usize].other = rich;
-            let left = columns[rich as usize].own - (1.0 - columns[poor as usize].own);
-            columns[rich as usize].own = left;
+            columns[under as usize].other = over;
+            let left = columns[over as usize].own - (1.0 - columns[under as usize].own);
+            columns[over as usize].own = left;
             if left < 1.0 {
                 large.pop();
-                small.push(rich);
+                small.push(over);
             }
         }
         Self { columns }
     }
 
-    /// The number of a thing.
+    /// The number of a thing: the first coordinate chooses a column, the second one of its two things.
     #[inline]
-    pub(crate) fn choose(&self, stream: &mut Stream) -> usize {
-        let column = (stream.unit() * self.columns.len() as f64) as usize;
+    pub(crate) fn sample(&self, [u, v]: [f64; 2]) -> usize {
+        let column = (u * self.columns.len() as f64) as usize;
         let Column { own, other } = self.columns[column];
-        if stream.unit() < own { column } else { other as usize }
+        if v < own { column } else { other as usize }
     }
 }
 
@@ -84,7 +82,7 @@ mod tests {
         let n = 100_000;
         let mut counted = [0.0; 5];
         for i in 0..n {
-            counted[table.choose(&mut streams.line(i))] += 1.0;
+            counted[table.sample(streams.line(i).point())] += 1.0;
         }
         for (count, w) in counted.iter().zip(weights) {
             let share = w / 10.0;

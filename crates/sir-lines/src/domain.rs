@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use sir_geom::{BoundingBox, BoundingSphere, ConvexHull, Line, Scene};
+use sir_types::{BoundingBox, BoundingSphere, Line};
 
 use crate::facets::Facets;
 use crate::forecast::Forecast;
+use crate::hull::ConvexHull;
 use crate::local::{cosine_direction, unit_vector};
-use crate::stream::Stream;
 
 /// A convex body around the scene, and the uniform (isotropic) lines through it.
 ///
@@ -30,28 +30,41 @@ pub enum Domain {
 }
 
 impl Domain {
-    /// The convex hull of the triangles of a scene.
+    /// Returns the convex hull of finite points, such as the vertices of a scene.
     ///
-    /// Corners of the hull are vertices, and all triangles are in it, but for 10⁻¹² of its extent: the bias of the forecast
-    /// is not larger than that. Where all vertices lie on a line to that precision, it is their box.
+    /// Corners of the hull are some of the points, and all points are in it, up to 10⁻¹² of its extent: the bias of the
+    /// forecast is not larger than that. Where all points lie on a line to that precision, the domain is their box; without
+    /// points, it is an empty box at the origin.
     #[must_use]
-    pub fn hull(scene: &Scene) -> Self {
-        let facets = ConvexHull::of(scene.vertices()).and_then(|hull| Facets::new(&hull));
-        facets.map_or(Self::Box(scene.bounding_box()), |facets| Self::Hull(facets.into()))
+    pub fn hull(points: &[DVec3]) -> Self {
+        match ConvexHull::of(points).and_then(|hull| Facets::new(&hull)) {
+            Some(facets) => Self::Hull(facets.into()),
+            None => {
+                let empty = BoundingBox { min: DVec3::ZERO, max: DVec3::ZERO };
+                Self::Box(BoundingBox::of(points.iter().copied()).unwrap_or(empty))
+            }
+        }
     }
 
-    /// A random line; its origin is on the surface of the body and its direction points inside.
+    /// Returns the line of a point of the unit cube: a uniform line if the point is uniform. Its origin is on the surface of
+    /// the body and its direction points inside.
+    ///
+    /// A sphere takes the first four coordinates only. Each point has a line: where two points of a sphere fall together,
+    /// the line passes through its center; with random points, that has a probability below 10⁻³⁰.
     #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Line {
+    #[must_use]
+    pub fn line(&self, point: [f64; 6]) -> Line {
         match self {
-            Self::Sphere(sphere) => loop {
-                let (a, b) = (unit_vector(stream), unit_vector(stream));
-                if let Some(direction) = (b - a).try_normalize() {
-                    break Line { origin: sphere.centre + sphere.radius * a, direction };
+            Self::Sphere(sphere) => {
+                let [s, t, u, v, ..] = point;
+                let (a, b) = (unit_vector([s, t]), unit_vector([u, v]));
+                Line {
+                    origin: sphere.centre + sphere.radius * a,
+                    direction: (b - a).try_normalize().unwrap_or(-a),
                 }
-            },
-            Self::Box(bounds) => sample_box(bounds, stream),
-            Self::Hull(facets) => facets.sample(stream),
+            }
+            Self::Box(bounds) => line_of_box(bounds, point),
+            Self::Hull(facets) => facets.line(point),
         }
     }
 
@@ -93,19 +106,22 @@ pub(crate) fn axis_of(place: f64, areas: DVec3) -> usize {
     }
 }
 
-fn sample_box(bounds: &BoundingBox, stream: &mut Stream) -> Line {
+/// A line that enters through the faces of a box. The coordinates choose the face (one), the place (one for each axis, of
+/// which that across the face is ignored) and the direction (two).
+#[inline]
+fn line_of_box(bounds: &BoundingBox, [u, x, y, z, p, q]: [f64; 6]) -> Line {
     let areas = bounds.face_areas();
     let half = areas.element_sum();
     // The first half of the surface are the faces at the smallest coordinates.
-    let mut place = 2.0 * half * stream.unit();
+    let mut place = 2.0 * half * u;
     let at_max = place >= half;
     if at_max {
         place -= half;
     }
     let axis = axis_of(place, areas);
-    let mut share = DVec3::new(stream.unit(), stream.unit(), stream.unit());
+    let mut share = DVec3::new(x, y, z);
     share[axis] = if at_max { 1.0 } else { 0.0 };
     let mut inward = DVec3::ZERO;
     inward[axis] = if at_max { -1.0 } else { 1.0 };
-    Line { origin: bounds.min + share * bounds.size(), direction: cosine_direction(inward, stream) }
+    Line { origin: bounds.min + share * bounds.size(), direction: cosine_direction(inward, [p, q]) }
 }

@@ -1,7 +1,5 @@
 //! Points that fill a square more evenly than random ones.
 
-use crate::stream::Stream;
-
 /// The first two powers of the inverse of the plastic number, the real root of `x³ = x + 1`.
 const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
@@ -16,9 +14,10 @@ pub struct EvenPoints {
 }
 
 impl EvenPoints {
-    /// A sequence with a random shift, which takes two numbers.
-    pub fn new(stream: &mut Stream) -> Self {
-        Self { shift: [stream.unit(), stream.unit()] }
+    /// Returns the sequence with this shift, a random point of the unit square.
+    #[must_use]
+    pub fn new(shift: [f64; 2]) -> Self {
+        Self { shift }
     }
 
     /// The point with this number, below 2³²; both coordinates are in `[0, 1)`.
@@ -48,7 +47,7 @@ mod tests {
         for (function, exact, variance) in functions {
             let errors: Vec<f64> = (0..repeats)
                 .map(|k| {
-                    let points = EvenPoints::new(&mut streams.line(k));
+                    let points = EvenPoints::new(streams.line(k).point());
                     (0..n).map(|i| function(points.at(i))).sum::<f64>() / n as f64 - exact
                 })
                 .collect();

@@ -1,11 +1,11 @@
 //! The lines that enter a convex body through flat facets.
 
 use glam::DVec3;
-use sir_geom::{ConvexHull, Line};
+use sir_types::Line;
 
 use crate::alias::AliasTable;
+use crate::hull::ConvexHull;
 use crate::local::{cosine_direction, point_on_triangle};
-use crate::stream::Stream;
 
 /// The surface of a convex body of flat facets, ready to draw lines from.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,11 +46,13 @@ impl Facets {
         self.surface
     }
 
-    /// A random line: uniform on the surface, and cosine-distributed about the normal that points inside.
+    /// Returns the line of a point of the unit cube: uniform on the surface, and cosine-distributed about the normal that
+    /// points inside. The coordinates choose the facet (two), the place in it (two) and the direction (two).
     #[inline]
-    pub(crate) fn sample(&self, stream: &mut Stream) -> Line {
-        let facet = &self.facets[self.by_area.choose(stream)];
-        let origin = point_on_triangle(stream).point(facet.corners);
-        Line { origin, direction: cosine_direction(facet.inward, stream) }
+    #[must_use]
+    pub fn line(&self, [u, v, s, t, p, q]: [f64; 6]) -> Line {
+        let facet = &self.facets[self.by_area.sample([u, v])];
+        let origin = point_on_triangle([s, t]).point(facet.corners);
+        Line { origin, direction: cosine_direction(facet.inward, [p, q]) }
     }
 }

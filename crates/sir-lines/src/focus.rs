@@ -7,11 +7,10 @@
 //! does counts in inverse proportion to its density (the balance heuristic, Veach and Guibas 1995), so that nothing is
 //! lost and everything is right on average, wherever the box is.
 
-use sir_geom::{BoundingBox, Line, Scene};
+use sir_types::{BoundingBox, BoundingSphere, Line};
 
 use crate::domain::Domain;
 use crate::forecast::Forecast;
-use crate::stream::Stream;
 
 /// How many times as dense lines may be in a focus as elsewhere: power is counted in whole numbers, which have to do for both.
 pub const DENSEST: u32 = 4096;
@@ -27,14 +26,15 @@ pub struct Focus {
 }
 
 impl Focus {
-    /// The part of a scene in a box, and the share of the lines that should be drawn through it, from 0 to below 1.
+    /// Returns the part of a scene in a box, and the share of the lines that should be drawn through it, from 0 to below 1.
+    /// The scene is given by the box and the sphere around it.
     ///
-    /// `None` if the box and the scene have nothing in common, or no more than a line.
+    /// `None` if the boxes have nothing in common, or no more than a line.
     #[must_use]
-    pub fn new(bounds: BoundingBox, share: f64, scene: &Scene) -> Option<Self> {
-        let margin = MARGIN * scene.bounding_sphere().radius;
+    pub fn new(bounds: BoundingBox, share: f64, scene: BoundingBox, sphere: BoundingSphere) -> Option<Self> {
+        let margin = MARGIN * sphere.radius;
         let bounds = BoundingBox { min: bounds.min - margin, max: bounds.max + margin };
-        let bounds = bounds.intersection(&scene.bounding_box())?;
+        let bounds = bounds.intersection(&scene)?;
         (bounds.face_areas().element_sum() > 0.0).then_some(Self { bounds, share })
     }
 
@@ -77,12 +77,12 @@ impl From<u64> for LocalLines {
 #[derive(Clone, Debug, PartialEq)]
 pub struct GlobalLines {
     domain: Domain,
-    aim: Option<Aim>,
+    mixture: Option<Mixture>,
 }
 
-/// What makes lines denser in a focus.
+/// The lines through a focus, and how they are mixed with those through the domain.
 #[derive(Clone, Debug, PartialEq)]
-struct Aim {
+struct Mixture {
     focus: Focus,
     through: Domain,
     /// Share of the lines that are drawn through the focus.
@@ -97,7 +97,7 @@ struct Aim {
 
 impl From<Domain> for GlobalLines {
     fn from(domain: Domain) -> Self {
-        Self { domain, aim: None }
+        Self { domain, mixture: None }
     }
 }
 
@@ -117,19 +117,22 @@ impl GlobalLines {
         let share = odds / (1.0 + odds);
         let surface = 1.0 / (share / inner + (1.0 - share) / outer);
         let step = (share * 2f64.powi(64)) as u64;
-        Self { domain, aim: Some(Aim { focus, through, share, step, weight, surface }) }
+        Self { domain, mixture: Some(Mixture { focus, through, share, step, weight, surface }) }
     }
 
-    /// A random line, and its weight. The index tells whether the focus is aimed at: of any number of successive lines, these are as many as there
-    /// should be, but for one; `offset` is a random number, the same for all.
+    /// Returns the line of a point of the unit cube, as [`Domain::line`] does, and its weight.
+    ///
+    /// The index decides whether the line is drawn through the focus: in any run of consecutive indices, the number of those
+    /// that are is within one of its expectation. `offset` is a random number, the same for all lines.
     #[inline]
-    pub fn sample(&self, index: u64, offset: u64, stream: &mut Stream) -> (Line, u32) {
-        let Some(aim) = &self.aim else { return (self.domain.sample(stream), 1) };
-        if aim.takes(index, offset) {
-            return (aim.through.sample(stream), 1);
+    #[must_use]
+    pub fn line(&self, index: u64, offset: u64, point: [f64; 6]) -> (Line, u32) {
+        let Some(mixture) = &self.mixture else { return (self.domain.line(point), 1) };
+        if mixture.is_focused(index, offset) {
+            return (mixture.through.line(point), 1);
         }
-        let line = self.domain.sample(stream);
-        let weight = if aim.focus.bounds.meets(&line) { 1 } else { aim.weight };
+        let line = self.domain.line(point);
+        let weight = if mixture.focus.bounds.meets(&line) { 1 } else { mixture.weight };
         (line, weight)
     }
 
@@ -142,41 +145,43 @@ impl GlobalLines {
     /// Where there are more lines than elsewhere, if they are not the same everywhere.
     #[must_use]
     pub fn focus(&self) -> Option<&Focus> {
-        self.aim.as_ref().map(|aim| &aim.focus)
+        self.mixture.as_ref().map(|mixture| &mixture.focus)
     }
 
     /// Share of the lines that are drawn through the focus.
     #[must_use]
     pub fn share(&self) -> f64 {
-        self.aim.as_ref().map_or(0.0, |aim| aim.share)
+        self.mixture.as_ref().map_or(0.0, |mixture| mixture.share)
     }
 
     /// The weight of lines that do not meet the focus, at least 1: how many times as dense lines are in it.
     #[must_use]
     pub fn weight(&self) -> u32 {
-        self.aim.as_ref().map_or(1, |aim| aim.weight)
+        self.mixture.as_ref().map_or(1, |mixture| mixture.weight)
     }
 
     /// What to expect of this number of lines: the sum of the weights of those that cross a surface, anywhere.
     #[must_use]
     pub fn forecast(&self, lines: u64) -> Forecast {
-        Forecast { lines, surface: self.aim.as_ref().map_or(self.domain.surface(), |aim| aim.surface) }
+        let surface = self.mixture.as_ref().map_or(self.domain.surface(), |mixture| mixture.surface);
+        Forecast { lines, surface }
     }
 
     /// How many successive lines there are whose weights add up to at most 2³¹.
     #[must_use]
     pub fn most(&self) -> u64 {
-        let Some(aim) = &self.aim else { return 1 << 31 };
-        let weight = f64::from(aim.weight);
-        let mean = aim.share + (1.0 - aim.share) * weight;
+        let Some(mixture) = &self.mixture else { return 1 << 31 };
+        let weight = f64::from(mixture.weight);
+        let mean = mixture.share + (1.0 - mixture.share) * weight;
         // There may be one line more of either kind than expected.
         ((2f64.powi(31) - 2.0 * weight) / (mean + 1e-6)) as u64
     }
 }
 
-impl Aim {
+impl Mixture {
+    /// True if this line is drawn through the focus.
     #[inline]
-    fn takes(&self, index: u64, offset: u64) -> bool {
+    fn is_focused(&self, index: u64, offset: u64) -> bool {
         let place = index.wrapping_mul(self.step).wrapping_add(offset);
         place.checked_add(self.step).is_none()
     }
@@ -200,11 +205,11 @@ mod tests {
         cuboid(&mut b, DVec3::ZERO, DVec3::new(20.0, 2.0, 20.0), [grey; 6], Facing::Inward);
         let scene = b.build().unwrap().scene;
         let bounds = BoundingBox { min: DVec3::new(-5.0, 0.0, -5.0), max: DVec3::new(2.0, 3.0, 1.0) };
-        let focus = Focus::new(bounds, share, &scene).unwrap();
+        let focus = Focus::new(bounds, share, scene.bounding_box(), scene.bounding_sphere()).unwrap();
         let in_scene = focus.bounds();
         assert_eq!(in_scene.min, DVec3::ZERO);
         assert!((in_scene.max - DVec3::new(2.0, 2.0, 1.0)).abs().max_element() < 1e-4);
-        GlobalLines::focused(Domain::hull(&scene), focus)
+        GlobalLines::focused(Domain::hull(scene.vertices()), focus)
     }
 
     /// The sum of weights of the lines that cross a disc is that of the forecast, in the focus, outside of it, and where it is half in it: within
@@ -216,7 +221,7 @@ mod tests {
         for share in [0.5, 0.9] {
             let lines = corner(share);
             assert!(lines.weight() > 10 && (lines.share() - share).abs() < 0.05, "{}", lines.share());
-            let all: Vec<_> = (0..LINES).map(|i| lines.sample(i, 12_345, &mut streams.line(i))).collect();
+            let all: Vec<_> = (0..LINES).map(|i| lines.line(i, 12_345, streams.line(i).point())).collect();
             let radius = 0.4;
             for (centre, normal) in [
                 (DVec3::new(1.0, 1.0, 0.5), DVec3::Y),
@@ -249,14 +254,14 @@ mod tests {
     #[test]
     fn the_share_is_kept_in_every_range() {
         let lines = corner(0.7);
-        let aim = lines.aim.as_ref().unwrap();
+        let mixture = lines.mixture.as_ref().unwrap();
         let share = lines.share();
         for offset in [0, 1 << 63, u64::MAX] {
             for start in [0, 17, 1 << 40] {
                 let mut taken = 0;
                 for n in 0..3_000_u32 {
                     assert!((f64::from(taken) - share * f64::from(n)).abs() <= 1.0 + 1e-6);
-                    taken += u32::from(aim.takes(start + u64::from(n), offset));
+                    taken += u32::from(mixture.is_focused(start + u64::from(n), offset));
                 }
             }
         }

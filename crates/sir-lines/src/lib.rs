@@ -1,41 +1,68 @@
-//! Lines: where they come from, how many will cross a surface, and their random numbers.
+//! Samplers of lines for light transport: global lines through a convex body, local lines from a surface or a point, and the
+//! random or low-discrepancy points that they are made from.
 //!
 //! # Design
 //!
-//! A *line is a pure function of (seed, stage, index)*. [`Streams`] gives every line its own random stream, so it
-//! does not matter which thread, rank or restart traces it. Floats are made from raw bits here, and directions and
-//! points use only `+ − × ÷ √`, because those give the same bits on every machine.
+//! *A sampler is a function.* It takes a point `[f64; K]` of the unit cube `[0, 1)^K` and returns a line, a direction or a place;
+//! uniform points give the density that its documentation states. So any sequence of points serves: [`random_point`] draws one
+//! from any generator of the crate [`rand`], [`EvenPoints`] is a low-discrepancy sequence, and a caller may bring its own.
 //!
-//! * Global lines: a [`Domain`] is a convex body around the scene: its convex hull, its box, or a sphere. The uniform
-//!   (isotropic) lines of the body meet a surface of area `A` in proportion to `A`, which integral geometry turns into a
-//!   [`Forecast`] of the number of crossings.
-//! * [`GlobalLines`] are those of a domain, and maybe more of them through a part of the scene that matters, a [`Focus`].
-//! * Local lines: [`cosine_direction`] and [`point_on_triangle`] leave one surface as diffuse light does; [`unit_vector`] and
-//!   [`spot_direction`] leave a point. [`ParallelLines`] come from one direction.
-//! * [`EvenPoints`] are random, but not independent: for integrals over few lines, each of which has to count.
-//! * [`Allocation`] shares a number of lines among sources in proportion to their power.
+//! | sampler | K | result |
+//! |---|---|---|
+//! | [`Domain::line`], [`GlobalLines::line`] | 6 | a uniform (isotropic) line through a convex body |
+//! | [`ParallelLines::line`] | 3 | a line of one direction through a box |
+//! | [`cosine_direction`] | 2 | a direction of diffuse light |
+//! | [`unit_vector`] | 2 | a uniform direction |
+//! | [`spot_direction`] | 5 | a direction of a spot light |
+//! | [`point_on_triangle`], [`continuous_point_on_triangle`] | 2 | a uniform point of a triangle |
+//!
+//! *A line is a function of (seed, stage, index).* [`Streams`] gives each line a random stream of its own, so that it does not
+//! matter which thread, process or restart traces it. A [`Stream`] is a generator of `rand`, too.
+//!
+//! *The same bits on every machine.* Numbers are made from raw bits here, and samplers use only `+ − × ÷ √`.
+//!
+//! *Counts are forecast.* Uniform lines through a convex body cross a surface of area `A` in it in proportion to `A` (Cauchy and
+//! Crofton), which [`Forecast`] states as a number of crossings. [`GlobalLines`] may draw more lines through a part of the scene,
+//! a [`Focus`], and gives each line the weight that makes up for it. [`Allocation`] shares lines among light sources by
+//! systematic sampling.
+//!
+//! The crate needs no scene: a [`Domain`] is made from points, a box or a sphere. [`ConvexHull`] is exact for any points.
 //!
 //! # Example
 //!
-//! How often do lines cross a disc of area 1 inside the unit sphere?
+//! How often do random lines cross a disc of area 1 inside the unit sphere?
 //!
 //! ```
-//! use sir_geom::BoundingSphere;
-//! use sir_lines::{Domain, Stage, Streams};
+//! use rand::{SeedableRng, rngs::SmallRng};
+//! use sir_lines::{Domain, random_point};
+//! use sir_types::BoundingSphere;
 //!
 //! let domain = Domain::Sphere(BoundingSphere { centre: glam::DVec3::ZERO, radius: 1.0 });
-//! let streams = Streams::new(7, Stage::GLOBAL);
-//! let lines = 100_000;
+//! let mut generator = SmallRng::seed_from_u64(7);
 //! let disc = 1.0 / std::f64::consts::PI; // squared radius of a disc of area 1 in the plane z = 0
-//! let counted = (0..lines)
-//!     .map(|i| domain.sample(&mut streams.line(i)))
-//!     .filter(|l| {
-//!         let hit = l.at(-l.origin.z / l.direction.z);
-//!         hit.length_squared() < disc
-//!     })
+//! let lines = 100_000;
+//! let crossings = (0..lines)
+//!     .map(|_| domain.line(random_point(&mut generator)))
+//!     .filter(|line| line.at(-line.origin.z / line.direction.z).length_squared() < disc)
 //!     .count() as f64;
 //! let expected = domain.forecast(lines).crossings(1.0);
-//! assert!((counted - expected).abs() < 4.0 * expected.sqrt());
+//! assert!((crossings - expected).abs() < 4.0 * expected.sqrt());
+//! ```
+//!
+//! What share of the diffuse light of a small patch meets a parallel disc of radius 1 at a distance of 1? One half, as a
+//! low-discrepancy sequence finds with few lines:
+//!
+//! ```
+//! use glam::DVec3;
+//! use sir_lines::{EvenPoints, cosine_direction};
+//!
+//! let points = EvenPoints::new([0.3, 0.8]);
+//! let lines = 1000;
+//! let meet = (0..lines)
+//!     .map(|i| cosine_direction(DVec3::Z, points.at(i)))
+//!     .filter(|direction| direction.x.hypot(direction.y) < direction.z)
+//!     .count() as f64;
+//! assert!((meet / lines as f64 - 0.5).abs() < 0.005);
 //! ```
 
 mod alias;
@@ -45,8 +72,10 @@ mod even;
 mod facets;
 mod focus;
 mod forecast;
+mod hull;
 mod local;
 mod parallel;
+mod point;
 mod stream;
 mod turn;
 
@@ -56,9 +85,10 @@ pub use even::EvenPoints;
 pub use facets::Facets;
 pub use focus::{DENSEST, Focus, GlobalLines, LocalLines};
 pub use forecast::Forecast;
+pub use hull::ConvexHull;
 pub use local::{
-    cosine_direction, cosine_direction_of, point_on_triangle, point_on_triangle_of, spot_direction,
-    unit_vector,
+    continuous_point_on_triangle, cosine_direction, point_on_triangle, spot_direction, unit_vector,
 };
 pub use parallel::ParallelLines;
+pub use point::random_point;
 pub use stream::{Stage, Stream, Streams, seed_of_repeat};

@@ -1,79 +1,67 @@
 //! Local lines: points on a surface and the directions of diffuse light.
 
 use glam::DVec3;
-use sir_geom::Barycentric;
+use sir_types::Barycentric;
 
-use crate::stream::Stream;
 use crate::turn::sin_cos_of_turn;
 
-/// A uniform point of the unit sphere: its height is uniform (Archimedes), and so is its longitude.
-///
-/// Nothing is rejected: a processor would guess wrong each time.
+/// Returns the point of the unit sphere that belongs to a point of the unit square. The map preserves area: the height is
+/// linear in the first coordinate (Archimedes), the longitude in the second.
 #[inline]
-pub fn unit_vector(stream: &mut Stream) -> DVec3 {
-    let (u, turn) = (stream.unit(), stream.unit());
-    unit_vector_of([u, turn])
-}
-
-/// The point of the unit sphere that belongs to a point of the unit square, area for area.
-#[inline]
-fn unit_vector_of([u, turn]: [f64; 2]) -> DVec3 {
+#[must_use]
+pub fn unit_vector([u, turn]: [f64; 2]) -> DVec3 {
     let (sin, cos) = sin_cos_of_turn(turn);
     let radius = 2.0 * (u * (1.0 - u)).sqrt();
     DVec3::new(radius * cos, radius * sin, 1.0 - 2.0 * u)
 }
 
-/// A direction with density `cos θ / π` about a unit normal: the normal plus a uniform point of the unit sphere.
+/// Returns the direction with density `cos θ / π` about a unit normal that belongs to a point of the unit square: the normal
+/// plus a point of the unit sphere. Evenly distributed points become evenly distributed directions.
+///
+/// A sum too short to have a direction gives the normal itself. Random points lead there with a probability of 2.5 · 10⁻¹⁷.
 #[inline]
-pub fn cosine_direction(normal: DVec3, stream: &mut Stream) -> DVec3 {
-    loop {
-        let sum = normal + unit_vector(stream);
-        // Too short a sum has no direction; leaving it out changes the density by 1e−16.
-        if sum.length_squared() > 1e-16 {
-            break sum.normalize();
-        }
-    }
+#[must_use]
+pub fn cosine_direction(normal: DVec3, point: [f64; 2]) -> DVec3 {
+    let sum = normal + unit_vector(point);
+    if sum.length_squared() > 1e-16 { sum.normalize() } else { normal }
 }
 
-/// A direction about an axis of unit length with the density of a spot: uniform where the cosine of the angle to the axis is above `inner`,
-/// in proportion to `t²` where it falls to `outer`, with `t` linear in the cosine.
+/// Returns the direction about an axis of unit length that belongs to a point of the unit cube, with the density of a spot:
+/// uniform where the cosine of the angle to the axis is above `inner`, in proportion to `t²` where it falls to `outer`, with
+/// `t` linear in the cosine.
 ///
+/// The first coordinate chooses the inner cone or the ring around it. The cone takes the next two, the ring the next four:
 /// `t` has the density `3t²` of the largest of three uniform numbers, so there is no cube root to take.
 #[inline]
-pub fn spot_direction(axis: DVec3, inner: f64, outer: f64, stream: &mut Stream) -> DVec3 {
+#[must_use]
+pub fn spot_direction(axis: DVec3, inner: f64, outer: f64, [choice, a, b, c, d]: [f64; 5]) -> DVec3 {
     let (full, ring) = (1.0 - inner, (inner - outer) / 3.0);
     // One minus the cosine, which keeps its digits in a narrow cone.
-    let below = if (full + ring) * stream.unit() < full {
-        full * stream.unit()
+    let (below, turn) = if (full + ring) * choice < full {
+        (full * a, b)
     } else {
-        let t = stream.unit().max(stream.unit()).max(stream.unit());
-        full + (inner - outer) * (1.0 - t)
+        let t = a.max(b).max(c);
+        (full + (inner - outer) * (1.0 - t), d)
     };
-    let (sin, cos) = sin_cos_of_turn(stream.unit());
+    let (sin, cos) = sin_cos_of_turn(turn);
     let (x, y) = axis.any_orthonormal_pair();
     axis * (1.0 - below) + (x * cos + y * sin) * (below * (2.0 - below)).sqrt()
 }
 
-/// As [`cosine_direction`], for a point of the unit square instead of random numbers: evenly distributed points become evenly
-/// distributed directions.
+/// Returns the point of a triangle that belongs to a point of the unit square: the square becomes a parallelogram, which is
+/// folded. The map preserves area, and takes no root; it is not continuous, so that evenly distributed points should go
+/// through [`continuous_point_on_triangle`].
 #[inline]
 #[must_use]
-pub fn cosine_direction_of(normal: DVec3, point: [f64; 2]) -> DVec3 {
-    (normal + unit_vector_of(point)).try_normalize().unwrap_or(normal)
-}
-
-/// A uniform point of a triangle: a uniform point of a parallelogram, folded.
-#[inline]
-pub fn point_on_triangle(stream: &mut Stream) -> Barycentric {
-    let (v, w) = (stream.unit(), stream.unit());
+pub fn point_on_triangle([v, w]: [f64; 2]) -> Barycentric {
     if v + w > 1.0 { Barycentric { v: 1.0 - v, w: 1.0 - w } } else { Barycentric { v, w } }
 }
 
-/// The point of a triangle that belongs to a point of the unit square, area for area. Evenly distributed points stay so: nothing
-/// is folded (Turk 1990).
+/// Returns the point of a triangle that belongs to a point of the unit square, by a continuous map that preserves area (Turk
+/// 1990): evenly distributed points stay so.
 #[inline]
 #[must_use]
-pub fn point_on_triangle_of([s, t]: [f64; 2]) -> Barycentric {
+pub fn continuous_point_on_triangle([s, t]: [f64; 2]) -> Barycentric {
     let root = s.sqrt();
     Barycentric { v: root * (1.0 - t), w: root * t }
 }
@@ -90,7 +78,7 @@ mod tests {
         let streams = Streams::new(5, Stage::FIRST_SHOT);
         let (mut first, mut second) = (0.0, 0.0);
         for i in 0..n {
-            let cos = cosine_direction(normal, &mut streams.line(i)).dot(normal);
+            let cos = cosine_direction(normal, streams.line(i).point()).dot(normal);
             assert!(cos >= 0.0);
             first += cos;
             second += cos * cos;
@@ -120,7 +108,7 @@ mod tests {
             let mut sums = [0.0; 2];
             let mut side = DVec3::ZERO;
             for i in 0..n {
-                let direction = spot_direction(axis, inner, outer, &mut streams.line(i));
+                let direction = spot_direction(axis, inner, outer, streams.line(i).point());
                 assert!((direction.length() - 1.0).abs() < 1e-12);
                 let t = t(direction.dot(axis));
                 assert!((-1e-12..=top + 1e-12).contains(&t));
@@ -142,7 +130,7 @@ mod tests {
         let n = 100_000;
         let mut sum = [0.0; 3];
         for i in 0..n {
-            let Barycentric { v, w } = point_on_triangle(&mut streams.line(i));
+            let Barycentric { v, w } = point_on_triangle(streams.line(i).point());
             assert!(v >= 0.0 && w >= 0.0 && v + w <= 1.0);
             sum = [sum[0] + v, sum[1] + w, sum[2] + v * w];
         }
@@ -162,10 +150,10 @@ mod tests {
         let normal = DVec3::new(-2.0, 1.0, 2.0) / 3.0;
         let (mut parts, mut cosine, mut square) = ([0.0; 4], 0.0, 0.0);
         for point in grid {
-            let Barycentric { v, w } = point_on_triangle_of(point);
+            let Barycentric { v, w } = continuous_point_on_triangle(point);
             assert!(v >= 0.0 && w >= 0.0 && v + w <= 1.0);
             parts[[v > 0.5, w > 0.5, v + w < 0.5].iter().position(|&within| within).unwrap_or(3)] += 1.0;
-            let cos = cosine_direction_of(normal, point).dot(normal);
+            let cos = cosine_direction(normal, point).dot(normal);
             (cosine, square) = (cosine + cos, square + cos * cos);
         }
         let all = f64::from(n * n);

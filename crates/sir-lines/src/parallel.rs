@@ -1,10 +1,9 @@
 //! Lines from one direction.
 
 use glam::DVec3;
-use sir_geom::{BoundingBox, Line};
+use sir_types::{BoundingBox, Line};
 
 use crate::domain::axis_of;
-use crate::stream::Stream;
 
 /// The lines of one direction that meet a box, uniform in the plane across them.
 ///
@@ -42,13 +41,15 @@ impl ParallelLines {
         self.areas.element_sum()
     }
 
-    /// A random line; its origin is on the box.
+    /// Returns the line of a point of the unit cube; its origin is on the box. The coordinates choose the face (one) and the
+    /// place in it (two).
     #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Line {
-        let axis = axis_of(self.area() * stream.unit(), self.areas);
+    #[must_use]
+    pub fn line(&self, [u, s, t]: [f64; 3]) -> Line {
+        let axis = axis_of(self.area() * u, self.areas);
         let mut share = DVec3::ZERO;
-        share[(axis + 1) % 3] = stream.unit();
-        share[(axis + 2) % 3] = stream.unit();
+        share[(axis + 1) % 3] = s;
+        share[(axis + 2) % 3] = t;
         share[axis] = if self.direction[axis] > 0.0 { 0.0 } else { 1.0 };
         Line { origin: self.bounds.min + share * self.bounds.size(), direction: self.direction }
     }
@@ -70,7 +71,7 @@ mod tests {
             for centre in [DVec3::ZERO, DVec3::new(0.0, 1.0, -2.0)] {
                 let n = 100_000;
                 let meets = |i: &u64| {
-                    let origin = lines.sample(&mut streams.line(*i)).origin;
+                    let origin = lines.line(streams.line(*i).point()).origin;
                     (origin - centre).cross(direction).length_squared() < 1.0
                 };
                 let share = (0..n).filter(meets).count() as f64 / n as f64;

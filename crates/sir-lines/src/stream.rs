@@ -1,7 +1,11 @@
 //! Random streams, one per line.
 
+use std::convert::Infallible;
+
+use rand::{Rng, SeedableRng, TryRng};
 use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+use crate::point::{random_point, unit};
 
 /// What a family of lines is for. Lines of different stages are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -71,20 +75,47 @@ pub fn seed_of_repeat(seed: u64, repeat: u64) -> u64 {
     if repeat == 0 { seed } else { Streams::new(seed, Stage::REPEAT).line(repeat).0.next_u64() }
 }
 
-/// A sequence of random numbers.
+/// A sequence of random numbers: a generator of the crate [`rand`].
 #[derive(Clone, Debug)]
 pub struct Stream(SplitMix64);
 
 impl Stream {
-    /// A uniform number in `[0, 1)`: a multiple of 2⁻⁵³.
+    /// Draws a uniform number in `[0, 1)`: a multiple of 2⁻⁵³.
     #[inline]
     pub fn unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+        unit(self.0.next_u64())
+    }
+
+    /// Draws a uniform point of the unit cube `[0, 1)^K`, coordinate by coordinate, as [`unit`](Self::unit) does.
+    #[inline]
+    pub fn point<const K: usize>(&mut self) -> [f64; K] {
+        random_point(&mut self.0)
+    }
+}
+
+impl TryRng for Stream {
+    type Error = Infallible;
+
+    #[inline]
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        self.0.try_next_u32()
+    }
+
+    #[inline]
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        self.0.try_next_u64()
+    }
+
+    #[inline]
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        self.0.try_fill_bytes(bytes)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+
     use super::*;
 
     /// These numbers are part of the contract: if they change, no old result can be reproduced.
@@ -93,6 +124,18 @@ mod tests {
         let mut s = Streams::new(1, Stage::GLOBAL).line(0);
         let first: Vec<String> = (0..3).map(|_| format!("{:.15}", s.unit())).collect();
         assert_eq!(first, ["0.155747808824734", "0.782331486519907", "0.072572689650649"]);
+    }
+
+    /// A stream is a generator of `rand` and gives the numbers that it gives by itself.
+    #[test]
+    fn streams_are_generators() {
+        let line = || Streams::new(1, Stage::GLOBAL).line(7);
+        let (mut ours, mut theirs) = (line(), line());
+        let numbers: [f64; 20] = ours.point();
+        assert_eq!(numbers, std::array::from_fn(|_| theirs.random::<f64>()));
+        let (mut ours, mut theirs) = (line(), line());
+        assert_eq!(numbers, std::array::from_fn(|_| ours.unit()));
+        assert_eq!(numbers, random_point(&mut theirs));
     }
 
     #[test]
@@ -107,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbouring_lines_seeds_and_stages_are_uncorrelated() {
+    fn neighboring_lines_seeds_and_stages_are_uncorrelated() {
         let n = 20_000;
         let centred = |seed, stage, i| Streams::new(seed, stage).line(i).unit() - 0.5;
         let (global, local) = (Stage::GLOBAL, Stage::FIRST_SHOT);

@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut crew = Crew::default().watched_by(Tenths(0));
     let (lines, seed) = (1_000_000, 1);
     let shot = first_shot(&model, lines, seed, &mut crew, None)?.outcome;
-    let domain = Domain::hull(&model.scene);
+    let domain = Domain::hull(model.scene.vertices());
     let mut crew = Crew::default().watched_by(Tenths(0));
     let run = batches(&model, shot, lines, domain, seed, &mut crew, None)?;
     let mean = run.outcome.solution.irradiance.iter().sum::<Rgb>() / model.mesh.side_count() as f64;

@@ -38,7 +38,7 @@
 //! let grey = builder.add_material(grey);
 //! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
 //! let model = Model::new(builder.build()?.scene, Subdivision::PerTriangle)?;
-//! let domain = Domain::hull(&model.scene);
+//! let domain = Domain::hull(model.scene.vertices());
 //!
 //! let solve = |threads: usize| {
 //!     let crew = &mut Crew::of(NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN));

@@ -8,8 +8,8 @@
 use std::path::Path;
 use std::time::Instant;
 
-use sir_geom::{ConvexHull, LoadOptions, load};
-use sir_lines::Domain;
+use sir_geom::{LoadOptions, load};
+use sir_lines::{ConvexHull, Domain};
 use sir_mesh::Subdivision;
 use sir_radiosity::{Batches, Books, Counts, FirstShot, Model};
 
@@ -40,8 +40,11 @@ fn measure(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     shot.trace(0, 0..100_000, &tally, &mut books);
     let shot = shot.finish(tally, books)?;
 
-    let domains =
-        [Domain::Sphere(scene.bounding_sphere()), Domain::Box(scene.bounding_box()), Domain::hull(scene)];
+    let domains = [
+        Domain::Sphere(scene.bounding_sphere()),
+        Domain::Box(scene.bounding_box()),
+        Domain::hull(scene.vertices()),
+    ];
     let mut times = [f64::INFINITY; 3];
     let mut counts = [Counts::default(); 3];
     for _ in 0..TRIES {

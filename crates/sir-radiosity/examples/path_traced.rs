@@ -83,7 +83,7 @@ impl<'a> Emitters<'a> {
         let chosen = stream.unit() * self.total;
         let source = self.sources.get(self.up_to.partition_point(|&sum| sum <= chosen))?;
         let Emitter::Surface { corners, normal, .. } = source.emitter else { return None };
-        let away = point_on_triangle(stream).point(corners) - from.point;
+        let away = point_on_triangle(stream.point()).point(corners) - from.point;
         let direction = away.try_normalize()?;
         let cosines = direction.dot(from.normal).max(0.0) * -direction.dot(normal).min(0.0);
         let power = source.power * (self.total / source.power.element_sum());
@@ -134,7 +134,7 @@ fn wave(
         .into_iter()
         .enumerate()
         .map(|(number, mut stream)| {
-            let point = point_on_triangle(&mut stream).point(corners);
+            let point = point_on_triangle(stream.point()).point(corners);
             Walk { end: Vertex { triangle, point, normal }, weight: Rgb::ONE, number, stream }
         })
         .collect();
@@ -156,7 +156,7 @@ fn wave(
         let rays: Vec<_> = walks
             .iter_mut()
             .map(|walk| {
-                let direction = cosine_direction(walk.end.normal, &mut walk.stream);
+                let direction = cosine_direction(walk.end.normal, walk.stream.point());
                 walk.end.ray(direction)
             })
             .collect();

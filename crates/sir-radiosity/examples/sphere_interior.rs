@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let shot = FirstShot::new(&model, lines, seed)?;
     let (tally, mut books) = (shot.tally(1), Books::default());
     shot.trace(0, 0..lines, &tally, &mut books);
-    let domain = Domain::hull(&model.scene);
+    let domain = Domain::hull(model.scene.vertices());
     let settings = MultipathSettings::new(lines, domain);
     let multipath = Multipath::new(&model, shot.finish(tally, books)?, settings, seed, 1);
     let mut books = Books::default();

@@ -281,7 +281,7 @@ impl<'m> Batches<'m> {
         let Books { balance, counts } = books;
         let page = self.ledger.page(worker);
         let soon = |side| page.prefetch(side);
-        let draw = |index| self.lines.sample(index, self.offset, &mut self.streams.line(index));
+        let draw = |index| self.lines.line(index, self.offset, self.streams.line(index).point());
         if self.lines.focus().is_none() {
             // The weight is known, and costs nothing.
             global::trace(self.model, draw, lines, counts, soon, |_, _, segment| {

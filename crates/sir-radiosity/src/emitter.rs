@@ -69,19 +69,19 @@ impl Emitter {
         match self {
             Self::Surface { triangle, corners, normal, .. } => {
                 let origin = point_on_surface(scene, *triangle, *corners, stream);
-                let line = Line { origin, direction: cosine_direction(*normal, stream) };
+                let line = Line { origin, direction: cosine_direction(*normal, stream.point()) };
                 Ray { line, leaving: Some(*triangle) }
             }
             Self::Point { position, spread } => {
                 let direction = match *spread {
-                    Spread::Isotropic => unit_vector(stream),
-                    Spread::Lambertian { axis } => cosine_direction(axis, stream),
-                    Spread::Spot { axis, inner, outer } => spot_direction(axis, inner, outer, stream),
+                    Spread::Isotropic => unit_vector(stream.point()),
+                    Spread::Lambertian { axis } => cosine_direction(axis, stream.point()),
+                    Spread::Spot { axis, inner, outer } => spot_direction(axis, inner, outer, stream.point()),
                 };
                 Line { origin: *position, direction }.into()
             }
             Self::Distant { lines, around } => loop {
-                let line = lines.sample(stream);
+                let line = lines.line(stream.point());
                 if !around.is_some_and(|bounds| bounds.meets(&line)) {
                     break from_outside(scene, lines.bounds(), line);
                 }
@@ -104,14 +104,14 @@ pub(crate) fn point_on_surface(
     part: [DVec3; 3],
     stream: &mut Stream,
 ) -> DVec3 {
-    let mut point = point_on_triangle(stream).point(part);
+    let mut point = point_on_triangle(stream.point()).point(part);
     if scene.lets_light_through(triangle) {
         let corners = scene.corners(triangle);
         for _ in 0..TRIES {
             if stream.unit() < scene.opacity_at(triangle, Barycentric::of(point, corners)) {
                 break;
             }
-            point = point_on_triangle(stream).point(part);
+            point = point_on_triangle(stream.point()).point(part);
         }
     }
     point
@@ -126,7 +126,7 @@ fn from_sky(
 ) -> Ray {
     let bounds = Domain::Box(opening.through);
     loop {
-        let line = bounds.sample(stream);
+        let line = bounds.line(stream.point());
         if opening.around.is_some_and(|around| around.meets(&line)) {
             continue;
         }

@@ -43,7 +43,7 @@
 //! shot.trace(0, 0..lines, &tally, &mut books);
 //! let shot = shot.finish(tally, books)?;
 //!
-//! let domain = Domain::hull(&model.scene);
+//! let domain = Domain::hull(model.scene.vertices());
 //! let settings = MultipathSettings::new(lines, domain);
 //! let multipath = Multipath::new(&model, shot, settings, seed, 1);
 //! let mut books = Books::default();

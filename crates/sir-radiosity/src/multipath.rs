@@ -161,7 +161,7 @@ impl<'m> Multipath<'m> {
         let Books { balance, counts } = books;
         let (model, page) = (self.model, self.ledger.page(worker));
         let soon = |side| page.prefetch(side);
-        let draw = |index| (self.settings.domain.sample(&mut self.streams.line(index)), 1);
+        let draw = |index| (self.settings.domain.line(self.streams.line(index).point()), 1);
         global::trace(model, draw, now, counts, soon, |index, _, segment| {
             exchange(model, page, unshot, balance, segment, index < *tail);
         });

@@ -99,7 +99,7 @@ fn a_furnished_room_looks_the_same_in_all_domains() {
     let model = room();
     let shot = shoot(&model, LINES, 1);
     let direct = shot.solution(&model).error;
-    let hull = Domain::hull(&model.scene).surface();
+    let hull = Domain::hull(model.scene.vertices()).surface();
     for (way, transport) in TRANSPORTS {
         // As many crossings in each domain.
         let runs = domains(&model).map(|domain| {
@@ -147,7 +147,7 @@ fn in_a_convex_room_no_line_of_the_hull_is_wasted() {
     let model = room();
     let shot = shoot(&model, 1_000, 1);
     let scene = &model.scene;
-    let hull = Domain::hull(scene).surface();
+    let hull = Domain::hull(scene.vertices()).surface();
     for domain in domains(&model) {
         let (name, surface) = (domain.name(), domain.surface());
         let counts = batches_in(domain, &model, shot.clone(), 300_000, 1).counts;

@@ -32,7 +32,7 @@ fn square() -> (Model, Focus, f64) {
     });
     let model = Model::new(scene(b), Subdivision::PerTriangle).unwrap();
     let bounds = BoundingBox { min: DVec3::new(-0.5, -0.5, 0.05), max: DVec3::new(0.5, 0.5, 3.0) };
-    let focus = Focus::new(bounds, 0.75, &model.scene).unwrap();
+    let focus = Focus::new(bounds, 0.75, model.scene.bounding_box(), model.scene.bounding_sphere()).unwrap();
     (model, focus, 100.0 + 500.0 * 0.8)
 }
 
@@ -118,7 +118,7 @@ fn furnace() -> (Model, Focus) {
     shapes::quad(&mut b, [at(-12.0, -12.0), at(13.0, -12.0), at(13.0, 13.0), at(-12.0, 13.0)], ground);
     let model = Model::new(scene(b), Subdivision::MaxEdge(0.5)).unwrap();
     let bounds = BoundingBox { min: DVec3::ZERO, max: DVec3::ONE };
-    let focus = Focus::new(bounds, 0.75, &model.scene).unwrap();
+    let focus = Focus::new(bounds, 0.75, model.scene.bounding_box(), model.scene.bounding_sphere()).unwrap();
     (model, focus)
 }
 
@@ -130,7 +130,7 @@ fn a_furnace_on_a_wide_ground() {
     let exact = 1.0 / 0.3;
     let mut errors = Vec::new();
     for focus in [None, Some(focus)] {
-        let domain = Domain::hull(&model.scene);
+        let domain = Domain::hull(model.scene.vertices());
         let through = focus.map_or(domain.clone().into(), |focus| GlobalLines::focused(domain, focus));
         let (mut squares, mut count, mut means, mut stated) = (0.0, 0.0, Vec::new(), 0.0);
         for seed in 1..=SEEDS {

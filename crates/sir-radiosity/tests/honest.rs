@@ -93,7 +93,7 @@ impl Exact {
         let settings = MultipathSettings {
             replicas: 2,
             tail: lines / 2,
-            ..MultipathSettings::new(lines, Domain::hull(&self.model.scene))
+            ..MultipathSettings::new(lines, Domain::hull(self.model.scene.vertices()))
         };
         let all = replicas(&self.model, shot, settings, seed);
         (all.received, all.unit)

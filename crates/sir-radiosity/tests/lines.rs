@@ -22,7 +22,7 @@ fn facing_counts(model: &Model, domain: &Domain, lines: u64) -> Vec<Vec<u64>> {
         End::Side(side, _) => Some(side.index()),
         _ => None,
     };
-    let lines: Vec<_> = (0..lines).map(|i| domain.sample(&mut streams.line(i))).collect();
+    let lines: Vec<_> = (0..lines).map(|i| domain.line(streams.line(i).point())).collect();
     let mut segments = Segments::default();
     tracer.all_hits_each(&lines, |hits| {
         segments.find(&model.mesh, hits);
@@ -77,7 +77,7 @@ fn view_factors_of_a_cube() {
         add_polygon(&mut b, surface, m);
     }
     let model = per_face(b);
-    let count = facing_counts(&model, &Domain::hull(&model.scene), 500_000);
+    let count = facing_counts(&model, &Domain::hull(model.scene.vertices()), 500_000);
     let factors = reference("view-factors.json");
     let value = |id: &str| case(&factors, id)["values"]["F12"].as_f64().unwrap();
     let (opposite, adjacent) = (value("VF-01"), value("VF-03"));
@@ -123,7 +123,9 @@ fn view_factors_of_concentric_spheres() {
             spheres
         };
         let mut count = [[0; 2]; 2];
-        for (i, row) in facing_counts(&model, &Domain::hull(&model.scene), 500_000).iter().enumerate() {
+        for (i, row) in
+            facing_counts(&model, &Domain::hull(model.scene.vertices()), 500_000).iter().enumerate()
+        {
             for (j, &n) in row.iter().enumerate().take(sphere_of_side.len()) {
                 count[sphere_of_side[i]][sphere_of_side[j]] += n;
             }

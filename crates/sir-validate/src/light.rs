@@ -63,7 +63,7 @@ pub(crate) fn solve(model: &Model, lines: u64, seed: u64, crew: &mut Crew<'_>) -
     let shot = first_shot(model, lines * 2 / 5, seed, crew, None)?.outcome;
     let direct = shot.solution(model);
     let shot = second_shot(model, shot, lines / 10, seed, crew, None)?.outcome;
-    let domain = Domain::hull(&model.scene);
+    let domain = Domain::hull(model.scene.vertices());
     let all = batches(model, shot, lines / 2, domain, seed, crew, None)?.outcome.solution;
     Ok(Light { direct, all })
 }

@@ -31,7 +31,7 @@ fn pick(count: usize, s: &mut Stream) -> usize {
 
 fn any_origin(scene: &Scene, s: &mut Stream) -> DVec3 {
     let sphere = scene.bounding_sphere();
-    sphere.centre + sphere.radius * unit_vector(s)
+    sphere.centre + sphere.radius * unit_vector(s.point())
 }
 
 fn through(origin: DVec3, target: DVec3) -> Option<Line> {

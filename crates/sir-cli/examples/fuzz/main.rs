@@ -186,7 +186,7 @@ fn light(built: Option<Built>) {
         return;
     };
     let Ok(model) = Model::new(scene, Subdivision::Patches(50)) else { return };
-    drop(Domain::hull(&model.scene));
+    drop(Domain::hull(model.scene.vertices()));
     if let Ok(first_shot) = FirstShot::new(&model, 200, 1) {
         let (tally, mut books) = (first_shot.tally(1), Books::default());
         first_shot.trace(0, 0..200, &tally, &mut books);

@@ -25,7 +25,7 @@ pub(crate) fn count(
     while first < lines.end {
         runs.launcher.check_stop()?;
         let end = lines.end.min(first + BLOCK);
-        let block: Vec<_> = (first..end).map(|i| domain.sample(&mut streams.line(i))).collect();
+        let block: Vec<_> = (first..end).map(|i| domain.line(streams.line(i).point())).collect();
         tracer.all_hits_each(&block, |hits| hits.lines().for_each(|range| visit(range.len() as u32)));
         first = end;
     }

@@ -96,13 +96,13 @@ fn emitting_side(source: &Source) -> Option<(TriangleId, Side, f64)> {
 }
 
 fn global(scene: &Scene, accel: &Accel) -> Global {
-    let (domain, streams) = (Domain::hull(scene), Streams::new(0, Stage::PROBE));
+    let (domain, streams) = (Domain::hull(scene.vertices()), Streams::new(0, Stage::PROBE));
     let contact = CONTACT * scene.bounding_sphere().radius;
     let (mut met, mut odd, mut stretches, mut mixed, mut crossings, mut coincident) = (0, 0, 0, 0, 0, 0);
     let mut tracer = accel.tracer();
     for first in (0..LINES).step_by(BLOCK as usize) {
         let block = first..LINES.min(first + BLOCK);
-        let lines: Vec<Line> = block.map(|i| domain.sample(&mut streams.line(i))).collect();
+        let lines: Vec<Line> = block.map(|i| domain.line(streams.line(i).point())).collect();
         tracer.all_hits_each(&lines, |found| {
             for range in found.lines() {
                 let hits = &found.hits()[range];
@@ -156,7 +156,7 @@ fn starts(sides: &[(TriangleId, Side, f64)], kind: u64) -> Vec<Start> {
     owners
         .map(|(owner, i)| {
             let (triangle, side, _) = sides[owner];
-            Start { triangle, side, point: point_on_triangle(&mut streams.line(i)) }
+            Start { triangle, side, point: point_on_triangle(streams.line(i).point()) }
         })
         .collect()
 }
@@ -175,7 +175,7 @@ fn local(scene: &Scene, accel: &Accel, starts: &[Start], kind: u64) -> (Fates, V
                 Side::Back => -scene.normal(start.triangle),
             };
             let origin = start.point.point(scene.corners(start.triangle));
-            let line = Line { origin, direction: cosine_direction(normal, &mut streams.line(i)) };
+            let line = Line { origin, direction: cosine_direction(normal, streams.line(i).point()) };
             Ray { line, leaving: Some(start.triangle) }
         });
         let rays: Vec<Ray> = rays.collect();

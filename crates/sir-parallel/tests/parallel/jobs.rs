@@ -126,14 +126,14 @@ impl Room {
 
         let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(patches)).unwrap();
         let shot = first_shot(&model, LINES, SEED, &mut Crew::of(NonZeroUsize::MIN), None).unwrap().outcome;
-        let domain = Domain::hull(&model.scene);
+        let domain = Domain::hull(model.scene.vertices());
         Self { model, shot, domain }
     }
 
     /// A focus on a part of the room.
     fn focus(&self) -> Focus {
         let bounds = BoundingBox { min: DVec3::splat(-1.0), max: DVec3::new(0.2, 0.6, 0.1) };
-        Focus::new(bounds, 0.75, &self.model.scene).unwrap()
+        Focus::new(bounds, 0.75, self.model.scene.bounding_box(), self.model.scene.bounding_sphere()).unwrap()
     }
 
     fn aimed_shot(&self) -> LocalLines {

@@ -194,7 +194,7 @@ impl Choice<'_> {
             _ => (group, within),
         };
         let Lamp { triangle, side, corners, .. } = self.emitters.lamps[k];
-        let to = sir_lines::point_on_triangle_of([within, v]).point(corners) - self.origin;
+        let to = sir_lines::continuous_point_on_triangle([within, v]).point(corners) - self.origin;
         let (distance, direction) = (to.length(), to.try_normalize()?);
         let brings = self.brings(k, direction, distance);
         (brings != Rgb::ZERO).then_some(Aim { direction, triangle, side, brings })

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use sir_accel::{Hit, Ray, Tracer};
 use sir_geom::{Line, Rgb, TriangleId};
-use sir_lines::{EvenPoints, Stream, cosine_direction_of};
+use sir_lines::{EvenPoints, Stream, cosine_direction};
 use sir_mesh::SideId;
 
 use crate::model::Model;
@@ -37,7 +37,7 @@ pub(super) type Gathered = (u64, Rgb);
 
 impl Replication {
     pub(super) fn new(stream: &mut Stream) -> Self {
-        let (hemisphere, aimed) = (EvenPoints::new(stream), EvenPoints::new(stream));
+        let (hemisphere, aimed) = (EvenPoints::new(stream.point()), EvenPoints::new(stream.point()));
         Self { hemisphere, aimed, rays: 0, direct: Rgb::ZERO, reflected: Rgb::ZERO }
     }
 
@@ -62,7 +62,7 @@ impl Replication {
             self.rays = numbers.end;
             let ray = |direction| Ray::from(Line { origin, direction });
             let mut all: Vec<Ray> =
-                numbers.clone().map(|i| ray(cosine_direction_of(normal, self.hemisphere.at(i)))).collect();
+                numbers.clone().map(|i| ray(cosine_direction(normal, self.hemisphere.at(i)))).collect();
             let free = all.len();
             let mut aims = Vec::new();
             if !choice.is_empty() {

@@ -118,7 +118,7 @@ impl<'m> ViewFactorLines<'m> {
         let back = scene.is_active(triangle, Side::Back) && stream.unit() < 0.5;
         let normal = if back { -scene.normal(triangle) } else { scene.normal(triangle) };
         let origin = point_on_surface(scene, triangle, scene.corners(triangle), &mut stream);
-        let line = Line { origin, direction: cosine_direction(normal, &mut stream) };
+        let line = Line { origin, direction: cosine_direction(normal, stream.point()) };
         Ray { line, leaving: Some(triangle) }
     }
 

@@ -104,7 +104,7 @@ pub(crate) const TRANSPORTS: [(&str, Transport); 2] = [("batches", batches), ("m
 
 /// Frozen batches.
 pub(crate) fn batches(model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
-    batches_in(Domain::hull(&model.scene), model, shot, lines, seed)
+    batches_in(Domain::hull(model.scene.vertices()), model, shot, lines, seed)
 }
 
 /// Frozen batches with lines of a given domain.
@@ -124,7 +124,7 @@ pub(crate) fn batches_in(domain: Domain, model: &Model, shot: Shot, lines: u64, 
 
 /// Multipath in one replica.
 pub(crate) fn multipath(model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
-    multipath_in(Domain::hull(&model.scene), model, shot, lines, seed)
+    multipath_in(Domain::hull(model.scene.vertices()), model, shot, lines, seed)
 }
 
 /// Multipath in one replica with lines of a given domain.
@@ -148,7 +148,11 @@ pub(crate) fn replicas(model: &Model, shot: Shot, settings: MultipathSettings, s
 /// All domains around the scene of a model.
 pub(crate) fn domains(model: &Model) -> [Domain; 3] {
     let scene = &model.scene;
-    [Domain::Sphere(scene.bounding_sphere()), Domain::Box(scene.bounding_box()), Domain::hull(scene)]
+    [
+        Domain::Sphere(scene.bounding_sphere()),
+        Domain::Box(scene.bounding_box()),
+        Domain::hull(scene.vertices()),
+    ]
 }
 
 /// Radiosity of every material: the area-weighted mean of its fronts.

@@ -7,7 +7,8 @@ use std::collections::{BTreeMap, HashMap};
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use sir_geom::shapes::{self, Facing};
-use sir_geom::{ConvexHull, Material, Rgb, SceneBuilder};
+use sir_geom::{Material, Rgb, SceneBuilder};
+use sir_lines::ConvexHull;
 
 /// Six times the volume of a tetrahedron.
 fn volume([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {

@@ -21,7 +21,7 @@ struct Facet {
     /// Counter-clockwise seen from outside.
     corners: [u32; 3],
     /// The facets beyond the edges from each corner to the next.
-    neighbours: [u32; 3],
+    neighbors: [u32; 3],
     plane: Plane,
     /// The first of the points that it keeps.
     first: u32,
@@ -71,8 +71,8 @@ pub(super) fn facets(points: &[DVec3], base: [u32; 3], apex: u32) -> Vec<[u32; 3
         for (edge, &facet) in outline.iter().zip(&waiting[new..]) {
             let next = facet_from[edge.corners[1] as usize];
             hull.join(facet, 0, edge.beyond);
-            hull.facets[facet as usize].neighbours[1] = next;
-            hull.facets[next as usize].neighbours[2] = facet;
+            hull.facets[facet as usize].neighbors[1] = next;
+            hull.facets[next as usize].neighbors[2] = facet;
         }
         for &point in &kept {
             hull.keep(point, &waiting[new..]);
@@ -97,7 +97,7 @@ impl Hull<'_> {
             for edge in 0..3 {
                 let [from, to] = [edge, (edge + 1) % 3].map(|k| self.facets[facet as usize].corners[k]);
                 let beyond = (0..4).find(|&other| self.edge_of(other, [to, from]).is_some());
-                self.facets[facet as usize].neighbours[edge] = beyond.unwrap_or(NONE);
+                self.facets[facet as usize].neighbors[edge] = beyond.unwrap_or(NONE);
             }
         }
         for point in 0..self.points.len() as u32 {
@@ -118,11 +118,11 @@ impl Hull<'_> {
         (0..3).find(|&k| corners[k] == from && corners[(k + 1) % 3] == to)
     }
 
-    /// Adds a facet that has no neighbours and keeps no points yet.
+    /// Adds a facet that has no neighbors and keeps no points yet.
     fn add(&mut self, corners: [u32; 3]) -> u32 {
         let facet = Facet {
             corners,
-            neighbours: [NONE; 3],
+            neighbors: [NONE; 3],
             plane: Plane::new(corners.map(|i| self.at(i))),
             first: NONE,
             farthest: NONE,
@@ -137,12 +137,12 @@ impl Hull<'_> {
         self.facets.len() as u32 - 1
     }
 
-    /// Makes two facets neighbours at an edge of the first one.
+    /// Makes two facets neighbors at an edge of the first one.
     fn join(&mut self, facet: u32, edge: usize, other: u32) {
         let [from, to] = [edge, (edge + 1) % 3].map(|k| self.facets[facet as usize].corners[k]);
-        self.facets[facet as usize].neighbours[edge] = other;
+        self.facets[facet as usize].neighbors[edge] = other;
         if let Some(back) = self.edge_of(other, [to, from]) {
-            self.facets[other as usize].neighbours[back] = facet;
+            self.facets[other as usize].neighbors[back] = facet;
         }
     }
 
@@ -173,8 +173,8 @@ impl Hull<'_> {
         let mut i = start;
         while let Some(&facet) = self.free.get(i) {
             i += 1;
-            let Facet { corners, neighbours, .. } = self.facets[facet as usize];
-            for (k, &beyond) in neighbours.iter().enumerate() {
+            let Facet { corners, neighbors, .. } = self.facets[facet as usize];
+            for (k, &beyond) in neighbors.iter().enumerate() {
                 if self.facets[beyond as usize].seen_from == eye {
                     continue;
                 }

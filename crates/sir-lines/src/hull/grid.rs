@@ -1,7 +1,6 @@
 //! Points on an integer grid, and on which side of a plane they are, exactly.
 
 use glam::DVec3;
-
 use sir_types::BoundingBox;
 
 /// Most steps of the grid along an axis: 128 bits then hold every determinant.

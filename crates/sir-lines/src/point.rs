@@ -1,0 +1,34 @@
+//! Random points of the unit cube.
+
+use rand::Rng;
+
+/// Makes 64 random bits a number in `[0, 1)`, a multiple of 2⁻⁵³. The crate `rand` makes a random `f64` in the same way, but does
+/// not promise to do so in its next version, and these bits are part of our contract.
+#[inline]
+pub(crate) fn unit(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+}
+
+/// Draws a uniform point of the unit cube `[0, 1)^K` from any generator, coordinate by coordinate. Each takes 64 bits.
+#[inline]
+pub fn random_point<const K: usize>(generator: &mut (impl Rng + ?Sized)) -> [f64; K] {
+    std::array::from_fn(|_| unit(generator.next_u64()))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::SmallRng;
+    use rand::{RngExt, SeedableRng};
+
+    use super::*;
+
+    #[test]
+    fn numbers_are_those_of_rand() {
+        let generator = || SmallRng::seed_from_u64(3);
+        let (mut ours, mut theirs) = (generator(), generator());
+        let point: [f64; 1000] = random_point(&mut ours);
+        assert_eq!(point, std::array::from_fn(|_| theirs.random::<f64>()));
+        assert!(point.iter().all(|x| (0.0..1.0).contains(x)));
+        assert_eq!([unit(0), unit(u64::MAX)], [0.0, 1.0 - 0.5 * f64::EPSILON]);
+    }
+}
