@@ -13,10 +13,10 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sir::cli::pipeline::Pipeline;
-use sir::cli::report::{LinesReport, Report, Time};
-use sir::cli::run::{RunOptions, run};
 use sir::geom::Rgb;
+use sir::pipeline::plan::Pipeline;
+use sir::pipeline::report::{LinesReport, Report, Time};
+use sir::pipeline::run::{RunOptions, run_pipeline as run};
 use sir::view::{Row, Table};
 
 /// A closed room with a lamp as its ceiling and a sheet above the floor that is lit from both sides. One wall
@@ -97,7 +97,8 @@ fn outcome(scene: &Path, text: &str, seed: Option<u64>) -> Outcome {
     let out = results.path().join("run");
     let options = RunOptions { out: Some(out.clone()), seed, ..RunOptions::default() };
     let report = run(&pipeline, &options).unwrap_or_else(|e| panic!("{}", e.chain())).report;
-    let read = |o: &sir::cli::report::OutputReport| (o.path.clone(), fs::read(out.join(&o.path)).unwrap());
+    let read =
+        |o: &sir::pipeline::report::OutputReport| (o.path.clone(), fs::read(out.join(&o.path)).unwrap());
     let files = report.outputs.iter().map(read).collect();
     let entries = fs::read_dir(&out).unwrap().count();
     assert_eq!(entries, report.outputs.len() + 1, "a run directory holds the outputs and the report");

@@ -6,9 +6,10 @@ use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 
-use crate::experiment::options::ExperimentArgs;
+use crate::experiment::ExperimentArgs;
 use crate::info::InfoArgs;
-use crate::scaling::options::ScalingArgs;
+use crate::numbers::{seconds, threads};
+use crate::scaling::ScalingArgs;
 use crate::validate::options::ValidateArgs;
 use crate::viewfactors::options::ViewFactorsArgs;
 
@@ -163,16 +164,6 @@ pub struct HowArgs {
     /// Print the content of result.json instead of a summary.
     #[arg(long)]
     pub json: bool,
-}
-
-fn seconds(text: &str) -> Result<Duration, String> {
-    let number = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-    number.ok_or_else(|| "write a number of seconds, 0 or more".into())
-}
-
-pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
-    let number = text.parse().ok().filter(|&n| n <= 4096).and_then(NonZeroUsize::new);
-    number.ok_or_else(|| "write a whole number from 1 to 4096".into())
 }
 
 #[cfg(test)]

@@ -1,228 +1,46 @@
 //! Why a command fails.
 
-use std::io;
-use std::path::{Path, PathBuf};
-
-use sir_geom::LoadError;
-use sir_mesh::MeshError;
-use sir_parallel::{ConnectError, RunError};
-use sir_radiosity::SolveError;
-use sir_view::ViewError;
+use sir_parallel::ConnectError;
+use sir_pipeline::view_factors::ViewFactorsError;
+use sir_study::StudyError;
 use thiserror::Error;
 
-use crate::diagnostic::Diagnostics;
-use crate::experiment::error::ExperimentError;
-use crate::scaling::error::ScalingError;
 use crate::validate::error::ValidationError;
-use crate::viewfactors::ViewFactorsError;
 
 /// Why a command fails. Every message ends with what to do, where that is not obvious.
 #[derive(Debug, Error)]
-pub enum Error {
-    /// The pipeline file has problems.
+pub enum CliError {
+    /// A pipeline is wrong, or its run failed.
     #[error(transparent)]
-    Pipeline(#[from] Diagnostics),
-    /// The scene cannot be cut into patches.
+    Pipeline(#[from] sir_pipeline::Error),
+    /// A study failed.
     #[error(transparent)]
-    Mesh(#[from] MeshError),
-    /// The pipeline file cannot be read.
-    #[error("cannot read the pipeline {}", path.display())]
-    ReadPipeline {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
-    /// What was given as a pipeline file is no text.
-    #[error("{} is not a text file, but a pipeline is one; `sir --help` shows an example", path.display())]
-    NotText {
-        /// The file.
-        path: PathBuf,
-    },
-    /// What was given as a pipeline file is too long for one.
-    #[error("{} has more than {most} bytes, but a pipeline is a short text; `sir --help` shows an example", path.display())]
-    LongPipeline {
-        /// The file.
-        path: PathBuf,
-        /// The most bytes that are read.
-        most: u64,
-    },
-    /// The run does not fit the memory of this machine.
-    #[error(
-        "the run needs {needed} of memory beside its scene, but {available} are available; make fewer patches or smaller pictures, \
-         end other programs, or take a machine with more memory"
-    )]
-    Memory {
-        /// What it needs beside the scene, as `sir check` counts it.
-        needed: String,
-        /// What the operating system can give.
-        available: String,
-    },
-    /// The run directory that was asked for holds a result already.
-    #[error("{} holds a result already; choose another --out, or replace it with --force", directory.display())]
-    Exists {
-        /// The directory.
-        directory: PathBuf,
-    },
-    /// The run directory that was asked for holds an interrupted run.
-    #[error(
-        "{0} holds an interrupted run; go on with it by `sir resume {0}`, choose another --out, or replace it with --force",
-        directory.display()
-    )]
-    ExistsInterrupted {
-        /// The directory.
-        directory: PathBuf,
-    },
-    /// The run directory cannot be made.
-    #[error("cannot make the directory {}; choose another with --out", path.display())]
-    Directory {
-        /// The directory.
-        path: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
-    /// The scene cannot be read.
-    #[error(transparent)]
-    Load(#[from] LoadError),
-    /// The light cannot be computed.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// The run was stopped, and can go on.
-    #[error(
-        "interrupted after {done} of {total} lines; `sir resume {}` goes on from here", directory.display()
-    )]
-    Interrupted {
-        /// Lines done in this stage.
-        done: u64,
-        /// Lines of the stage.
-        total: u64,
-        /// The run directory.
-        directory: PathBuf,
-    },
-    /// The run was stopped while it wrote its files, and can go on.
-    #[error("interrupted while files were written; `sir resume {}` goes on from the last checkpoint", directory.display())]
-    InterruptedSaving {
-        /// The run directory.
-        directory: PathBuf,
-    },
-    /// The run was stopped while it measured at sensors, and can go on.
-    #[error("interrupted at the sensors; `sir resume {}` goes on from the last checkpoint", directory.display())]
-    InterruptedMeasuring {
-        /// The run directory.
-        directory: PathBuf,
-    },
-    /// A file of a run cannot be written, for want of space on a disk, for instance.
-    #[error("the run in {0} is not complete; free some space or put right what is said below, and `sir resume {0}` goes on from the last checkpoint", directory.display())]
-    NotWritten {
-        /// The run directory.
-        directory: PathBuf,
-        /// The file, and what the operating system says.
-        source: ViewError,
-    },
-    /// A run cannot go on.
-    #[error("the run in {} cannot be resumed: {why}", directory.display())]
-    CannotResume {
-        /// The run directory.
-        directory: PathBuf,
-        /// Why not, and what to do.
-        why: String,
-    },
-    /// The processes of a run cannot work together.
-    #[error(transparent)]
-    Connect(#[from] ConnectError),
-    /// Another rank has failed, and says why.
-    #[error("rank {rank} failed")]
-    Elsewhere {
-        /// The rank.
-        rank: usize,
-        /// Its exit code.
-        code: u8,
-    },
-    /// A rank has read something else than the first one.
-    #[error(
-        "rank {rank} has read another pipeline or scene than rank 0, or is another version of the program; all machines \
-         must see the same files"
-    )]
-    OtherInput {
-        /// The rank.
-        rank: usize,
-    },
-    /// A result cannot be written, read or compared.
-    #[error(transparent)]
-    View(#[from] ViewError),
-    /// A directory that was to be compared holds no result.
-    #[error("{} is not a run directory: it has no readable result.json ({why})", directory.display())]
-    NoResult {
-        /// The directory.
-        directory: PathBuf,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// A run that was to be compared has no table.
-    #[error("the run in {} wrote no table; add `Table(path: \"patches.csv\")` to its `Save` and run it again", directory.display())]
-    NoTable {
-        /// The directory.
-        directory: PathBuf,
-    },
-    /// Speed-ups cannot be measured.
-    #[error(transparent)]
-    Scaling(#[from] ScalingError),
-    /// The experiment cannot be done.
-    #[error(transparent)]
-    Experiment(#[from] ExperimentError),
-    /// View factors cannot be computed.
-    #[error(transparent)]
-    ViewFactors(#[from] ViewFactorsError),
+    Study(#[from] StudyError),
     /// Answers are wrong, or cannot be checked.
     #[error(transparent)]
     Validation(#[from] ValidationError),
 }
 
-impl From<SolveError> for Error {
-    fn from(error: SolveError) -> Self {
-        Self::Run(error.into())
+impl From<ConnectError> for CliError {
+    fn from(error: ConnectError) -> Self {
+        Self::Pipeline(error.into())
     }
 }
 
-impl Error {
-    pub(crate) fn directory(path: &Path) -> impl FnOnce(io::Error) -> Self {
-        move |source| Self::Directory { path: path.to_owned(), source }
+impl From<ViewFactorsError> for CliError {
+    fn from(error: ViewFactorsError) -> Self {
+        Self::Pipeline(error.into())
     }
+}
 
+impl CliError {
     /// The exit code of the program: 2 for wrong usage or a wrong pipeline, 130 if interrupted, else 1.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Pipeline(_) | Self::ReadPipeline { .. } => 2,
-            Self::NotText { .. } | Self::LongPipeline { .. } => 2,
-            Self::Exists { .. } | Self::ExistsInterrupted { .. } => 2,
-            Self::CannotResume { .. } => 2,
-            Self::Interrupted { .. } | Self::InterruptedSaving { .. } | Self::InterruptedMeasuring { .. } => {
-                130
-            }
-            Self::Run(RunError::Interrupted { .. }) => 130,
-            Self::Elsewhere { code, .. } => *code,
-            Self::Scaling(error) => error.exit_code(),
-            Self::Experiment(error) => error.exit_code(),
-            Self::ViewFactors(error) => error.exit_code(),
+            Self::Pipeline(error) => error.exit_code(),
+            Self::Study(error) => error.exit_code(),
             Self::Validation(error) => error.exit_code(),
-            _ => 1,
         }
-    }
-
-    /// The message, followed by its causes as far as they say something new.
-    #[must_use]
-    pub fn chain(&self) -> String {
-        let mut text = self.to_string();
-        let mut cause = std::error::Error::source(self);
-        while let Some(error) = cause {
-            let more = error.to_string();
-            if !text.contains(&more) {
-                text = format!("{text}: {more}");
-            }
-            cause = error.source();
-        }
-        // Names of files and of what is in them may play tricks on a terminal.
-        text.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}")
     }
 }

@@ -1,70 +1,29 @@
-//! Pipelines: a text file says what to do with a scene, and this crate does it.
+//! The program `sir`: its arguments, progress bars, signals, texts and exit codes. What it does lies in the crates below:
+//! pipelines in [`sir_pipeline`], studies in [`sir_study`], known answers in [`sir_validate`].
 //!
-//! # Design
-//!
-//! A pipeline file is RON: a list of stages, each of which turns what earlier ones made into something new. The stages
-//! are thin; the work lies in the crates below. What this crate adds is the dialogue with people:
-//!
-//! * *All mistakes of a file at once, each at its place.* serde stops at the first error, so the file is parsed to a
-//!   tree whose nodes know their place, and decoded by hand with a list of problems ([`diagnostic`]). A
-//!   [`Pipeline`] is valid by construction: the order of its stages, its numbers and its paths
-//!   have been checked, and nothing is written before its scene has been read.
-//! * *Results to files and standard output, everything else to the standard error stream.* A run directory is complete if
-//!   and only if it holds a `result.json` ([`report`]), which is written last; files appear whole or not at all.
-//! * *The same pipeline gives the same bytes,* except for the times in `result.json`.
-//!
-//! [`main`] is the program `sir`; [`run::run`], [`run::resume_together`], [`check::check`] and [`compare::compare`] are its commands for callers
-//! in Rust.
+//! Results go to files and standard output, everything else to the standard error stream. [`main`] is the whole program; the texts
+//! that it prints are public for other programs.
 //!
 //! # Example
 //!
-//! ```
-//! use std::path::Path;
-//! use sir_cli::pipeline::Pipeline;
-//!
-//! let text = r#"Pipeline(stages: [FirstShot(line: 1_000_000)])"#;
-//! let problems = Pipeline::parse(text, Path::new("room.ron")).unwrap_err();
-//! assert!(problems.to_string().contains("room.ron:1:29: error: unknown field `line` in `FirstShot`"));
-//! assert!(problems.to_string().contains("help: did you mean `lines`?"));
+//! ```no_run
+//! fn main() -> std::process::ExitCode {
+//!     sir_cli::main()
+//! }
 //! ```
 
 pub mod args;
-pub mod check;
 pub mod compare;
-mod decode;
-mod decode_focus;
-mod decode_lights;
-mod decode_outputs;
-mod decode_repeat;
-pub mod diagnostic;
-mod directory;
 mod error;
 pub mod experiment;
-mod fields;
-mod fingerprint;
 pub mod info;
 mod interrupt;
-mod lighting;
-pub mod lights;
-mod memory;
-mod order;
-pub mod pipeline;
-pub mod prepare;
+mod numbers;
 pub mod progress;
-mod ranks;
-mod repeat;
-pub mod report;
-mod resume;
-mod ron_tree;
-pub mod run;
-mod save;
 pub mod scaling;
-pub mod sensors;
-mod stages;
 pub mod summary;
-pub mod units;
 pub mod validate;
-pub mod viewfactors;
+mod viewfactors;
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -72,13 +31,15 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser as _;
+use sir_parallel::{Alone, Communicator, connect};
+use sir_pipeline::check::estimate;
+use sir_pipeline::plan::Pipeline;
+use sir_pipeline::run::{resume_together, run_together};
+use sir_pipeline::{Error, RunOptions, RunResult, chain, report};
 
 use args::{Args, Command, HowArgs, RunArgs};
-pub use error::Error;
-use pipeline::Pipeline;
-use progress::Progress;
-use run::{RunOptions, RunResult};
-use sir_parallel::{Alone, Communicator, connect};
+pub use error::CliError;
+use progress::Stderr;
 
 /// Runs the program on the arguments of the process.
 #[must_use]
@@ -108,33 +69,35 @@ fn execute(command: Command) -> Result<String, ExitCode> {
 }
 
 /// Shows an error; returns the exit code.
-fn show(error: &Error) -> ExitCode {
+fn show(error: &CliError) -> ExitCode {
     match error {
-        Error::Pipeline(problems) => eprint!("{problems}"),
+        CliError::Pipeline(Error::Pipeline(problems)) => eprint!("{problems}"),
         // The rank that failed says why.
-        Error::Elsewhere { .. } => {}
-        other => eprintln!("error: {}", other.chain()),
+        CliError::Pipeline(Error::Elsewhere { .. }) => {}
+        other => eprintln!("error: {}", chain(other)),
     }
     ExitCode::from(error.exit_code())
 }
 
 /// Executes a command, together with the other ranks, until it is done or `stop` becomes true.
-fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Result<String, Error> {
+fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Result<String, CliError> {
     match command {
         Command::Run(RunArgs { pipeline, out, seed, force, how }) => {
             let options = RunOptions { out, seed, force, ..options(&how, stop) };
-            run::run_together(Pipeline::read(&pipeline), &options, comm)
+            run_together(Pipeline::read(&pipeline), &options, comm)
                 .map(|result| told(&result, &how, comm))
+                .map_err(CliError::from)
         }
-        Command::Resume { directory, how } => run::resume_together(&directory, &options(&how, stop), comm)
-            .map(|result| told(&result, &how, comm)),
+        Command::Resume { directory, how } => resume_together(&directory, &options(&how, stop), comm)
+            .map(|result| told(&result, &how, comm))
+            .map_err(CliError::from),
         Command::Check { pipeline } => {
             let pipeline = Pipeline::read(&pipeline)?;
-            Ok(check::check(&pipeline, Progress::Quiet)?.to_string())
+            Ok(estimate(&pipeline, &Stderr::Quiet)?.to_string())
         }
         Command::Info(args) => info::command(&args),
         Command::Compare { a, b, json } => {
-            let comparison = compare::compare(&a, &b)?;
+            let comparison = report::compare(&a, &b)?;
             Ok(if json {
                 format!("{:#}\n", compare::to_json(&comparison))
             } else {
@@ -154,7 +117,7 @@ fn options(how: &HowArgs, stop: Arc<AtomicBool>) -> RunOptions {
         threads: how.threads,
         checkpoint_every: how.checkpoint_every,
         stop,
-        progress: if how.quiet { Progress::Quiet } else { Progress::for_stderr() },
+        progress: Arc::new(Stderr::unless(how.quiet)),
         ..RunOptions::default()
     }
 }

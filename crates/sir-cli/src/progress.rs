@@ -1,26 +1,19 @@
 //! What a run says while it runs, on the standard error stream.
 
 use std::io::IsTerminal;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use sir_parallel::{Communicator, Observer};
-
-use crate::fields::grouped;
-
-/// Time between two lines of progress where there is no terminal.
-pub(crate) const PAUSE: Duration = Duration::from_secs(10);
+use sir_pipeline::Progress;
+use sir_pipeline::format::grouped;
+use sir_pipeline::progress::{Meter, PAUSE, StageKind};
 
 /// Most warnings that are shown one by one.
 const WARNINGS: usize = 10;
 
-/// How progress is shown.
+/// Shows progress and warnings on the standard error stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
-    /// Not at all; warnings are not shown either. For callers that read them from the report.
-    Silent,
+pub enum Stderr {
     /// Warnings only.
     Quiet,
     /// A line at the start and the end of each stage, and every ten seconds in between.
@@ -29,23 +22,28 @@ pub enum Progress {
     Bar,
 }
 
-impl Progress {
+impl Stderr {
     /// A bar if the standard error stream is a terminal, else lines.
     #[must_use]
-    pub fn for_stderr() -> Self {
+    pub fn new() -> Self {
         if std::io::stderr().is_terminal() { Self::Bar } else { Self::Lines }
     }
 
-    /// This, if `comm` is the rank that speaks.
-    pub(crate) fn of_rank(self, comm: &dyn Communicator) -> Self {
-        if comm.is_first() { self } else { Self::Silent }
+    /// As [`new`](Self::new), or warnings only.
+    #[must_use]
+    pub fn unless(quiet: bool) -> Self {
+        if quiet { Self::Quiet } else { Self::new() }
     }
+}
 
-    /// Shows the warnings of the scene's reader.
-    pub(crate) fn warn(self, warnings: &[String]) {
-        if self == Self::Silent {
-            return;
-        }
+impl Default for Stderr {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Progress for Stderr {
+    fn warnings(&self, warnings: &[String]) {
         for warning in warnings.iter().take(WARNINGS) {
             eprintln!("warning: {warning}");
         }
@@ -54,30 +52,13 @@ impl Progress {
         }
     }
 
-    /// Says what is being done.
-    pub(crate) fn note(self, text: &str) {
-        if matches!(self, Self::Lines | Self::Bar) {
+    fn message(&self, text: &str) {
+        if *self != Self::Quiet {
             eprintln!("{text}");
         }
     }
 
-    /// Begins to watch a stage of `total` lines, which ends early if `stop` becomes true.
-    pub(crate) fn stage(self, name: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
-        self.note(&format!("{name}: {} lines", grouped(total)));
-        let mut watching = self.watch(name, total, stop);
-        watching.says_end = self == Self::Lines;
-        watching
-    }
-
-    /// As [`stage`](Self::stage), for one of many that may be short: nothing is said at its start and end.
-    pub(crate) fn part(self, title: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
-        let watching = self.watch(title, total, stop);
-        watching.bar.set_prefix(format!("{title}  "));
-        watching
-    }
-
-    /// As [`stage`](Self::stage), without a word at the beginning and at the end.
-    pub(crate) fn watch(self, name: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
+    fn begin(&self, title: &str, total: u64, kind: StageKind) -> Box<dyn Meter> {
         let bar = match self {
             Self::Bar => {
                 let bar = ProgressBar::new(total);
@@ -90,24 +71,26 @@ impl Progress {
             }
             _ => ProgressBar::hidden(),
         };
+        if kind == StageKind::Part {
+            bar.set_prefix(format!("{title}  "));
+        }
         let now = Instant::now();
-        let stop = Arc::clone(stop);
-        StageProgress {
-            lines: self == Self::Lines,
-            says_end: false,
-            name: name.to_owned(),
+        let lines = *self == Self::Lines;
+        Box::new(StageMeter {
+            lines,
+            says_end: lines && kind == StageKind::Whole,
+            name: title.to_owned(),
             bar,
             start: now,
             last: now,
             first: None,
             done: 0,
-            stop,
-        }
+        })
     }
 }
 
 /// Watches one stage.
-pub(crate) struct StageProgress {
+struct StageMeter {
     lines: bool,
     /// Whether the end is worth a line.
     says_end: bool,
@@ -118,10 +101,9 @@ pub(crate) struct StageProgress {
     /// Lines done when the first progress was reported: more than a few after a restart.
     first: Option<u64>,
     done: u64,
-    stop: Arc<AtomicBool>,
 }
 
-impl Observer for StageProgress {
+impl Meter for StageMeter {
     fn progress(&mut self, done: u64, total: u64) {
         // How many lines it takes may be known better in the course of them.
         self.bar.set_length(total);
@@ -144,13 +126,9 @@ impl Observer for StageProgress {
             );
         }
     }
-
-    fn should_stop(&self) -> bool {
-        self.stop.load(Relaxed)
-    }
 }
 
-impl Drop for StageProgress {
+impl Drop for StageMeter {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
         if self.says_end {

@@ -1,11 +1,9 @@
 //! What `sir run` prints when it is done.
 
-use crate::check::duration;
-use crate::directory::absolute;
-use crate::fields::grouped;
-use crate::report::{FILE_NAME, LinesReport, Report};
-use crate::run::RunResult;
-use crate::units::Units;
+use sir_pipeline::format::{duration, grouped};
+use sir_pipeline::report::{FILE_NAME, LinesReport, Report};
+use sir_pipeline::run::absolute;
+use sir_pipeline::{RunResult, Units};
 
 /// The files of a run, pictures first, and a line for each stage of lines.
 #[must_use]

@@ -1,19 +1,12 @@
 //! `sir info`: what is in a scene, and what a pipeline should set to light it.
 
-mod advice;
-mod lines;
-mod numbers;
-mod shape;
 mod text;
 
 use std::path::PathBuf;
 
-pub use advice::Setting;
-pub use lines::{Fates, Global, Lines};
-pub use numbers::{Group, Info, Lights, MaterialInfo, Textures, inspect};
-pub use shape::{Dominant, Extent, Twins};
+use sir_pipeline::info::inspect;
 
-use crate::error::Error;
+use crate::error::CliError;
 
 /// What to read, and how to tell it.
 #[derive(Debug, clap::Args)]
@@ -26,7 +19,7 @@ pub struct InfoArgs {
 }
 
 /// Reads a scene; returns what there is to tell.
-pub(crate) fn command(args: &InfoArgs) -> Result<String, Error> {
+pub(crate) fn command(args: &InfoArgs) -> Result<String, CliError> {
     let info = inspect(&args.scene)?;
     Ok(if args.json { format!("{:#}\n", serde_json::json!(info)) } else { text::text(&info) })
 }

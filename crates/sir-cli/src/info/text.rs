@@ -1,9 +1,7 @@
 //! What is in a scene, for people.
 
-use crate::fields::grouped;
-use crate::info::advice::dimensions;
-use crate::info::lines::Fates;
-use crate::info::numbers::{Info, MaterialInfo, Textures};
+use sir_pipeline::format::{dimensions, grouped, length, percent};
+use sir_pipeline::info::{Fates, Info, MaterialInfo, Textures};
 
 /// Most materials, warnings, parts and cameras that are listed.
 const MOST: usize = 20;
@@ -177,31 +175,6 @@ fn conclusions(info: &Info) -> String {
         text += &row("", &setting.why);
     }
     text
-}
-
-/// A share in per cent.
-pub(super) fn percent(share: f64) -> String {
-    match 100.0 * share {
-        0.0 => "0 %".into(),
-        p if p < 0.05 => "<0.1 %".into(),
-        p => format!("{p:.1} %"),
-    }
-}
-
-/// A length, an area or a power to four digits, as a pipeline can read it.
-pub(super) fn length(x: f64) -> String {
-    // Turns −0 into +0.
-    let x = x + 0.0;
-    let digits = if x == 0.0 { 0.0 } else { 3.0 - x.abs().log10().floor() };
-    match digits {
-        // Of large and small numbers, the power of ten says more.
-        d if !(-4.0..=8.0).contains(&d) => format!("{x:.3e}"),
-        d if d > 0.0 => {
-            let text = format!("{x:.*}", d as usize);
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        }
-        _ => format!("{x:.0}"),
-    }
 }
 
 #[cfg(test)]

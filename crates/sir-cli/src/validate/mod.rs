@@ -12,9 +12,9 @@ pub use error::ValidationError;
 pub use options::ValidateArgs;
 use sir_validate::{Effort, FILES, Reference, Settings, validate};
 
-use crate::error::Error;
+use crate::error::CliError;
 use crate::interrupt;
-use crate::progress::Progress;
+use crate::progress::Stderr;
 use watch::Watch;
 
 /// The command: runs the cases, writes the report, and returns what is to be printed.
@@ -23,7 +23,7 @@ use watch::Watch;
 ///
 /// If an answer is wrong or too noisy to tell, after the report was printed; if there is no such case, or files cannot be read or
 /// written.
-pub fn command(args: &ValidateArgs) -> Result<String, Error> {
+pub fn command(args: &ValidateArgs) -> Result<String, CliError> {
     let stop = interrupt::flag();
     let reference = match &args.reference {
         None => Reference::built_in(),
@@ -32,7 +32,7 @@ pub fn command(args: &ValidateArgs) -> Result<String, Error> {
     .map_err(ValidationError::Cases)?;
     // Before anything that takes time.
     if let Some(folder) = &args.out {
-        fs::create_dir_all(folder).map_err(Error::directory(folder))?;
+        fs::create_dir_all(folder).map_err(sir_pipeline::Error::directory(folder))?;
     }
     let settings = Settings {
         effort: if args.quick { Effort::Quick } else { Effort::Full },
@@ -40,7 +40,7 @@ pub fn command(args: &ValidateArgs) -> Result<String, Error> {
         threads: args.threads.unwrap_or_else(sir_parallel::cores),
         cases: args.cases.clone(),
     };
-    let progress = if args.quiet { Progress::Quiet } else { Progress::for_stderr() };
+    let progress = Stderr::unless(args.quiet);
     let mut watch = Watch::new(progress, stop);
     let report = validate(&reference, &settings, &mut watch);
     drop(watch);
@@ -58,7 +58,7 @@ pub fn command(args: &ValidateArgs) -> Result<String, Error> {
     Err(ValidationError::Failed { summary: report.summary() }.into())
 }
 
-fn read(folder: &Path) -> Result<Result<Reference, sir_validate::ValidateError>, Error> {
+fn read(folder: &Path) -> Result<Result<Reference, sir_validate::ValidateError>, CliError> {
     let mut texts = Vec::new();
     for name in FILES {
         let path = folder.join(name);
@@ -69,7 +69,8 @@ fn read(folder: &Path) -> Result<Result<Reference, sir_validate::ValidateError>,
     Ok(Reference::parse(std::array::from_fn(|_| texts.next().unwrap_or_default())))
 }
 
-fn write_file(path: &Path, text: &str) -> Result<(), Error> {
-    sir_view::write_atomically(path, |file| file.write_all(text.as_bytes()))?;
+fn write_file(path: &Path, text: &str) -> Result<(), CliError> {
+    sir_view::write_atomically(path, |file| file.write_all(text.as_bytes()))
+        .map_err(sir_pipeline::Error::from)?;
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use crate::args::threads;
+use crate::numbers::threads;
 
 /// What to run, and how.
 #[derive(Debug, clap::Args)]

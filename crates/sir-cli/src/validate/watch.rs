@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use sir_validate::Watcher;
 
-use crate::progress::Progress;
+use crate::progress::Stderr;
 
 /// Time between two lines of progress where there is no terminal.
 const PAUSE: Duration = Duration::from_secs(10);
 
 /// Shows the case at work, and how long all will take.
 pub(super) struct Watch {
-    progress: Progress,
+    progress: Stderr,
     stop: Arc<AtomicBool>,
     bar: ProgressBar,
     start: Instant,
@@ -23,9 +23,9 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    pub(super) fn new(progress: Progress, stop: Arc<AtomicBool>) -> Self {
+    pub(super) fn new(progress: Stderr, stop: Arc<AtomicBool>) -> Self {
         let bar = match progress {
-            Progress::Bar => {
+            Stderr::Bar => {
                 let bar = ProgressBar::new(1);
                 let template = "{bar:30} {percent:>3} %  {msg}  {eta} left";
                 // A wrong template would be a slip in the line above; indicatif's own style then serves as well.
@@ -45,7 +45,7 @@ impl Watcher for Watch {
     fn begin(&mut self, case: &str, title: &str) {
         self.begun = true;
         self.bar.set_message(case.to_owned());
-        if self.progress == Progress::Lines {
+        if self.progress == Stderr::Lines {
             eprintln!("{:.0} s: {case}, {title}", self.start.elapsed().as_secs_f64());
         }
     }
@@ -53,7 +53,7 @@ impl Watcher for Watch {
     fn progress(&mut self, done: u64, total: u64) {
         self.bar.set_length(total);
         self.bar.set_position(done);
-        if self.progress == Progress::Lines && self.last.elapsed() >= PAUSE {
+        if self.progress == Stderr::Lines && self.last.elapsed() >= PAUSE {
             self.last = Instant::now();
             let share = done as f64 / total.max(1) as f64;
             let left = self.start.elapsed().as_secs_f64() * (1.0 - share) / share.max(1e-3);
@@ -69,7 +69,7 @@ impl Watcher for Watch {
 impl Drop for Watch {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
-        if self.begun && self.progress == Progress::Lines {
+        if self.begun && self.progress == Stderr::Lines {
             eprintln!("after {:.0} s", self.start.elapsed().as_secs_f64());
         }
     }

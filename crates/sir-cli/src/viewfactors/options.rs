@@ -4,11 +4,12 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use serde::Serialize;
 use sir_geom::SidesPolicy;
+use sir_pipeline::text::whole_number;
+use sir_pipeline::view_factors::{By, ViewFactorsOptions};
 use sir_radiosity::{Accuracy, ViewFactorSettings};
 
-use crate::fields::whole_number;
+use crate::numbers::threads;
 
 /// Which view factors to compute, and how well.
 #[derive(Debug, clap::Args)]
@@ -17,7 +18,7 @@ pub struct ViewFactorsArgs {
     pub scene: PathBuf,
     /// What makes a group of surfaces.
     #[arg(long, value_enum, default_value_t)]
-    pub by: By,
+    pub by: ByOption,
     /// Which sides of surfaces send and receive. The other sides absorb: what arrives there is `blocked`.
     #[arg(long, value_enum, default_value_t)]
     pub sides: SidesOption,
@@ -43,7 +44,7 @@ pub struct ViewFactorsArgs {
     #[arg(long, requires = "out")]
     pub force: bool,
     /// Threads of each process, 1 to 4096; default: one per processor core. The result does not depend on it.
-    #[arg(long, value_name = "N", value_parser = crate::args::threads)]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
     /// Show no progress; warnings and errors are still shown.
     #[arg(long, short)]
@@ -54,9 +55,8 @@ pub struct ViewFactorsArgs {
 }
 
 /// What makes a group of surfaces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum By {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ByOption {
     /// A material.
     #[default]
     Material,
@@ -65,8 +65,7 @@ pub enum By {
 }
 
 /// Which sides of surfaces send and receive.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum SidesOption {
     /// As the file says: `doubleSided` in glTF; both in OBJ.
     #[default]
@@ -87,6 +86,15 @@ impl From<SidesOption> for SidesPolicy {
     }
 }
 
+impl From<ByOption> for By {
+    fn from(by: ByOption) -> Self {
+        match by {
+            ByOption::Material => Self::Material,
+            ByOption::Group => Self::Group,
+        }
+    }
+}
+
 /// Standard error where none is asked for.
 const DEFAULT_ERROR: f64 = 1e-3;
 
@@ -99,6 +107,21 @@ impl ViewFactorsArgs {
             accuracy: error.map(|error| Accuracy { error, relative: self.relative.unwrap_or(0.0) }),
             lines: self.lines.unwrap_or(u64::MAX),
             seed: self.seed,
+        }
+    }
+
+    /// What to compute.
+    #[must_use]
+    pub fn options(&self) -> ViewFactorsOptions {
+        ViewFactorsOptions {
+            scene: self.scene.clone(),
+            by: self.by.into(),
+            sides: self.sides.into(),
+            settings: self.settings(),
+            closure: self.closure,
+            out: self.out.clone(),
+            force: self.force,
+            threads: self.threads,
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::fields::grouped;
-use crate::viewfactors::report::{Matrix, Report};
+use sir_pipeline::format::grouped;
+use sir_pipeline::view_factors::{Matrix, Report};
 
 /// Most groups whose table is printed.
 const GROUPS: usize = 12;

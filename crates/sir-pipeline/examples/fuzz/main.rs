@@ -1,0 +1,206 @@
+//! Feeds the readers of files with broken ones until something breaks.
+//!
+//!     cargo run --release -p sir-pipeline --example fuzz -- glb --minutes 60 --seed 1
+//!
+//! Case `n` of a seed is the same wherever and whenever it is made. What is wrong: a panic, a case that takes too long or too
+//! much memory, an error that names no file, and one that is too long to read or writes to the terminal what it should not.
+//! What was found is kept; the exit code then is 1. Where memory cannot be had or the stack overflows the program ends at
+//! once: the files of that case are in the folder `case`.
+
+#![allow(clippy::print_stdout, reason = "a program's output")]
+
+mod mutate;
+mod seeds;
+
+use std::error::Error;
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::process::{ExitCode, exit};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+use clap::Parser;
+use mutate::{Dice, case};
+use peak_alloc::PeakAlloc;
+use seeds::Target;
+use sir_geom::{Built, LoadOptions, load};
+use sir_lines::Domain;
+use sir_mesh::Subdivision;
+use sir_pipeline::plan::Pipeline;
+use sir_radiosity::{Books, FirstShot, Model};
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// Bytes that a case may take, and those for each byte of its files.
+const MEMORY_LIMIT: (usize, usize) = (32 << 20, 300);
+
+/// Seconds that a case may take.
+const TIME_LIMIT: u64 = 20;
+
+/// The most characters of an error about a scene. Those of pipelines have several lines for each of many problems.
+const LONGEST_ERROR: usize = 1000;
+
+/// The most triangles of a scene that is also lit.
+const LIT: usize = 2000;
+
+#[derive(Parser)]
+struct Args {
+    /// What to read.
+    target: Target,
+    /// How long to go on.
+    #[arg(long, default_value_t = 1.0)]
+    minutes: f64,
+    /// The seed of all cases.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The case to begin with.
+    #[arg(long, default_value_t = 0)]
+    first: u64,
+    /// Where the case at work and the findings are kept.
+    #[arg(long, default_value = "target/fuzz")]
+    folder: PathBuf,
+}
+
+fn main() -> ExitCode {
+    match fuzz(&Args::parse()) {
+        Ok(0) => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Tries cases until time is up; returns how many were findings.
+fn fuzz(args: &Args) -> Result<u64, Box<dyn Error>> {
+    let Args { target, seed, .. } = *args;
+    let at_work = args.folder.join("case");
+    fs::create_dir_all(&at_work)?;
+    let at_work = fs::canonicalize(at_work)?;
+    let (start, now) = (Instant::now(), Arc::new(AtomicU64::new(0)));
+    watch(start, Arc::clone(&now));
+    std::panic::set_hook(Box::new(|_| {}));
+    // Changes to what is refused anyway would try little.
+    if let Err(why) | Ok(Some(why)) = try_case(target, &at_work, &target.seed())? {
+        return Err(format!("the seed is not accepted: {why}").into());
+    }
+    let (mut n, mut findings, mut accepted, mut said) = (args.first, 0, 0u64, 0);
+    while start.elapsed().as_secs_f64() < 60.0 * args.minutes {
+        let files = case(target, &mut Dice::new(seed, n));
+        now.store(start.elapsed().as_secs() + 1, Relaxed);
+        let outcome = try_case(target, &at_work, &files)?;
+        now.store(0, Relaxed);
+        match outcome {
+            Ok(refused) => accepted += u64::from(refused.is_none()),
+            Err(what) => {
+                findings += 1;
+                let kept = args.folder.join(format!("{target:?}-{seed}-{n}").to_lowercase());
+                fs::create_dir_all(&kept)?;
+                for (name, bytes) in &files {
+                    fs::write(kept.join(name), bytes)?;
+                }
+                println!("case {n}: {what}; kept in {}", kept.display());
+            }
+        }
+        n += 1;
+        let minutes = start.elapsed().as_secs() / 60;
+        if minutes > said {
+            said = minutes;
+            eprintln!("{minutes} min: {} cases, {accepted} accepted, {findings} findings", n - args.first);
+        }
+    }
+    println!("{target:?}, seed {seed}: {} cases, {accepted} accepted, {findings} findings", n - args.first);
+    Ok(findings)
+}
+
+/// Ends the program if a case takes too long. `now` is the second after the one in which it began, or 0.
+fn watch(start: Instant, now: Arc<AtomicU64>) {
+    std::thread::spawn(move || {
+        loop {
+            std::thread::sleep(Duration::from_secs(1));
+            let began = now.load(Relaxed);
+            if began > 0 && start.elapsed().as_secs() > began + TIME_LIMIT {
+                println!("a case takes more than {TIME_LIMIT} s; it is kept in the folder `case`");
+                exit(1);
+            }
+        }
+    });
+}
+
+/// Writes and reads the files of a case. Why they are refused, if they are; or else what is wrong with how they were treated.
+fn try_case(
+    target: Target,
+    folder: &Path,
+    files: &[(&str, Vec<u8>)],
+) -> Result<Result<Option<String>, String>, std::io::Error> {
+    for (name, bytes) in files {
+        // Some file systems take milliseconds to write a file anew in place, but not to remove it first.
+        let path = folder.join(name);
+        if path.exists() {
+            fs::remove_file(&path)?;
+        }
+        fs::write(path, bytes)?;
+    }
+    Ok(attempt(target, folder, files.iter().map(|(_, bytes)| bytes.len()).sum()))
+}
+
+fn attempt(target: Target, folder: &Path, bytes: usize) -> Result<Option<String>, String> {
+    let path = folder.join(target.file());
+    MEMORY.reset_peak_usage();
+    let before = MEMORY.current_usage();
+    let outcome = catch_unwind(AssertUnwindSafe(|| match target {
+        Target::Pipeline => Pipeline::read(&path).map(drop).map_err(|error| error.chain()),
+        _ => load(&path, &LoadOptions::default()).map(Some).map_err(|error| chain(&error)).map(light),
+    }));
+    let memory = MEMORY.peak_usage().saturating_sub(before);
+    let limit = MEMORY_LIMIT.0 + MEMORY_LIMIT.1 * bytes;
+    let outcome = outcome.map_err(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        format!("panic: {}", text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("?"))
+    })?;
+    if memory > limit {
+        return Err(format!("{memory} bytes for files of {bytes}"));
+    }
+    let Err(text) = outcome else { return Ok(None) };
+    let control = |c: char| c.is_control() && !(target == Target::Pipeline && c == '\n');
+    if text.contains(control) {
+        return Err(format!("control characters in {text:?}"));
+    }
+    if target != Target::Pipeline && text.chars().count() > LONGEST_ERROR + 3 * folder.as_os_str().len() {
+        return Err(format!("an error of {} characters", text.chars().count()));
+    }
+    if text.contains(&*folder.to_string_lossy()) {
+        Ok(Some(text))
+    } else {
+        Err(format!("no file is named: {text}"))
+    }
+}
+
+/// Makes patches and a hull of a small scene, and traces some lines.
+fn light(built: Option<Built>) {
+    let Some(scene) = built.map(|built| built.scene).filter(|scene| scene.triangles().len() <= LIT) else {
+        return;
+    };
+    let Ok(model) = Model::new(scene, Subdivision::Patches(50)) else { return };
+    drop(Domain::hull(model.scene.vertices()));
+    if let Ok(first_shot) = FirstShot::new(&model, 200, 1) {
+        let (tally, mut books) = (first_shot.tally(1), Books::default());
+        first_shot.trace(0, 0..200, &tally, &mut books);
+        // Too much power is an error as any other.
+        let _ = first_shot.finish(tally, books);
+    }
+}
+
+fn chain(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        text = format!("{text}: {cause}");
+        source = cause.source();
+    }
+    text
+}

@@ -1,0 +1,74 @@
+//! How much memory a run needs.
+
+use sir_geom::Rgb;
+use sir_radiosity::{Model, Quanta, Repeats};
+
+use crate::error::Error;
+use crate::format::bytes;
+use crate::memory;
+use crate::plan::output::Content;
+use crate::plan::pipeline::{Action, Pipeline};
+use crate::prepare::cameras::chosen_camera;
+use crate::progress::Progress;
+use crate::run::save::{is_calm, settings};
+
+/// Bytes per side of what pictures and lit meshes are made from: measured on two million sides, rounded up.
+const DISPLAY_BYTES: usize = 200;
+
+/// Bytes per pixel of the largest picture: a ray's colours while it is drawn and when it is done, and its file.
+const PIXEL_BYTES: usize = 2 * 24 + 16;
+
+/// Says how much memory a run will take, and refuses what this machine does not have.
+pub(crate) fn check_memory(model: &Model, pipeline: &Pipeline, progress: &dyn Progress) -> Result<(), Error> {
+    let (parts, most) = memory(model, pipeline);
+    progress.note(&format!("Memory: {} at most", bytes(most)));
+    memory::refuse_more_than_available(needed_beside_model(&parts))
+}
+
+/// Of the parts of a run's memory, what it needs beside its scene, patches and acceleration structure.
+pub(super) fn needed_beside_model(memory: &[(&'static str, usize)]) -> usize {
+    memory.iter().skip(3).map(|part| part.1).max().unwrap_or(0)
+}
+
+/// Memory of a run per part and at most \[bytes\].
+pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
+    let Model { scene, mesh, accel } = model;
+    let sides = mesh.side_count();
+    // Power and its variance; in the first shot two records of 64 bytes in the ledger, later one, and less than 64 bytes
+    // for what is unshot.
+    let tracing = size_of::<Quanta>() + size_of::<[f32; 3]>() + 2 * 64;
+    let solution = 2 * size_of::<Rgb>();
+    let repeats = pipeline.stages.iter().any(|stage| matches!(stage.action, Action::Repeat(_)));
+    let tracing = tracing + if repeats { Repeats::BYTES_PER_SIDE } else { 0 };
+    let shown = pipeline.outputs().any(|o| o.content != Content::Table);
+    // Pictures for measuring have one of standard errors, too.
+    let measured =
+        pipeline.outputs().any(|o| o.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
+    // Pictures without noise have a mesh of their own; making it takes less than it has itself.
+    let calm = pipeline.outputs().any(is_calm);
+    let displays = usize::from(shown) + usize::from(measured) + usize::from(calm);
+    let pixels = pipeline.outputs().filter_map(|o| match &o.content {
+        Content::Image(image) => {
+            let camera = chosen_camera(&image.camera, scene);
+            let size = settings(image, camera.as_ref(), 1);
+            Some(size.width as usize * size.height as usize)
+        }
+        _ => None,
+    });
+    let memory = vec![
+        ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles()) + scene.appearance_bytes()),
+        // See `PatchMesh`: 28 bytes per triangle.
+        ("patches", 28 * scene.triangles().len() + mesh.paint_bytes()),
+        ("acceleration structure", accel.bytes()),
+        ("computing the light", sides * tracing),
+        (
+            "pictures and lit meshes",
+            sides * displays.min(1) * solution
+                + sides * displays * DISPLAY_BYTES
+                + pixels.max().unwrap_or(0) * PIXEL_BYTES,
+        ),
+    ];
+    // The last two are not needed at the same time.
+    let [scene, patches, accel, light, display] = [0, 1, 2, 3, 4].map(|i: usize| memory[i].1);
+    (memory, scene + patches + accel + light.max(display))
+}

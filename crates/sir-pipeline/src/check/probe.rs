@@ -1,0 +1,93 @@
+//! A short try of the lines of each stage, to learn their rate.
+
+use std::time::{Duration, Instant};
+
+use sir_lines::LocalLines;
+use sir_parallel::cores;
+use sir_radiosity::{Batches, Books, FirstShot, SecondShot, SolveError};
+
+use crate::plan::pipeline::{Action, Pipeline};
+use crate::prepare::prepared::Prepared;
+
+/// How long the lines of a stage are tried to learn their rate.
+const PROBE: Duration = Duration::from_millis(300);
+
+/// Lines between two looks at the clock.
+const BLOCK: u64 = 1 << 10;
+
+/// What a stage will cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageEstimate {
+    /// Name of the stage.
+    pub name: &'static str,
+    /// Its lines.
+    pub lines: u64,
+    /// Lines per second.
+    pub rate: f64,
+}
+
+/// Tries the lines of each stage of a pipeline.
+pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<StageEstimate>, SolveError> {
+    let Prepared { model, focus, .. } = prepared;
+    let (focus, seed) = (*focus, pipeline.seed);
+    let mut shot = None;
+    let mut estimates = Vec::new();
+    for stage in pipeline.flat_stages() {
+        let name = stage.action.name();
+        match stage.action {
+            Action::FirstShot { lines } => {
+                let first_shot = FirstShot::new(model, LocalLines { count: lines, focus }, seed)?;
+                let (tally, mut books) = (first_shot.tally(1), Books::default());
+                let rate = rate(lines, |block| first_shot.trace(0, block, &tally, &mut books));
+                shot = Some(first_shot.finish(tally, books)?);
+                estimates.push(StageEstimate { name, lines, rate });
+            }
+            Action::SecondShot { lines } => {
+                let Some(shot) = &shot else { continue };
+                let second_shot = SecondShot::new(model, shot, LocalLines { count: lines, focus }, seed);
+                let local = second_shot.lines();
+                let (tally, mut books) = (local.tally(1), Books::default());
+                let rate = rate(local.lines(), |block| local.trace(0, block, &tally, &mut books));
+                estimates.push(StageEstimate { name, lines, rate });
+            }
+            Action::Multipath { lines, body, .. } => {
+                let Some(shot) = shot.take() else { continue };
+                // Both transports trace the same lines at about the same rate.
+                let through = body.lines_around(&model.scene, focus);
+                let transport = Batches::new(model, shot, lines, through, seed, 1);
+                let mut books = Books::default();
+                let rate = rate(lines, |block| transport.trace(0, block, &mut books));
+                estimates.push(StageEstimate { name, lines, rate });
+            }
+            _ => {}
+        }
+    }
+    Ok(estimates)
+}
+
+/// Lines per second of a short try, if all cores do the same.
+fn rate(lines: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
+    let start = Instant::now();
+    let mut done = 0;
+    while done < lines && start.elapsed() < PROBE {
+        let end = lines.min(done + BLOCK);
+        trace(done..end);
+        done = end;
+    }
+    cores().get() as f64 * done as f64 / start.elapsed().as_secs_f64().max(1e-9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_counts_every_line_once() {
+        let mut seen = 0;
+        let rate = rate(2500, |block| {
+            assert_eq!(block.start, seen);
+            seen = block.end;
+        });
+        assert!(seen == 2500 && rate > 0.0);
+    }
+}

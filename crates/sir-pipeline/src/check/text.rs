@@ -1,0 +1,90 @@
+//! An estimate as text.
+
+use std::fmt;
+
+use sir_geom::{Rgb, Scene};
+
+use crate::check::estimate::{Estimate, Repeated};
+use crate::check::probe::StageEstimate;
+use crate::format::{bytes, duration, grouped};
+use crate::plan::pipeline::Until;
+use crate::prepare::prepared::Prepared;
+use crate::prepare::sources::kinds;
+
+impl Repeated {
+    /// What a repeat of so many seconds comes to: whether that is all, the seconds, and how often it is.
+    fn cost(self, once: f64) -> (&'static str, f64, Option<String>) {
+        let most = self.at_most.map_or(f64::INFINITY, |most| most as f64);
+        let limit = self.at_most.map_or(String::new(), |most| format!(", {} times at most", grouped(most)));
+        match self.until {
+            Until::Times(times) => {
+                let times = most.min(times as f64);
+                (" in all", times * once, Some(format!("{} times", grouped(times as u64))))
+            }
+            Until::Seconds(budget) => {
+                let seconds = budget.min(most * once).max(once);
+                let how = format!("for {}{limit}", duration(budget));
+                (" in all", seconds, Some(how))
+            }
+            Until::RelativeError(target) => {
+                let how = format!("until the relative error is {} %{limit}", 100.0 * target);
+                match self.at_most {
+                    Some(_) => (" at most", most * once, Some(how)),
+                    None => (" or more", once, Some(how)),
+                }
+            }
+        }
+    }
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Prepared { model, sources, load_seconds, build_seconds, .. } = &self.prepared;
+        let scene: &Scene = &model.scene;
+        let count = |n: usize| grouped(n as u64);
+        let size = scene.bounding_box().size();
+        let power: Rgb = sources.iter().map(|s| s.power).sum();
+        writeln!(f, "triangles  {}", count(scene.triangles().len()))?;
+        writeln!(f, "patches    {}", count(model.mesh.patch_count()))?;
+        writeln!(f, "sides      {}", count(model.mesh.side_count()))?;
+        writeln!(f, "area       {:.6} m²", scene.total_area())?;
+        writeln!(f, "extent     {:.4} × {:.4} × {:.4} m", size.x, size.y, size.z)?;
+        writeln!(f, "cameras    {}", scene.cameras().len())?;
+        writeln!(
+            f,
+            "sources    {}, {:.6} + {:.6} + {:.6} {} (red, green, blue)",
+            kinds(sources),
+            power.x,
+            power.y,
+            power.z,
+            self.units.power()
+        )?;
+        writeln!(f, "memory     {} at most:", bytes(self.peak_memory))?;
+        for (part, size) in &self.memory {
+            writeln!(f, "           {:>9}  {part}", bytes(*size))?;
+        }
+        let once: f64 = self.stages.iter().map(|s| s.lines as f64 / s.rate).sum();
+        let (bound, tracing, repeats) =
+            self.repeat.map_or((" in all", once, None), |repeat| repeat.cost(once));
+        writeln!(
+            f,
+            "time       {}{bound}, without outputs:",
+            duration(load_seconds + build_seconds + tracing)
+        )?;
+        writeln!(f, "           {:>9}  Load", duration(*load_seconds))?;
+        writeln!(f, "           {:>9}  patches and acceleration structure", duration(*build_seconds))?;
+        if let Some(repeats) = repeats {
+            writeln!(f, "           {:>9}  Repeat: {repeats}; each time", duration(tracing))?;
+        }
+        for StageEstimate { name, lines, rate } in &self.stages {
+            let time = duration(*lines as f64 / rate);
+            writeln!(
+                f,
+                "           {time:>9}  {name}: {} lines at {} lines/s",
+                grouped(*lines),
+                grouped(*rate as u64)
+            )?;
+        }
+        Ok(())
+    }
+}

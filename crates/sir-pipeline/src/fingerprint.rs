@@ -1,0 +1,84 @@
+//! A number that tells scenes, pipelines and programs apart.
+
+use sha2::{Digest, Sha256};
+use sir_geom::{Material, Sides};
+use sir_radiosity::{Grouping, Model, ViewFactorSettings};
+
+use crate::plan::pipeline::{Action, Pipeline};
+use crate::plan::sensors::{Place, Sensors};
+
+/// Name and version of this program.
+pub const PROGRAM: &str = concat!("sir ", env!("CARGO_PKG_VERSION"));
+
+/// A SHA-256.
+pub type Fingerprint = [u8; 32];
+
+/// Of everything that decides the result of a run: equal for equal results.
+pub(crate) fn of_run(pipeline: &Pipeline, seed: u64, model: &Model) -> Fingerprint {
+    let mut hash = Sha256::new();
+    hash.update(PROGRAM);
+    hash.update(seed.to_le_bytes());
+    hash.update((pipeline.text.len() as u64).to_le_bytes());
+    hash.update(&pipeline.text);
+    // The text only names files of points.
+    for stage in &pipeline.stages {
+        if let Action::Sensors(Sensors { at: Place::Points(sensors), .. }) = &stage.action {
+            let numbers =
+                sensors.iter().flat_map(|s| [s.position(), s.direction()]).flat_map(|v| v.to_array());
+            numbers.for_each(|x| hash.update(x.to_bits().to_le_bytes()));
+        }
+    }
+    hash.update(of_scene(model));
+    hash.finalize().into()
+}
+
+/// Of the surfaces of a scene, their patches, and its lights.
+pub(crate) fn of_scene(model: &Model) -> Fingerprint {
+    let Model { scene, mesh, .. } = model;
+    let mut hash = Sha256::new();
+    let mut number = |n: u64| hash.update(n.to_le_bytes());
+    number(scene.vertices().len() as u64);
+    for vertex in scene.vertices() {
+        vertex.to_array().iter().for_each(|x| number(x.to_bits()));
+    }
+    for triangle in scene.triangles() {
+        triangle.vertices.iter().for_each(|v| number(v.0.into()));
+        number(triangle.material.0.into());
+    }
+    for material in scene.materials() {
+        let colours = [material.reflectance, material.exitance];
+        colours.iter().flat_map(|c| c.to_array()).for_each(|x| number(x.to_bits()));
+        number(u64::from(material.sides == Sides::Both) + 2 * u64::from(material.back_emits));
+    }
+    scene.hash_appearance(&mut number);
+    number(mesh.patch_count() as u64);
+    // What most scenes do not have changes nothing for them.
+    for Material { reflectance_map, exitance_map, opacity, .. } in
+        scene.materials().iter().filter(|m| !m.is_plain())
+    {
+        hash.update(format!("{reflectance_map:?} {exitance_map:?} {opacity:?}"));
+    }
+    // Every number is written with all of its digits.
+    hash.update(format!("{:?} {:?}", scene.lights(), scene.sky()));
+    hash.finalize().into()
+}
+
+/// Of everything that decides the view factors of a scene.
+pub(crate) fn of_view_factors(
+    model: &Model,
+    grouping: &Grouping,
+    settings: &ViewFactorSettings,
+) -> Fingerprint {
+    let mut hash = Sha256::new();
+    hash.update(PROGRAM);
+    hash.update(format!("{settings:?}{:?}", grouping.names()));
+    model.scene.triangle_ids().for_each(|t| hash.update((grouping.group_of(t) as u64).to_le_bytes()));
+    hash.update(of_scene(model));
+    hash.finalize().into()
+}
+
+/// In hexadecimal.
+#[must_use]
+pub fn hex(fingerprint: Fingerprint) -> String {
+    fingerprint.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,126 @@
+//! Finding out what is in a scene.
+
+use std::mem::discriminant;
+use std::path::Path;
+
+use glam::DVec3;
+use sir_geom::{LoadOptions, Scene, Sides, Warning};
+use sir_mesh::{PatchMesh, Subdivision};
+use sir_radiosity::{Source, sources};
+
+use crate::error::Error;
+use crate::fingerprint::PROGRAM;
+use crate::info::advice;
+use crate::info::facts::{Group, Info, Lights, MaterialInfo, Textures};
+use crate::info::lines;
+use crate::info::shape;
+use crate::info::shape::{Extent, sums};
+use crate::prepare::prepared::up;
+use crate::prepare::sources::kinds;
+
+/// Version of the JSON text.
+const VERSION: u32 = 1;
+
+/// Reads a scene file and finds out what is in it.
+///
+/// # Errors
+///
+/// If the file cannot be read, as [`sir_geom::load`].
+pub fn inspect(path: &Path) -> Result<Info, Error> {
+    let built = sir_geom::load(path, &LoadOptions::default())?;
+    let scene = &built.scene;
+    let mesh = PatchMesh::new(scene, Subdivision::PerTriangle)?;
+    let sources = sources(scene, &mesh);
+    let dropped = built.warnings.iter().map(|warning| match warning {
+        Warning::DroppedTriangles { count } => *count,
+        _ => 0,
+    });
+    let extent = Extent::from(scene.bounding_box());
+    let area = scene.total_area();
+    let largest = scene.triangle_ids().map(|id| scene.area(id)).fold(0.0, f64::max);
+    let mut info = Info {
+        version: VERSION,
+        program: PROGRAM,
+        scene: path.display().to_string(),
+        warnings: built.warnings.iter().map(ToString::to_string).collect(),
+        triangles: scene.triangles().len(),
+        dropped_triangles: dropped.sum(),
+        vertices: scene.vertices().len(),
+        // The triangles of a polygon follow each other.
+        polygons: scene.triangles().chunk_by(|a, b| a.face == b.face).count(),
+        textures: Textures {
+            images: scene.textures().len(),
+            texels: scene.textures().iter().map(|texture| texture.texels().len()).sum(),
+            triangles: scene.triangle_ids().filter(|&id| scene.is_varied(id)).count(),
+        },
+        area,
+        largest_triangle: largest / area,
+        extent,
+        distance_from_origin: extent.centre().length(),
+        up: up(path, scene).into(),
+        materials: materials(scene),
+        groups: groups(scene),
+        sources: by_kind(&sources),
+        cameras: scene.cameras().iter().map(|camera| camera.name.clone()).collect(),
+        twins: shape::twins(scene),
+        dominant: shape::dominant(scene),
+        lines: lines::trace(scene, &sources),
+        findings: Vec::new(),
+        settings: Vec::new(),
+    };
+    info.findings = advice::findings(&info);
+    info.settings = advice::settings(&info);
+    Ok(info)
+}
+
+fn materials(scene: &Scene) -> Vec<MaterialInfo> {
+    let counts = sums(scene, |t| t.material.index(), |_| 1);
+    let areas = sums(scene, |t| t.material.index(), |id| scene.area(id));
+    let mut materials: Vec<MaterialInfo> = std::iter::zip(counts, areas)
+        .zip(scene.materials())
+        .filter(|((triangles, _), _)| *triangles > 0)
+        .map(|((triangles, area), material)| {
+            let two_sided = material.sides == Sides::Both;
+            let emitting_sides = if two_sided && material.back_emits { 2.0 } else { 1.0 };
+            MaterialInfo {
+                name: material.name.clone(),
+                triangles,
+                area,
+                reflectance: material.reflectance.into(),
+                exitance: material.exitance.into(),
+                power: (material.exitance * area * emitting_sides).into(),
+                two_sided,
+            }
+        })
+        .collect();
+    materials.sort_by(|a, b| b.area.total_cmp(&a.area));
+    materials
+}
+
+fn groups(scene: &Scene) -> Vec<Group> {
+    let counts = sums(scene, |t| t.group.index(), |_| 1);
+    let areas = sums(scene, |t| t.group.index(), |id| scene.area(id));
+    std::iter::zip(counts, areas)
+        .zip(scene.groups())
+        .filter(|((triangles, _), name)| *triangles > 0 && !name.is_empty())
+        .map(|((triangles, area), name)| Group { name: name.clone(), triangles, area })
+        .collect()
+}
+
+fn by_kind(sources: &[Source]) -> Vec<Lights> {
+    let mut of_kinds: Vec<Vec<Source>> = Vec::new();
+    for source in sources {
+        let is_alike = |of_kind: &Vec<Source>| {
+            of_kind.first().is_some_and(|first| discriminant(&first.emitter) == discriminant(&source.emitter))
+        };
+        match of_kinds.iter_mut().find(|of_kind| is_alike(of_kind)) {
+            Some(of_kind) => of_kind.push(*source),
+            None => of_kinds.push(vec![*source]),
+        }
+    }
+    let lights = of_kinds.iter().map(|of_kind| {
+        let power: DVec3 = of_kind.iter().map(|source| source.power).sum();
+        Lights { what: kinds(of_kind), power: power.into() }
+    });
+    lights.collect()
+}

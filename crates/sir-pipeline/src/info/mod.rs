@@ -1,0 +1,12 @@
+//! What is in a scene, and what a pipeline should set to light it.
+
+pub(crate) mod advice;
+pub(crate) mod facts;
+pub(crate) mod inspect;
+pub(crate) mod lines;
+pub(crate) mod shape;
+
+pub use facts::{Group, Info, Lights, MaterialInfo, Setting, Textures};
+pub use inspect::inspect;
+pub use lines::{Fates, Global, Lines};
+pub use shape::{Dominant, Extent, Twins};

@@ -1,0 +1,50 @@
+//! The cameras of pictures.
+
+use sir_geom::{Camera, Scene};
+
+use crate::plan::output::{CameraChoice, Content};
+use crate::plan::pipeline::Pipeline;
+use crate::text::diagnostic::Diagnostic;
+use crate::text::suggest::did_you_mean;
+
+/// Cameras that pictures ask for and the scene does not have.
+pub(crate) fn camera_problems(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
+    let names: Vec<&str> = scene.cameras().iter().map(|c| c.name.as_str()).collect();
+    let known = match names.len() {
+        0 => "the scene has no camera; leave `camera` out, or describe one with `Camera(eye: …, target: …)`"
+            .into(),
+        n => format!("the scene has {n}, by number from 0: {}", names.join(", ")),
+    };
+    let mut problems = Vec::new();
+    for output in pipeline.outputs() {
+        let Content::Image(image) = &output.content else { continue };
+        match &image.camera {
+            CameraChoice::Number { number, span } if *number >= names.len() => problems.push(Diagnostic {
+                span: span.clone(),
+                message: format!("the scene has no camera number {number}"),
+                help: known.clone(),
+            }),
+            CameraChoice::Name { name, span } if !names.contains(&name.as_str()) => {
+                problems.push(Diagnostic {
+                    span: span.clone(),
+                    message: format!("the scene has no camera \"{name}\""),
+                    help: did_you_mean(name, &names).unwrap_or_else(|| known.clone()),
+                })
+            }
+            _ => {}
+        }
+    }
+    problems
+}
+
+/// The camera of the scene or the pipeline that is meant; `None` if the scene has none and nothing was asked for.
+#[must_use]
+pub(crate) fn chosen_camera(choice: &CameraChoice, scene: &Scene) -> Option<Camera> {
+    let cameras = scene.cameras();
+    match choice {
+        CameraChoice::Default => cameras.first().cloned(),
+        CameraChoice::Number { number, .. } => cameras.get(*number).cloned(),
+        CameraChoice::Name { name, .. } => cameras.iter().find(|c| c.name == *name).cloned(),
+        CameraChoice::Own(camera) => Some(camera.clone()),
+    }
+}

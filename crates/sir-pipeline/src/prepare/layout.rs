@@ -1,0 +1,186 @@
+//! Where the sensors of a grid or of a work plane are.
+
+use glam::{DVec2, DVec3};
+use sir_accel::{Ray, Tracer};
+use sir_geom::{Line, Scene};
+use sir_radiosity::{LIFT, Model, Sensor};
+
+use crate::plan::sensors::{Grid, Place, Plane};
+
+/// Most cells of a grid.
+const MOST: f64 = 1e6;
+
+/// Sensors in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// The sensors, at least one.
+    pub sensors: Vec<Sensor>,
+    /// The cells in which they are, if they are on a grid.
+    pub cells: Option<Cells>,
+}
+
+/// Cells of a grid, row by row from the lower left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cells {
+    /// Cells in a row.
+    pub columns: usize,
+    /// Rows.
+    pub rows: usize,
+    /// Width and height of all cells together \[m\].
+    pub size: DVec2,
+    /// The number of the cell of each sensor; cells without one are outside of the room.
+    pub of: Vec<usize>,
+}
+
+impl Layout {
+    /// The sensors of a place; an error says why there are none, and what to do.
+    pub(crate) fn new(place: &Place, model: &Model, up: DVec3) -> Result<Self, (String, String)> {
+        match place {
+            Place::Points(sensors) => Ok(Self { sensors: sensors.clone(), cells: None }),
+            Place::Grid(grid) => grid.layout(&mut |_| true),
+            Place::Plane(plane) => plane.layout(model, up),
+        }
+    }
+}
+
+impl Grid {
+    /// A sensor in the middle of every cell that is `wanted`.
+    fn layout(&self, wanted: &mut dyn FnMut(&Sensor) -> bool) -> Result<Layout, (String, String)> {
+        let Self { corner, along, across, spacing, direction } = *self;
+        let size = DVec2::new(along.length(), across.length());
+        let counts = (size / spacing).round().max(DVec2::ONE);
+        if counts.x * counts.y > MOST {
+            let message = format!("a grid of {:.0} by {:.0} sensors is too fine", counts.x, counts.y);
+            return Err((message, "choose a larger `spacing`".into()));
+        }
+        let (columns, rows) = (counts.x as usize, counts.y as usize);
+        let (mut sensors, mut of) = (Vec::new(), Vec::new());
+        for cell in 0..columns * rows {
+            let [x, y] =
+                [(cell % columns, counts.x), (cell / columns, counts.y)].map(|(i, n)| (i as f64 + 0.5) / n);
+            let Some(sensor) = Sensor::new(corner + x * along + y * across, direction) else { continue };
+            if wanted(&sensor) {
+                sensors.push(sensor);
+                of.push(cell);
+            }
+        }
+        Ok(Layout { sensors, cells: Some(Cells { columns, rows, size, of }) })
+    }
+}
+
+impl Plane {
+    fn layout(&self, model: &Model, scene_up: DVec3) -> Result<Layout, (String, String)> {
+        let up = self.up.unwrap_or(scene_up).normalize();
+        // Seen from above, with x from left to right unless that is up.
+        let guide = if up.x.abs() < 0.9 { DVec3::X } else { DVec3::Y };
+        let along = guide.reject_from_normalized(up).normalize();
+        let across = up.cross(along);
+        let [[left, right], [bottom, top], [lowest, _]] =
+            [along, across, up].map(|axis| extent(&model.scene, axis));
+        let size = DVec2::new(right - left, top - bottom) - 2.0 * self.border;
+        if size.min_element() <= 0.0 {
+            let message = format!(
+                "nothing is left of the scene, {:.3} by {:.3} m, without a border of {} m",
+                right - left,
+                top - bottom,
+                self.border
+            );
+            return Err((message, "choose a smaller `border`".into()));
+        }
+        let corner =
+            (left + self.border) * along + (bottom + self.border) * across + (lowest + self.height) * up;
+        let (along, across) = (size.x * along, size.y * across);
+        let grid = Grid { corner, along, across, spacing: self.spacing, direction: up };
+        let mut tracer = model.accel.tracer();
+        let layout = grid.layout(&mut |sensor| is_inside(sensor, model, &mut tracer))?;
+        if layout.sensors.is_empty() {
+            let message =
+                format!("no point of the plane at the height {} m lies inside the room", self.height);
+            let help = "choose another `height`, above the lowest point of the scene, or `up`; where backs of surfaces are \
+                        seen is outside";
+            return Err((message, help.into()));
+        }
+        Ok(layout)
+    }
+}
+
+/// The least and the largest coordinate of a scene in a direction.
+fn extent(scene: &Scene, axis: DVec3) -> [f64; 2] {
+    let coordinates = scene.vertices().iter().map(|vertex| vertex.dot(axis));
+    coordinates.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [least.min(x), most.max(x)])
+}
+
+/// Whether a point is in the room, and not in a piece of furniture: there is something below it, and what is seen first above and below
+/// is not the back of a one-sided surface. (The sky may be above.)
+fn is_inside(sensor: &Sensor, model: &Model, tracer: &mut Tracer<'_>) -> bool {
+    let up = sensor.direction();
+    // As sensors are lifted: one that lies on a desk is above it.
+    let origin = sensor.position() + LIFT * model.scene.bounding_sphere().radius * up;
+    let mut sees = |direction| {
+        let hit = tracer.closest(&Ray::from(Line { origin, direction }));
+        hit.map(|hit| model.scene.is_active(hit.triangle, hit.side))
+    };
+    sees(-up) == Some(true) && sees(up) != Some(false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sir_geom::shapes::{self, Facing};
+    use sir_geom::{Material, Rgb, SceneBuilder};
+    use sir_mesh::Subdivision;
+
+    /// A room of 4 by 3 m in an L shape, 2 m high, with a table 0.7 m high, y up.
+    fn room() -> Model {
+        let mut b = SceneBuilder::new();
+        let m = b.add_material(Material::diffuse("", Rgb::splat(0.5)));
+        let outline = [(0., 0.), (4., 0.), (4., 1.), (2., 1.), (2., 3.), (0., 3.)];
+        let corner = |i: usize, y: f64| {
+            let (x, z): (f64, f64) = outline[i % outline.len()];
+            DVec3::new(x, y, z)
+        };
+        for i in 0..outline.len() {
+            shapes::quad(&mut b, [corner(i, 0.0), corner(i + 1, 0.0), corner(i + 1, 2.0), corner(i, 2.0)], m);
+        }
+        for (y, turned) in [(0.0, true), (2.0, false)] {
+            for (x, z) in [([0., 2.], [0., 1.]), ([2., 4.], [0., 1.]), ([0., 2.], [1., 3.])] {
+                let at = |i: usize, k: usize| DVec3::new(x[i], y, z[k]);
+                let mut corners = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
+                if turned {
+                    corners.reverse();
+                }
+                shapes::quad(&mut b, corners, m);
+            }
+        }
+        shapes::cuboid(&mut b, DVec3::new(0.5, 0.0, 1.5), DVec3::new(1.5, 0.7, 2.5), [m; 6], Facing::Outward);
+        Model::new(b.build().unwrap().scene, Subdivision::PerTriangle).unwrap()
+    }
+
+    #[test]
+    fn a_plane_stays_in_the_room_and_out_of_the_furniture() {
+        let (model, plane) = (room(), Plane { height: 0.3, spacing: 0.1, border: 0.0, up: None });
+        let count = |plane: Plane| plane.layout(&model, DVec3::Y).map(|layout| layout.sensors.len());
+        // 8 m² without the square metre of the table; on and above its top, all.
+        assert_eq!(count(plane), Ok(700));
+        assert_eq!(count(Plane { height: 0.7, ..plane }), Ok(800));
+        assert_eq!(count(Plane { height: 1.0, ..plane }), Ok(800));
+        // Half a metre from the outline: 1.5 by 2 m and 1.5 by 0.5 m, without the table.
+        assert_eq!(count(Plane { border: 0.5, ..plane }), Ok(275));
+        for bad in
+            [Plane { height: 2.5, ..plane }, Plane { border: 1.5, ..plane }, Plane { spacing: 1e-3, ..plane }]
+        {
+            assert!(count(bad).is_err(), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn cells_are_numbered_from_the_lower_left_as_seen_from_above() {
+        let layout =
+            Plane { height: 1.0, spacing: 1.0, border: 0.0, up: None }.layout(&room(), DVec3::Y).unwrap();
+        let cells = layout.cells.unwrap();
+        assert_eq!((cells.columns, cells.rows, cells.size), (4, 3, DVec2::new(4.0, 3.0)));
+        // −z is at the top.
+        assert_eq!(layout.sensors[0].position(), DVec3::new(0.5, 1.0, 2.5));
+        assert_eq!(cells.of, [0, 1, 4, 5, 8, 9, 10, 11]);
+    }
+}

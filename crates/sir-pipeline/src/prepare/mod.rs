@@ -1,0 +1,10 @@
+//! Everything that must work before the first line is traced.
+
+pub(crate) mod cameras;
+pub(crate) mod layout;
+pub(crate) mod prepared;
+pub(crate) mod sources;
+
+pub use layout::{Cells, Layout};
+pub use prepared::{Prepared, prepare};
+pub use sources::kinds;

@@ -1,0 +1,35 @@
+//! How good the light so far is.
+
+use sir_geom::Rgb;
+use sir_radiosity::{Inside, Model, Solution};
+
+use crate::report::result::{ErrorsReport, LightReport};
+
+impl LightReport {
+    /// `tally_hash` is that of the power of which the solution was made.
+    pub(crate) fn new(
+        model: &Model,
+        inside: &Inside,
+        solution: &Solution,
+        errors: ErrorsReport,
+        tally_hash: String,
+    ) -> Self {
+        Self { relative_error: relative_error(model, inside, solution), errors, tally_hash }
+    }
+}
+
+/// See [`LightReport::relative_error`].
+pub(crate) fn relative_error(model: &Model, inside: &Inside, solution: &Solution) -> [f64; 3] {
+    let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
+    model.mesh.for_each_side(|triangle, _, _, side| {
+        if !inside.has(side) {
+            return;
+        }
+        let a = model.area(triangle, side);
+        let error = solution.error[side.index()];
+        area += a;
+        sum += a * solution.irradiance[side.index()];
+        square += a * error * error;
+    });
+    std::array::from_fn(|k| if sum[k] > 0.0 { (square[k] * area).sqrt() / sum[k] } else { 0.0 })
+}

@@ -1,0 +1,63 @@
+//! What the lines of a stage did.
+
+use sir_lines::GlobalLines;
+use sir_parallel::StageTime;
+use sir_radiosity::{Balance, Counts, PowerUnit, Quanta};
+
+use crate::report::result::{BalanceReport, DomainReport, LinesReport, Time};
+
+/// What is known of the lines of a stage when it is done.
+#[derive(Clone, Debug)]
+pub(crate) struct Facts {
+    pub(crate) balance: Balance,
+    pub(crate) counts: Counts,
+    pub(crate) batches: u64,
+    pub(crate) made_up: Quanta,
+    pub(crate) domain: Option<DomainReport>,
+}
+
+impl DomainReport {
+    pub(crate) fn of(lines: &GlobalLines) -> Self {
+        let domain = lines.domain();
+        let focus = lines.focus().map(|_| lines.share());
+        Self { body: domain.name().into(), surface: domain.surface(), focus }
+    }
+}
+
+impl LinesReport {
+    /// `unit` is that of the power.
+    pub(crate) fn new(facts: Facts, unit: PowerUnit) -> Self {
+        let Facts { balance, counts, batches, made_up, domain } = facts;
+        let watts = |quanta: Quanta| unit.watts(quanta).to_array();
+        Self {
+            lines: counts.lines,
+            domain,
+            empty_share: counts.empty as f64 / counts.lines.max(1) as f64,
+            odd_lines: counts.odd,
+            crossings: counts.crossings,
+            batches,
+            balance: BalanceReport {
+                emitted: watts(balance.emitted),
+                absorbed: watts(balance.absorbed),
+                blocked: watts(balance.blocked),
+                escaped: watts(balance.escaped),
+                unshot: watts(balance.unshot),
+            },
+            made_up: watts(made_up),
+        }
+    }
+}
+
+impl Time {
+    /// The time of a stage of so many lines.
+    pub(crate) fn of_lines(time: StageTime, lines: u64) -> Self {
+        let seconds = time.total.as_secs_f64();
+        Self {
+            seconds,
+            lines_per_second: Some(lines as f64 / seconds.max(1e-9)),
+            sequential: Some(time.sequential().as_secs_f64()),
+            communication: Some(time.communication.as_secs_f64()),
+            peak_memory: None,
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! `result.json`: what a run did, for people and programs.
+
+pub(crate) mod compare;
+pub(crate) mod light;
+pub(crate) mod lines;
+pub(crate) mod result;
+pub(crate) mod sensors;
+
+pub use compare::compare;
+pub use result::{
+    BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, FILE_NAME, LightReport, LinesReport, OutputReport,
+    PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
+};
+pub use sensors::SensorsReport;

@@ -1,0 +1,278 @@
+//! Running a pipeline, or going on with one.
+
+use std::fs;
+use std::io::Write as _;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use sir_geom::Rgb;
+use sir_parallel::{Alone, Checkpoints, Communicator, RunError, Saved};
+use sir_radiosity::Model;
+use sir_view::ViewError;
+
+use crate::check::needs::check_memory;
+use crate::error::Error;
+use crate::fingerprint;
+use crate::fingerprint::PROGRAM;
+use crate::memory::largest_peak;
+use crate::plan::pipeline::Pipeline;
+use crate::prepare::prepared::{Prepared, prepare};
+use crate::progress::{NoProgress, Progress, of_rank};
+use crate::ranks::{agree, same_everywhere};
+use crate::report::result::{FILE_NAME, PipelineReport, Report, SceneReport, Time, VERSION};
+use crate::run::directory::{absolute, check_given, make_given, make_new, run_name};
+use crate::run::resume as saved_run;
+use crate::run::resume::{CHECKPOINT, Head};
+use crate::stopwatch::Stopwatch;
+
+/// How to run a pipeline. None of this changes the result, but for the seed.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// The run directory; `None` for a new one in `results`.
+    pub out: Option<PathBuf>,
+    /// Where new run directories are made. Default `results`.
+    pub results: PathBuf,
+    /// Whether to replace a result in `out`.
+    pub force: bool,
+    /// Seed instead of the pipeline's.
+    pub seed: Option<u64>,
+    /// Threads; `None` for one per processor core.
+    pub threads: Option<NonZeroUsize>,
+    /// Time from one checkpoint to the next. Default five minutes.
+    pub checkpoint_every: Duration,
+    /// When this becomes true, the run saves a checkpoint and ends.
+    pub stop: Arc<AtomicBool>,
+    /// Who is told how far the run is. Default nobody.
+    pub progress: Arc<dyn Progress>,
+}
+
+impl Default for RunOptions {
+    fn default() -> Self {
+        Self {
+            out: None,
+            results: "results".into(),
+            force: false,
+            seed: None,
+            threads: None,
+            checkpoint_every: Duration::from_secs(300),
+            stop: Arc::default(),
+            progress: Arc::new(NoProgress),
+        }
+    }
+}
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct RunResult {
+    /// Where its files are.
+    pub directory: PathBuf,
+    /// What `result.json` says.
+    pub report: Report,
+}
+
+/// Runs the pipeline in the file `path`, and writes its files and `result.json`. Nothing is written before the scene has been
+/// read.
+///
+/// # Errors
+///
+/// If the pipeline has mistakes, the scene cannot be read, the light cannot be computed, or a file cannot be written.
+pub fn run(path: &Path, options: &RunOptions) -> Result<RunResult, Error> {
+    run_together(Pipeline::read(path), options, &Alone)
+}
+
+/// As [`run`], with a pipeline that has been read.
+///
+/// # Errors
+///
+/// As [`run`].
+pub fn run_pipeline(pipeline: &Pipeline, options: &RunOptions) -> Result<RunResult, Error> {
+    run_together(Ok(pipeline.clone()), options, &Alone)
+}
+
+/// As [`run`], by several ranks that have all read the pipeline. The first one writes; all return the same report.
+///
+/// # Errors
+///
+/// As [`run`], or if the ranks have not read the same pipeline and scene. If one of them fails, all do.
+pub fn run_together(
+    pipeline: Result<Pipeline, Error>,
+    options: &RunOptions,
+    comm: &dyn Communicator,
+) -> Result<RunResult, Error> {
+    let watch = Stopwatch::start();
+    let progress = of_rank(&*options.progress, comm);
+    let given = options.out.as_deref().filter(|_| comm.is_first());
+    let pipeline = agree(
+        comm,
+        pipeline.and_then(|pipeline| {
+            given.map_or(Ok(()), |directory| check_given(directory, options.force)).map(|()| pipeline)
+        }),
+    )?;
+    progress.note(&format!("Load: {}", pipeline.scene_path().display()));
+    let prepared = agree(comm, prepare(&pipeline, progress))?;
+    agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
+    let seed = options.seed.unwrap_or(pipeline.seed);
+    let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared.model);
+    agree(comm, same_everywhere(comm, fingerprint))?;
+    let directory = agree(
+        comm,
+        match (given, comm.is_first()) {
+            (_, false) => Ok(PathBuf::new()),
+            (Some(directory), _) => make_given(directory, options.force).map(|()| directory.to_owned()),
+            (None, _) => make_new(&options.results, &run_name(&pipeline.path)),
+        },
+    )?;
+    let report = Report {
+        version: VERSION,
+        program: PROGRAM.into(),
+        pipeline: PipelineReport { path: pipeline.path.display().to_string(), text: pipeline.text.clone() },
+        seed,
+        units: pipeline.units,
+        scene: scene_report(&prepared, pipeline.scene_path()),
+        stages: Vec::new(),
+        outputs: Vec::new(),
+        time: Time::of(0.0),
+    };
+    let head = Head {
+        fingerprint: fingerprint::hex(fingerprint),
+        pipeline: absolute(&pipeline.path),
+        stage: 0,
+        repeat: 0,
+        part: 0,
+        report,
+    };
+    let (pipeline, prepared) = (&pipeline, &prepared);
+    Run { pipeline, prepared, directory, options, comm, progress, watch, earlier: 0.0, head }.finish(None)
+}
+
+/// Goes on with the run in `directory`, which was interrupted.
+///
+/// # Errors
+///
+/// As [`resume_together`].
+pub fn resume(directory: &Path, options: &RunOptions) -> Result<RunResult, Error> {
+    resume_together(directory, options, &Alone)
+}
+
+/// As [`resume`], by several ranks. Of the options, those that say where to write, and the
+/// seed, have no effect: they are those of the run.
+///
+/// # Errors
+///
+/// If there is no checkpoint, it is of another program, pipeline or scene, or as [`run_together`].
+pub fn resume_together(
+    directory: &Path,
+    options: &RunOptions,
+    comm: &dyn Communicator,
+) -> Result<RunResult, Error> {
+    let watch = Stopwatch::start();
+    let progress = of_rank(&*options.progress, comm);
+    let (saved, head) = saved_run::open(directory, comm)?;
+    let pipeline = agree(comm, saved_run::pipeline(directory, &head))?;
+    progress.note(&format!("Load: {}", pipeline.scene_path().display()));
+    // The warnings have been shown when the run began.
+    let prepared = agree(comm, prepare(&pipeline, &NoProgress))?;
+    agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
+    let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared.model);
+    agree(comm, saved_run::check_fingerprint(directory, &head, fingerprint))?;
+    if comm.is_first() {
+        saved_run::clean_up(directory);
+    }
+    let directory = directory.to_owned();
+    // A run that had not begun a stage begins with the first.
+    let saved = (head.stage > 0).then_some(saved);
+    let (pipeline, prepared, earlier) = (&pipeline, &prepared, head.report.time.seconds);
+    Run { pipeline, prepared, directory, options, comm, progress, watch, earlier, head }.finish(saved)
+}
+
+/// A run that is under way.
+pub(crate) struct Run<'a> {
+    pub(crate) pipeline: &'a Pipeline,
+    pub(crate) prepared: &'a Prepared,
+    pub(crate) directory: PathBuf,
+    pub(crate) options: &'a RunOptions,
+    pub(crate) comm: &'a dyn Communicator,
+    pub(crate) progress: &'a dyn Progress,
+    pub(crate) watch: Stopwatch,
+    /// Seconds before it was resumed.
+    pub(crate) earlier: f64,
+    /// How far it is.
+    pub(crate) head: Head,
+}
+
+impl Run<'_> {
+    fn finish(mut self, saved: Option<Saved>) -> Result<RunResult, Error> {
+        let path = self.directory.join(CHECKPOINT);
+        let mut checkpoints = Checkpoints::new(path, self.options.checkpoint_every);
+        if saved.is_none() {
+            checkpoints.set_head(self.head.to_line());
+            agree(
+                self.comm,
+                checkpoints.save_start(self.comm).map_err(|error| RunError::from(error).into()),
+            )?;
+        }
+        self.stages(&mut checkpoints, saved).map_err(|error| name_directory(error, &self.directory))?;
+        let peak_memory = largest_peak(self.comm);
+        self.head.report.time = Time { peak_memory, ..Time::of(self.seconds()) };
+        let Self { directory, comm, head, .. } = self;
+        let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
+        agree(comm, written.map_err(|error| name_directory(error, &directory)))?;
+        if comm.is_first() {
+            checkpoints.remove();
+        }
+        Ok(RunResult { directory, report: head.report })
+    }
+
+    /// Seconds so far.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.earlier + self.watch.seconds()
+    }
+}
+
+/// Says where a run that was not finished can be resumed.
+fn name_directory(error: Error, directory: &Path) -> Error {
+    let directory = directory.to_owned();
+    match error {
+        Error::Run(RunError::Interrupted { done, total }) => Error::Interrupted { done, total, directory },
+        Error::View(source @ ViewError::Io { .. }) => Error::NotWritten { directory, source },
+        other => other,
+    }
+}
+
+fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {
+    let Model { scene, mesh, .. } = &prepared.model;
+    SceneReport {
+        path: path.display().to_string(),
+        triangles: scene.triangles().len(),
+        patches: mesh.patch_count(),
+        sides: mesh.side_count(),
+        area: scene.total_area(),
+        power: prepared.sources.iter().map(|s| s.power).sum::<Rgb>().to_array(),
+        warnings: prepared.warnings.clone(),
+    }
+}
+
+fn write_report(directory: &Path, report: &Report) -> Result<(), Error> {
+    sir_view::write_atomically(&directory.join(FILE_NAME), |file| {
+        file.write_all(report.to_json().as_bytes())
+    })?;
+    Ok(())
+}
+
+/// Reads the report of a run directory.
+///
+/// # Errors
+///
+/// If there is none, or it has another version.
+pub fn read_report(directory: &Path) -> Result<Report, Error> {
+    let no_result = |why: String| Error::NoResult { directory: directory.to_owned(), why };
+    let text = fs::read_to_string(directory.join(FILE_NAME)).map_err(|e| no_result(e.to_string()))?;
+    let report: Report = serde_json::from_str(&text).map_err(|e| no_result(e.to_string()))?;
+    if report.version == VERSION {
+        return Ok(report);
+    }
+    Err(no_result(format!("it has version {}, but this program reads version {VERSION}", report.version)))
+}

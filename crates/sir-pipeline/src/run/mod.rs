@@ -1,0 +1,20 @@
+//! Running a pipeline: its stages in order, checkpoints, files and the report.
+//!
+//! * `execute`: starts a run or goes on with one; `resume`: what a checkpoint says; `directory`: where files go.
+//! * `stages`: one stage after the other; `lighting`: the light so far; `repeat`: the stage `Repeat`.
+//! * `save`: pictures, lit scenes and tables; `sensor_files`: what sensors write.
+
+pub(crate) mod directory;
+pub(crate) mod execute;
+mod lighting;
+mod repeat;
+pub(crate) mod resume;
+pub(crate) mod save;
+mod sensor_files;
+mod stages;
+
+pub use directory::{absolute, make_new, run_name};
+pub use execute::{
+    RunOptions, RunResult, read_report, resume, resume_together, run, run_pipeline, run_together,
+};
+pub use resume::CHECKPOINT;

@@ -1,0 +1,79 @@
+//! What sensors write: a table, and a picture in false colours.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+use sir_radiosity::{Measurement, Sensor};
+use sir_view::{Map, ViewError, write_atomically, write_map};
+
+use crate::error::Error;
+use crate::plan::sensors::Sensors;
+use crate::prepare::layout::{Cells, Layout};
+use crate::report::result::OutputReport;
+use crate::report::sensors::SensorsReport;
+use crate::units::Units;
+
+/// Columns of the table.
+const COLUMNS: &str = "x,y,z,dx,dy,dz,E_r,E_g,E_b,E,E_direct,se_r,se_g,se_b,se";
+
+/// Writes the files of sensors into a directory.
+pub(crate) fn write(
+    sensors: &Sensors,
+    layout: &Layout,
+    measured: &[Measurement],
+    units: Units,
+    directory: &Path,
+) -> Result<Vec<OutputReport>, Error> {
+    let place = |name: &Path| -> Result<_, Error> {
+        let path = directory.join(name);
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent).map_err(Error::directory(parent))?;
+        }
+        Ok(path)
+    };
+    let table = place(&sensors.table)?;
+    write_atomically(&table, |file| write_table(file, &layout.sensors, measured))?;
+    let mut written = vec![output(directory, &sensors.table, "sensors")?];
+    if let (Some(map), Some(cells)) = (&sensors.map, &layout.cells) {
+        let report = SensorsReport::new(&sensors.name, measured);
+        write_map(&place(map)?, &map_of(cells, measured, &report, units))?;
+        written.push(output(directory, map, "map")?);
+    }
+    Ok(written)
+}
+
+fn output(directory: &Path, name: &Path, kind: &str) -> Result<OutputReport, Error> {
+    let path = directory.join(name);
+    let bytes = fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len();
+    Ok(OutputReport { path: name.to_string_lossy().into_owned(), kind: kind.into(), bytes })
+}
+
+fn write_table(out: &mut impl Write, sensors: &[Sensor], measured: &[Measurement]) -> io::Result<()> {
+    writeln!(out, "{COLUMNS}")?;
+    for (sensor, m) in sensors.iter().zip(measured) {
+        let places = [sensor.position(), sensor.direction()].map(|v| v.to_array());
+        let light = m.irradiance.to_array().into_iter().chain([m.luminance(), sir_geom::luminance(m.direct)]);
+        let errors = m.error().to_array().into_iter().chain([m.luminance_error()]);
+        let numbers: Vec<String> =
+            places.into_iter().flatten().chain(light).chain(errors).map(|x| format!("{x:?}")).collect();
+        writeln!(out, "{}", numbers.join(","))?;
+    }
+    Ok(())
+}
+
+fn map_of(cells: &Cells, measured: &[Measurement], report: &SensorsReport, units: Units) -> Map {
+    let mut values = vec![None; cells.columns * cells.rows];
+    for (&cell, measurement) in cells.of.iter().zip(measured) {
+        values[cell] = Some(measurement.luminance());
+    }
+    let SensorsReport { name, .. } = report;
+    Map {
+        title: format!("{name}: {}", units.irradiance_name()),
+        subtitle: report.in_short(units),
+        unit: units.irradiance().into(),
+        columns: cells.columns,
+        size: cells.size.to_array(),
+        values,
+    }
+}

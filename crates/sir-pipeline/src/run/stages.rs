@@ -1,0 +1,215 @@
+//! The stages of a run, one after the other.
+
+use std::sync::atomic::Ordering::Relaxed;
+
+use sir_parallel::{Checkpoints, Crew, RunError, Saved, cores};
+use sir_radiosity::Solution;
+
+use crate::error::Error;
+use crate::plan::output::Output;
+use crate::plan::pipeline::{Action, Stage};
+use crate::plan::sensors::Sensors;
+use crate::plan::transport::Transport;
+use crate::ranks::agree;
+use crate::report::result::{ErrorsFrom, ErrorsReport, LinesReport, OutputReport, StageReport, Time};
+use crate::report::sensors::SensorsReport;
+use crate::run::execute::Run;
+use crate::run::lighting::Lighting;
+use crate::run::save::save;
+use crate::run::sensor_files;
+use crate::stopwatch::Stopwatch;
+
+impl Run<'_> {
+    /// Runs all stages, or those from the one that `saved` is of.
+    pub(crate) fn stages(
+        &mut self,
+        checkpoints: &mut Checkpoints,
+        mut saved: Option<Saved>,
+    ) -> Result<(), Error> {
+        let prepared = self.prepared;
+        let mut lighting = Lighting::new(prepared);
+        let mut solution = None;
+        for (number, stage) in self.pipeline.stages.iter().enumerate().skip(self.head.stage) {
+            let (name, watch) = (stage.action.name(), Stopwatch::start());
+            let report = match &stage.action {
+                Action::Load { .. } => StageReport::of(name, Time::of(prepared.load_seconds)),
+                Action::Light { .. } | Action::Focus { .. } => StageReport::of(name, Time::of(0.0)),
+                Action::Subdivide(_) => StageReport::of(name, Time::of(prepared.build_seconds)),
+                Action::Sensors(sensors) => match &solution {
+                    Some(solution) => self.measure(number, sensors, solution)?,
+                    None => StageReport::of(name, Time::of(0.0)),
+                },
+                Action::Save(outputs) => {
+                    self.save(solution.as_ref(), outputs)?;
+                    StageReport::of(name, Time::of(watch.seconds()))
+                }
+                Action::Repeat(repeat) => {
+                    let (report, mean) = self.repeat(number, repeat, checkpoints, saved.take())?;
+                    solution = Some(mean);
+                    report
+                }
+                Action::FirstShot { .. } | Action::SecondShot { .. } | Action::Multipath { .. } => {
+                    // The light so far has been saved if it was wanted, and takes much memory.
+                    drop(solution.take());
+                    let (report, light) =
+                        self.lines(number, stage, &mut lighting, checkpoints, saved.take())?;
+                    solution = light;
+                    report
+                }
+            };
+            self.head.report.stages.push(report);
+        }
+        Ok(())
+    }
+
+    /// Runs a stage of lines.
+    fn lines(
+        &mut self,
+        number: usize,
+        stage: &Stage,
+        lighting: &mut Lighting<'_>,
+        checkpoints: &mut Checkpoints,
+        saved: Option<Saved>,
+    ) -> Result<(StageReport, Option<Solution>), Error> {
+        let (name, action) = (stage.action.name(), &stage.action);
+        self.begin(number, (0, 0), checkpoints);
+        let mut crew = self.crew(checkpoints);
+        crew.observer = Box::new(self.progress.stage(name, action.lines(), &self.options.stop));
+        let done = lighting.run(action, self.head.report.seed, &mut crew, saved);
+        drop(crew);
+        let mut report = StageReport::of(name, Time::of(0.0));
+        let Some(done) = agree(self.comm, done.map_err(Error::from))? else { return Ok((report, None)) };
+        let lines = LinesReport::new(done.facts, done.unit);
+        self.progress.warn(&unshot_warning(action, &lines));
+        let before = self.head.report.stages.iter().filter_map(|stage| stage.lines.as_ref());
+        let samples = before.chain([&lines]).map(|lines| lines.lines).sum();
+        let result = lighting.result(ErrorsReport { from: ErrorsFrom::Lines, samples });
+        let (light, solution) = result.unzip();
+        report.time = Time::of_lines(done.time, action.lines());
+        (report.lines, report.light) = (Some(lines), light);
+        Ok((report, solution))
+    }
+
+    /// Notes for checkpoints that a stage of lines begins; `repeat` says which repeat it belongs to, and which of its stages it is.
+    pub(crate) fn begin(&mut self, number: usize, repeat: (u64, usize), checkpoints: &mut Checkpoints) {
+        self.head.stage = number;
+        (self.head.repeat, self.head.part) = repeat;
+        self.head.report.time.seconds = self.seconds();
+        checkpoints.set_head(self.head.to_line());
+    }
+
+    /// The workers of this run, who save their state.
+    pub(crate) fn crew<'c>(&self, checkpoints: &'c mut Checkpoints) -> Crew<'c>
+    where
+        Self: 'c,
+    {
+        let mut crew = self.workers();
+        crew.checkpoints = Some(checkpoints);
+        crew
+    }
+
+    /// The workers of this run.
+    fn workers<'c>(&self) -> Crew<'c>
+    where
+        Self: 'c,
+    {
+        let mut crew = Crew::of(self.options.threads.unwrap_or_else(cores));
+        crew.comm = self.comm;
+        crew
+    }
+
+    /// Measures at sensors, and writes what they have measured.
+    fn measure(
+        &mut self,
+        number: usize,
+        sensors: &Sensors,
+        solution: &Solution,
+    ) -> Result<StageReport, Error> {
+        let mut report = StageReport::of("Sensors", Time::of(0.0));
+        let Some(layout) = self.prepared.layouts.get(&number) else { return Ok(report) };
+        let mut crew = self.workers();
+        let total = sensors.settings.rays * layout.sensors.len() as u64;
+        crew.observer = Box::new(self.progress.stage("Sensors", total, &self.options.stop));
+        // Each stage has its own random numbers.
+        let seed = self.head.report.seed.wrapping_add((number as u64) << 48);
+        let model = &self.prepared.model;
+        let done = sir_parallel::measure(model, solution, &layout.sensors, sensors.settings, seed, &mut crew);
+        drop(crew);
+        let done = agree(self.comm, done.map_err(|error| self.interrupted_measuring(error)))?;
+        let measured = SensorsReport::new(&sensors.name, &done.outcome);
+        report.time = Time::of_lines(done.time, measured.rays);
+        report.sensors = Some(measured);
+        let written = if self.comm.is_first() {
+            sensor_files::write(sensors, layout, &done.outcome, self.pipeline.units, &self.directory)
+        } else {
+            Ok(Vec::new())
+        };
+        self.head.report.outputs.extend(agree(self.comm, written)?);
+        Ok(report)
+    }
+
+    /// Sensors have no checkpoint of their own.
+    fn interrupted_measuring(&self, error: RunError) -> Error {
+        match error {
+            RunError::Interrupted { .. } => Error::InterruptedMeasuring { directory: self.directory.clone() },
+            other => other.into(),
+        }
+    }
+
+    /// Writes the outputs of a `Save`: the first rank, if there is any light.
+    fn save(&mut self, solution: Option<&Solution>, outputs: &[Output]) -> Result<(), Error> {
+        let saved = match solution {
+            Some(solution) if self.comm.is_first() => self.write(solution, outputs),
+            _ => Ok(Vec::new()),
+        };
+        self.head.report.outputs.extend(agree(self.comm, saved)?);
+        Ok(())
+    }
+
+    /// Writes outputs, unless the run is to be stopped.
+    fn write(&self, solution: &Solution, outputs: &[Output]) -> Result<Vec<OutputReport>, Error> {
+        let mut reports = Vec::new();
+        let threads = self.options.threads.unwrap_or_else(cores).get();
+        save(self.prepared, solution, outputs, &self.directory, threads, self.progress, &mut |report| {
+            reports.push(report);
+            !self.options.stop.load(Relaxed)
+        })?;
+        if reports.len() < outputs.len() {
+            return Err(Error::InterruptedSaving { directory: self.directory.clone() });
+        }
+        Ok(reports)
+    }
+}
+
+/// What to say if so much light was not sent on that the result is visibly wrong.
+pub(crate) fn unshot_warning(action: &Action, lines: &LinesReport) -> Vec<String> {
+    let Action::Multipath { transport, .. } = *action else { return Vec::new() };
+    let balance = &lines.balance;
+    let share = |parts: &[f64; 3]| {
+        let shares = parts.iter().zip(&balance.emitted).filter(|(_, e)| **e > 0.0).map(|(part, e)| part / e);
+        shares.fold(0.0, f64::max)
+    };
+    let unshot = share(&balance.unshot);
+    let made_up =
+        balance.unshot.iter().zip(&lines.made_up).all(|(unshot, more)| *unshot <= 0.0 || *more > 0.0);
+    match transport {
+        Transport::Batches if made_up && unshot > 0.1 => vec![format!(
+            "{:.0} % of the light that surfaces reflect was not sent on; it was made up for as if it spread like the \
+             light before it; give `Multipath` more lines, or make fewer patches",
+            100.0 * unshot
+        )],
+        Transport::Batches if made_up || unshot <= 1e-3 => Vec::new(),
+        Transport::Replicas { .. } if unshot <= 1e-3 => Vec::new(),
+        _ => {
+            let help = match transport {
+                Transport::Batches => "more lines",
+                Transport::Replicas { .. } => "more lines, fewer replicas or a longer `tail`",
+            };
+            vec![format!(
+                "{:.1} % of the light that surfaces reflect was not sent on and is missing from the result; give \
+                 `Multipath` {help}, or make fewer patches",
+                100.0 * unshot
+            )]
+        }
+    }
+}

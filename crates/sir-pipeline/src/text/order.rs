@@ -1,0 +1,110 @@
+//! Which stage may follow which: every stage needs what an earlier one has made.
+
+use crate::text::reader::Reader;
+
+/// The name of a stage, and its place in the file.
+pub(crate) type Named<'a> = (&'static str, &'a str);
+
+/// Notes a problem for every stage, given by name and place, whose inputs nothing before it has made. What has
+/// been missed once is not reported again.
+pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &str) {
+    let Some(&(_, last)) = stages.last() else {
+        reader.problem(list, "the pipeline has no stages", "begin with `Load(path: \"scene.gltf\")`");
+        return;
+    };
+    let (mut scene, mut first_shot, mut multipath) = (false, false, false);
+    let repeat = stages.iter().find(|(name, _)| *name == "Repeat");
+    for (i, &(name, place)) in stages.iter().enumerate() {
+        if !["Save", "Sensors"].contains(&name)
+            && let Some((_, first)) = stages[..i].iter().find(|(n, _)| *n == name)
+        {
+            let line = reader.line(first);
+            let help = match name {
+                "Load" => "a pipeline has one scene: keep one `Load`",
+                "Light" => "keep one, with all the lights",
+                "Focus" => "keep one, with a box around all that matters",
+                "Subdivide" => "keep one of the two",
+                "Repeat" => "keep one, with as many repeats as both together",
+                _ => "keep one, with all the lines",
+            };
+            reader.problem(place, format!("a second `{name}`; the first is in line {line}"), help);
+            continue;
+        }
+        if !scene && name != "Load" {
+            let help = "begin the stages with `Load(path: \"scene.gltf\")`";
+            reader.problem(place, format!("`{name}` before `Load`: there is no scene yet"), help);
+            scene = true;
+            continue;
+        }
+        if let (Some((_, repeat)), "FirstShot" | "SecondShot" | "Multipath") = (repeat, name) {
+            let message = format!("`{name}` beside the `Repeat` in line {}", reader.line(repeat));
+            reader.problem(place, message, format!("move `{name}` into the `stages` of `Repeat`"));
+            continue;
+        }
+        match name {
+            "Load" => scene = true,
+            "Light" | "Subdivide" | "Focus" if first_shot => {
+                let light = if repeat.is_some() { "Repeat" } else { "FirstShot" };
+                let why = match name {
+                    "Light" | "Focus" => "light has been sent without it",
+                    _ => "light has been computed on the patches as they were",
+                };
+                reader.problem(
+                    place,
+                    format!("`{name}` after `{light}`: {why}"),
+                    format!("move `{name}` to before `{light}`"),
+                );
+            }
+            "FirstShot" => first_shot = true,
+            "Repeat" => (first_shot, multipath) = (true, true),
+            "SecondShot" if multipath => reader.problem(
+                place,
+                "`SecondShot` after `Multipath`: all light has been distributed",
+                "move `SecondShot` to before `Multipath`",
+            ),
+            "SecondShot" | "Multipath" | "Save" | "Sensors" if !first_shot => {
+                let why = match name {
+                    "Save" | "Sensors" => "there is no result yet",
+                    _ => "there is no light to distribute yet",
+                };
+                let help = format!("put `FirstShot(lines: 1_000_000)` before `{name}`");
+                reader.problem(place, format!("`{name}` before `FirstShot`: {why}"), help);
+                first_shot = true;
+            }
+            "Multipath" => multipath = true,
+            _ => {}
+        }
+    }
+    if !first_shot {
+        reader.problem(
+            last,
+            "the pipeline ends without computing anything",
+            "add `FirstShot(lines: 1_000_000)` and `Multipath(lines: 1_000_000)`",
+        );
+    }
+}
+
+/// Notes a problem for every stage of a `Repeat`, given by name and place, that does not stand where it would stand by itself.
+pub(crate) fn check_repeated(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &str) {
+    let help = "begin the `stages` of `Repeat` with `FirstShot(lines: 1_000_000)`";
+    match stages.first() {
+        None => reader.problem(list, "`Repeat` has no stages", help),
+        Some(("FirstShot", _)) => {}
+        Some((name, place)) => reader.problem(
+            place,
+            format!("`{name}` before `FirstShot`: there is no light to distribute yet"),
+            help,
+        ),
+    }
+    for (&(before, _), &(name, place)) in stages.iter().zip(stages.iter().skip(1)) {
+        let rank = |name| ["FirstShot", "SecondShot", "Multipath"].iter().position(|n| *n == name);
+        if rank(before) >= rank(name) {
+            let message = format!("`{name}` after `{before}`");
+            reader.problem(
+                place,
+                message,
+                "the order is `FirstShot`, `SecondShot`, `Multipath`, each of them once",
+            );
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Computing view factors, by several ranks together.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use sir_geom::{LoadOptions, Scene};
+use sir_mesh::Subdivision;
+use sir_parallel::{Communicator, Crew, cores};
+use sir_radiosity::{Grouping, Model};
+
+use crate::error::Error;
+use crate::fingerprint;
+use crate::format::grouped;
+use crate::progress::{Progress, of_rank};
+use crate::ranks::{agree, same_everywhere};
+use crate::view_factors::error::ViewFactorsError;
+use crate::view_factors::files;
+use crate::view_factors::options::{By, ViewFactorsOptions};
+use crate::view_factors::report::Report;
+
+/// View factors, and where they were written.
+#[derive(Clone, Debug)]
+pub struct ViewFactorsResult {
+    /// All factors with their errors.
+    pub report: Report,
+    /// The files, if an output directory was given; on the first rank only.
+    pub files: Vec<PathBuf>,
+}
+
+/// Computes view factors, by several ranks together, until they are good enough or `stop` becomes true, and writes the files.
+///
+/// # Errors
+///
+/// If the scene cannot be read, has no or too many groups, or files cannot be written. If one rank fails, all do.
+pub fn view_factors(
+    options: &ViewFactorsOptions,
+    comm: &dyn Communicator,
+    progress: &dyn Progress,
+    stop: &Arc<AtomicBool>,
+) -> Result<ViewFactorsResult, Error> {
+    let progress = of_rank(progress, comm);
+    let (model, grouping, warnings) = agree(comm, prepare(options, comm, progress))?;
+    let settings = options.settings;
+    agree(comm, same_everywhere(comm, fingerprint::of_view_factors(&model, &grouping, &settings)))?;
+
+    let target = match settings.accuracy {
+        Some(accuracy) => format!("to standard errors of {}", accuracy.error),
+        None => format!("{} lines", grouped(settings.lines)),
+    };
+    progress.note(&format!("ViewFactors: {} groups, {target}", grouping.names().len()));
+    let factors = {
+        let observer = progress.watch("ViewFactors", settings.lines, stop);
+        let crew = Crew { comm, ..Crew::of(options.threads.unwrap_or_else(cores)) };
+        sir_parallel::view_factors(&model, &grouping, settings, &mut crew.watched_by(observer))?
+    };
+    let report = agree(
+        comm,
+        Report::new(options, &factors, warnings).map_err(|error| ViewFactorsError::from(error).into()),
+    )?;
+    let written = match &options.out {
+        Some(directory) if comm.is_first() => files::write(&report, directory),
+        _ => Ok(Vec::new()),
+    };
+    let files = agree(comm, written)?;
+    Ok(ViewFactorsResult { report, files })
+}
+
+/// Reads the scene and makes the groups; on the first rank, also looks whether the files can be written.
+fn prepare(
+    options: &ViewFactorsOptions,
+    comm: &dyn Communicator,
+    progress: &dyn Progress,
+) -> Result<(Model, Grouping, Vec<String>), Error> {
+    if let Some(directory) = options.out.as_deref().filter(|_| comm.is_first()) {
+        check(directory, options.force)?;
+    }
+    progress.note(&format!("Load: {}", options.scene.display()));
+    let built = sir_geom::load(&options.scene, &LoadOptions { sides: options.sides })?;
+    let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
+    progress.warn(&warnings);
+    let grouping = groups(options, &built.scene)?;
+    // One patch per triangle is always possible.
+    let model = Model::new(built.scene, Subdivision::PerTriangle).map_err(ViewFactorsError::from)?;
+    if let Some(directory) = options.out.as_deref().filter(|_| comm.is_first()) {
+        fs::create_dir_all(directory).map_err(Error::directory(directory))?;
+    }
+    Ok((model, grouping, warnings))
+}
+
+fn groups(options: &ViewFactorsOptions, scene: &Scene) -> Result<Grouping, ViewFactorsError> {
+    let grouping = match options.by {
+        By::Material => return Ok(Grouping::by_material(scene)),
+        By::Group => Grouping::by_part(scene),
+    };
+    if grouping.names().iter().all(String::is_empty) {
+        return Err(ViewFactorsError::NoGroups { scene: options.scene.clone() });
+    }
+    Ok(grouping)
+}
+
+/// Refuses to overwrite view factors, unless forced to.
+fn check(directory: &Path, force: bool) -> Result<(), ViewFactorsError> {
+    if !force && directory.join(files::JSON).exists() {
+        return Err(ViewFactorsError::Exists { directory: directory.to_owned() });
+    }
+    Ok(())
+}

@@ -1,0 +1,260 @@
+//! Repeats: the same bits as their stages alone, for any number of workers, and however often a run is stopped.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+#[path = "../../sir-parallel/tests/parallel/ranks.rs"]
+#[allow(dead_code, reason = "its tests use all of it")]
+mod ranks;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::time::Duration;
+
+use sir_parallel::{Alone, Communicator};
+use sir_pipeline::Error;
+use sir_pipeline::NoProgress;
+use sir_pipeline::check::estimate;
+use sir_pipeline::plan::Pipeline;
+use sir_pipeline::report::{ErrorsFrom, ErrorsReport, Report, StageReport, Time};
+use sir_pipeline::run::{RunOptions, resume_together, run_pipeline as run, run_together};
+use sir_radiosity::ENOUGH;
+
+const SHOTS: &str = "FirstShot(lines: 6_000), SecondShot(lines: 2_000)";
+const BATCHES: &str = "Multipath(lines: 8_000)";
+const REPLICAS: &str = "Multipath(lines: 8_000, replicas: 3)";
+
+/// A pipeline with these stages that lights a furnace in a folder of its own.
+struct Case {
+    folder: tempfile::TempDir,
+    pipeline: Pipeline,
+}
+
+impl Case {
+    fn new(stages: &str) -> Self {
+        let text = format!(
+            "(seed: 3, stages: [Load(path: \"furnace.gltf\"), Subdivide(patches: 200), {stages}, \
+             Save([Table(path: \"patches.npy\"), Image(path: \"view.exr\", width: 12, samples: 1)])])"
+        );
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/furnace/furnace.gltf");
+        let folder = tempfile::tempdir().unwrap();
+        fs::copy(scene, folder.path().join("furnace.gltf")).unwrap();
+        fs::write(folder.path().join("x.ron"), &text).unwrap();
+        let pipeline = Pipeline::read(&folder.path().join("x.ron")).unwrap_or_else(|e| panic!("{e}"));
+        Self { folder, pipeline }
+    }
+
+    fn options(&self, out: &str, threads: usize) -> RunOptions {
+        RunOptions {
+            out: Some(self.folder.path().join(out)),
+            threads: NonZeroUsize::new(threads),
+            ..RunOptions::default()
+        }
+    }
+
+    /// The files of a finished run, and its report.
+    fn files(&self, out: &str) -> (BTreeMap<String, Vec<u8>>, Report) {
+        let directory = self.folder.path().join(out);
+        let report = sir_pipeline::run::read_report(&directory).unwrap();
+        let files =
+            report.outputs.iter().map(|o| (o.path.clone(), fs::read(directory.join(&o.path)).unwrap()));
+        (files.collect(), timeless(report.clone()))
+    }
+
+    fn run(&self) -> (BTreeMap<String, Vec<u8>>, Report) {
+        run(&self.pipeline, &self.options("alone", 2)).unwrap_or_else(|e| panic!("{}", e.chain()));
+        self.files("alone")
+    }
+}
+
+fn timeless(mut report: Report) -> Report {
+    report.time = Time::of(0.0);
+    for stage in &mut report.stages {
+        stage.time = Time::of(0.0);
+        stage.stages.iter_mut().for_each(|part| part.time = Time::of(0.0));
+    }
+    report
+}
+
+fn repeated(report: &Report) -> &StageReport {
+    report.stages.iter().find(|stage| stage.name == "Repeat").unwrap()
+}
+
+#[test]
+fn once_is_as_often_as_without_a_repeat() {
+    for transport in [BATCHES, REPLICAS] {
+        let (files, plain) = Case::new(&format!("{SHOTS}, {transport}")).run();
+        let (same, report) = Case::new(&format!("Repeat(times: 1, stages: [{SHOTS}, {transport}])")).run();
+        assert!(files == same, "{transport}");
+        let stage = repeated(&report);
+        let last = plain.stages.iter().rfind(|stage| stage.lines.is_some()).unwrap();
+        assert_eq!(stage.light, last.light);
+        let parts: Vec<_> = plain.stages.iter().filter_map(|stage| stage.lines.as_ref()).collect();
+        let same: Vec<_> = stage.stages.iter().filter_map(|stage| stage.lines.as_ref()).collect();
+        assert_eq!(parts, same);
+        assert_eq!(stage.repeats, Some(1));
+    }
+}
+
+#[test]
+fn any_number_of_workers_gets_the_same_bits() {
+    for transport in [BATCHES, REPLICAS] {
+        let case = Case::new(&format!("Repeat(times: 9, stages: [{SHOTS}, {transport}])"));
+        let (files, report) = case.run();
+        let errors = repeated(&report).light.as_ref().unwrap().errors;
+        assert_eq!(errors, ErrorsReport { from: ErrorsFrom::Spread, samples: 9 });
+        for (ranks, threads) in [(1, 3), (2, 1), (3, 2)] {
+            let out = format!("{ranks}-{threads}");
+            let options = case.options(&out, threads);
+            let reports = ranks::run_ranks(ranks, |comm| {
+                run_together(Ok(case.pipeline.clone()), &options, comm).unwrap().report
+            });
+            assert!(case.files(&out) == (files.clone(), report.clone()), "{ranks} ranks, {threads} threads");
+            assert!(reports.into_iter().all(|other| timeless(other).stages == report.stages));
+        }
+    }
+}
+
+/// What a target has led to can be asked for by number. A target is met by the mean of all, and not before.
+#[test]
+fn a_target_is_met_and_its_number_of_repeats_gives_the_same_bits() {
+    let stages = format!("stages: [{SHOTS}, {BATCHES}]");
+    let (files, report) = Case::new(&format!("Repeat(until: RelativeError(0.05), {stages})")).run();
+    let worst = |report: &Report| {
+        repeated(report).light.as_ref().unwrap().relative_error.into_iter().fold(0.0, f64::max)
+    };
+    let repeats = repeated(&report).repeats.unwrap();
+    assert!(repeats > 2 && worst(&report) <= 0.05, "{repeats} {}", worst(&report));
+    let times = |times: u64| Case::new(&format!("Repeat(times: {times}, {stages})")).run();
+    let (same, again) = times(repeats);
+    assert!(files == same);
+    assert_eq!(repeated(&report), repeated(&again));
+    assert!(worst(&times(repeats - 1).1) > 0.05);
+}
+
+#[test]
+fn errors_of_few_repeats_are_those_that_they_state() {
+    let text = |times: u64| format!("Repeat(times: {times}, stages: [FirstShot(lines: 5_000)])");
+    let light = |times| repeated(&Case::new(&text(times)).run().1).light.clone().unwrap();
+    let [one, few, many] = [1, ENOUGH - 1, ENOUGH].map(light);
+    assert_eq!(few.errors, ErrorsReport { from: ErrorsFrom::Lines, samples: 5_000 * (ENOUGH - 1) });
+    assert_eq!(many.errors, ErrorsReport { from: ErrorsFrom::Spread, samples: ENOUGH });
+    // Both fall with the root of the number. The spread of eight over 200 patches is known to some 2 %.
+    for k in 0..3 {
+        let of =
+            |light: &sir_pipeline::report::LightReport, n: u64| light.relative_error[k] * (n as f64).sqrt();
+        let [one, few, many] = [of(&one, 1), of(&few, ENOUGH - 1), of(&many, ENOUGH)];
+        assert!((few / one - 1.0).abs() < 0.03 && (many / one - 1.0).abs() < 0.1, "{one} {few} {many}");
+    }
+}
+
+#[test]
+fn there_are_no_more_repeats_than_allowed_or_than_there_is_time_for() {
+    for (how, most) in [
+        ("times: 9, at_most: 2", 2),
+        ("until: RelativeError(1e-9), at_most: 3", 3),
+        ("until: Seconds(1e9), at_most: 4", 4),
+        ("until: Seconds(1e-9)", 1),
+    ] {
+        let (_, report) = Case::new(&format!("Repeat({how}, stages: [FirstShot(lines: 100)])")).run();
+        assert_eq!(repeated(&report).repeats, Some(most), "{how}");
+    }
+}
+
+/// Energy is kept in the mean: what the sources emit, and what one stage leaves to the next.
+#[test]
+fn the_mean_balance_closes() {
+    let (_, report) = Case::new(&format!("Repeat(times: 5, stages: [{SHOTS}, {BATCHES}])")).run();
+    let stages = &repeated(&report).stages;
+    let lines: Vec<_> = stages.iter().map(|stage| stage.lines.as_ref().unwrap()).collect();
+    let [first, second, global] = [0, 1, 2].map(|i: usize| &lines[i].balance);
+    for k in 0..3 {
+        for b in [first, second, global] {
+            let sum = b.absorbed[k] + b.blocked[k] + b.escaped[k] + b.unshot[k];
+            assert!((sum / b.emitted[k] - 1.0).abs() < 1e-12, "{b:?}");
+        }
+        assert!((first.emitted[k] / report.scene.power[k] - 1.0).abs() < 1e-9);
+        let left = first.unshot[k] - second.emitted[k] + second.unshot[k];
+        assert!((global.emitted[k] / left - 1.0).abs() < 1e-9);
+    }
+    assert_eq!(lines.iter().map(|l| l.lines).collect::<Vec<_>>(), [30_000, 10_000, 40_000]);
+}
+
+/// A process by itself that is asked to stop after so many sums, as by Ctrl-C.
+struct StopAfter {
+    sums: AtomicU64,
+    stop: Arc<AtomicBool>,
+}
+
+impl Communicator for StopAfter {
+    fn rank(&self) -> usize {
+        0
+    }
+
+    fn size(&self) -> usize {
+        1
+    }
+
+    fn sum(&self, words: &mut [i64]) {
+        Alone.sum(words);
+        if self.sums.fetch_sub(1, Relaxed) == 1 {
+            self.stop.store(true, Relaxed);
+        }
+    }
+}
+
+/// Stopped wherever it can be, in the middle of a stage or between two repeats, and resumed by other numbers of threads.
+#[test]
+fn a_run_that_is_stopped_again_and_again_gives_the_same_bits() {
+    for (transport, every) in [(BATCHES, 300), (REPLICAS, 0)] {
+        let case = Case::new(&format!("Repeat(times: 8, stages: [{SHOTS}, {transport}])"));
+        let whole = case.run();
+        for sums in [23, 41] {
+            let (out, mut stops) = (format!("stopped-{sums}"), 0);
+            let directory = case.folder.path().join(&out);
+            loop {
+                let stop = Arc::new(AtomicBool::new(false));
+                let comm = StopAfter { sums: AtomicU64::new(sums + stops as u64), stop: Arc::clone(&stop) };
+                let checkpoint_every = Duration::from_secs(every);
+                let options = RunOptions { stop, checkpoint_every, ..case.options(&out, 1 + stops % 3) };
+                let outcome = if stops == 0 {
+                    run_together(Ok(case.pipeline.clone()), &options, &comm)
+                } else {
+                    resume_together(&directory, &options, &comm)
+                };
+                match outcome {
+                    Ok(_) => break,
+                    Err(Error::Interrupted { .. } | Error::InterruptedSaving { .. }) => stops += 1,
+                    Err(error) => panic!("{}", error.chain()),
+                }
+                // Each leg is a little longer: a short one may not get from one order to the next.
+                assert!(stops < 200, "{transport}: no end after {stops} stops");
+            }
+            println!("{transport}: {stops} stops");
+            assert!(stops > 1, "{transport}: {stops} stops");
+            assert!(case.files(&out) == whole, "{transport}, after {stops} stops");
+        }
+    }
+}
+
+#[test]
+fn check_tells_what_repeats_cost() {
+    for (how, expected) in [
+        ("times: 1000", "Repeat: 1_000 times; each time"),
+        ("times: 1000, at_most: 10", "Repeat: 10 times; each time"),
+        ("until: Seconds(90)", "  90.0 s  Repeat: for 90.0 s; each time"),
+        (
+            "until: RelativeError(0.01), at_most: 7",
+            "Repeat: until the relative error is 1 %, 7 times at most; each",
+        ),
+        ("until: RelativeError(0.01)", " or more, without outputs:"),
+    ] {
+        let case = Case::new(&format!("Repeat({how}, stages: [{SHOTS}, {BATCHES}])"));
+        let text = estimate(&case.pipeline, &NoProgress).unwrap().to_string();
+        assert!(text.contains(expected), "{text}");
+        assert!(text.contains("SecondShot: 2_000 lines at "), "{text}");
+    }
+}

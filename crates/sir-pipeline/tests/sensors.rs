@@ -1,0 +1,171 @@
+//! The stage `Sensors` of a pipeline, from file to files.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use sir_pipeline::Error;
+use sir_pipeline::plan::Pipeline;
+use sir_pipeline::run::{RunOptions, RunResult, run_pipeline as run};
+
+/// A closed room of 2 × 3 × 2 m, y up, all of whose surfaces emit and reflect alike: 4 W/m² of irradiance in green everywhere.
+const ROOM: &str = "mtllib room.mtl\nusemtl m
+v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nv 0 0 2\nv 2 0 2\nv 2 3 2\nv 0 3 2
+f 1 2 3 4\nf 6 5 8 7\nf 5 1 4 8\nf 2 6 7 3\nf 5 6 2 1\nf 4 3 7 8\n";
+const MATERIALS: &str = "newmtl m\nKd 0.5 0.5 0.5\nKe 0 0.6366197723675814 0\n";
+
+/// Runs stages after some light has been made.
+fn measure(stages: &str, threads: usize) -> (tempfile::TempDir, Result<RunResult, Error>) {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("room.obj", ROOM);
+    write("room.mtl", MATERIALS);
+    write("points.txt", "# two points\n0.5 0 0.5 0 1 0\n\n1 1.5 1 1 1 0  # in the middle\n");
+    write("bad.txt", "0.5 0 0.5 0 1 0\n1 1.5 1 1\n");
+    let text = format!(
+        "(units: Photometric, stages: [Load(path: \"room.obj\", sides: Front), FirstShot(lines: 100_000), Multipath(lines: 50_000), {stages}])"
+    );
+    let options = RunOptions {
+        out: Some(folder.path().join("out")),
+        threads: NonZeroUsize::new(threads),
+        ..RunOptions::default()
+    };
+    let outcome = Pipeline::parse(&text, &folder.path().join("x.ron"))
+        .map_err(Error::from)
+        .and_then(|pipeline| run(&pipeline, &options));
+    (folder, outcome)
+}
+
+/// The numbers of a column.
+fn column(directory: &Path, file: &str, name: &str) -> Vec<f64> {
+    let text = fs::read_to_string(directory.join(file)).unwrap();
+    let mut lines = text.lines();
+    let place = lines.next().unwrap().split(',').position(|column| column == name).unwrap();
+    lines.map(|line| line.split(',').nth(place).unwrap().parse().unwrap()).collect()
+}
+
+#[test]
+fn sensors_are_measured_and_written() {
+    let stages = r#"
+        Sensors(name: "points", at: File("points.txt")),
+        Sensors(name: "wall/a", at: Points([(position: (0, 1, 1), direction: (2, 0, 0))]), rays: 1000, error: 0.01),
+        Sensors(name: "desk", at: Plane(height: 0.75, spacing: 0.5, border: 0.25, up: (0, 1, 0))),
+        Sensors(name: "grid", at: Grid(corner: (0, 1, 2), along: (2, 0, 0), across: (0, 0, -2), spacing: 1)),
+    "#;
+    let (_folder, result) = measure(stages, 2);
+    let result = result.unwrap_or_else(|error| panic!("{}", error.chain()));
+    let out = &result.directory;
+    let paths: Vec<&str> = result.report.outputs.iter().map(|o| o.path.as_str()).collect();
+    assert_eq!(paths, ["points.csv", "wall/a.csv", "desk.csv", "desk.png", "grid.csv", "grid.png"]);
+    assert!(paths.iter().all(|path| out.join(path).is_file()));
+    for (file, count) in [("points.csv", 2), ("wall/a.csv", 1), ("desk.csv", 9), ("grid.csv", 4)] {
+        let (green, errors) = (column(out, file, "E_g"), column(out, file, "se_g"));
+        assert_eq!(green.len(), count);
+        for (value, error) in green.iter().zip(errors) {
+            assert!((value - 4.0).abs() < 4.0 * error && error < 0.05, "{file}: {value} ± {error}");
+        }
+        assert!(column(out, file, "E_r").iter().all(|red| *red == 0.0));
+        let ratio = column(out, file, "E")[0] / green[0];
+        assert!((ratio - 0.7152).abs() < 1e-9, "{ratio}");
+    }
+    assert_eq!(column(out, "grid.csv", "z"), [1.5, 1.5, 0.5, 0.5]);
+    let reports: Vec<_> = result.report.stages.iter().filter_map(|s| s.sensors.as_ref()).collect();
+    assert_eq!(reports.iter().map(|r| r.points).collect::<Vec<_>>(), [2, 1, 9, 4]);
+    let desk = reports[2];
+    assert!((desk.mean - 4.0 * 0.7152).abs() < 4.0 * desk.mean_error && desk.uniformity > 0.98, "{desk:?}");
+    assert!(desk.minimum <= desk.mean && desk.mean <= desk.maximum);
+    let shown = desk.in_short(result.report.units);
+    assert!(shown.starts_with("mean 2.8") && shown.contains(" lx, minimum 2.8"), "{shown}");
+}
+
+#[test]
+fn sensors_are_the_same_by_any_number_of_threads() {
+    let stages = r#"Sensors(name: "desk", at: Plane(height: 0.75, spacing: 0.5), rays: 2000)"#;
+    let all = [1, 3].map(|threads| {
+        let (folder, result) = measure(stages, threads);
+        assert!(result.is_ok());
+        ["desk.csv", "desk.png"].map(|file| fs::read(folder.path().join("out").join(file)).unwrap())
+    });
+    assert!(all[0] == all[1]);
+}
+
+#[test]
+fn impossible_sensors_are_refused_with_the_reason() {
+    for (at, reason) in [
+        (r#"File("bad.txt")"#, "bad.txt:2 is no point: it has 4 numbers, but a point has six"),
+        (r#"File("absent.txt")"#, "absent.txt: No such file"),
+        ("File(7)", "`File` must have the path of a file in quotes"),
+        ("Points([])", "`Points` must have a list of points"),
+        ("Points([(position: (1, 1, 1), direction: (0, 0, 0))])", "a direction has no length"),
+        ("Plane(height: 5, spacing: 0.5)", "no point of the plane at the height 5 m lies inside the room"),
+        ("Plane(height: 1, spacing: 0.5, border: 1)", "nothing is left of the scene"),
+        ("Plane(height: 1, spacing: 1e-5)", "is too fine"),
+        ("Plane(height: 1, spacing: -1)", "`spacing` must be above zero"),
+        ("Plane(height: 1, spacing: 1, border: -1)", "`border` must not be negative"),
+        ("Plane(height: 1, spacing: 1, up: (0, 0, 0))", "a direction has no length"),
+        ("Grid(corner: (0, 0, 0), along: (1, 0, 0), across: (2, 0, 0), spacing: 1)", "this grid has no area"),
+        ("Plan(height: 1, spacing: 1)", "did you mean `Plane`?"),
+        ("Plane(height: 1, spacings: 1)", "did you mean `spacing`?"),
+    ] {
+        let (folder, result) = measure(&format!(r#"Sensors(name: "a", at: {at})"#), 1);
+        let message = result.map(|_| ()).unwrap_err().chain();
+        assert!(message.contains(reason), "{at}: {message}");
+        assert!(message.contains("x.ron:1:") && message.contains("help: "), "{at}: {message}");
+        assert!(
+            !folder.path().join("out").exists(),
+            "{at}: nothing is written before all is known to be possible"
+        );
+    }
+}
+
+#[test]
+fn names_and_order_are_checked() {
+    let at = "at: Plane(height: 1, spacing: 1)";
+    for (stages, reason) in [
+        (
+            format!(r#"Sensors(name: "a", {at}), Sensors(name: "A", {at})"#),
+            "the output path \"A.csv\" is used twice",
+        ),
+        (format!(r#"Sensors(name: "../a", {at})"#), "may lead out of the run directory"),
+        (format!("Sensors({at})"), "`Sensors` lacks the field `name`"),
+        (r#"Sensors(name: "a")"#.into(), "`Sensors` lacks the field `at`"),
+        (format!(r#"Sensors(name: "a", {at}, rays: 0)"#), "`rays` must be a whole number from 1"),
+        (format!(r#"Sensors(name: "a", {at}, error: 0)"#), "`error` must be above zero"),
+        (format!(r#"Sensors(name: "a", {at}, ray: 5)"#), "did you mean `rays`?"),
+    ] {
+        let message = measure(&stages, 1).1.map(|_| ()).unwrap_err().chain();
+        assert!(message.contains(reason), "{stages}: {message}");
+    }
+    let text = r#"(stages: [Load(path: "room.obj"), Sensors(name: "a", at: Plane(height: 1, spacing: 1))])"#;
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("room.obj"), ROOM).unwrap();
+    let message = Pipeline::parse(text, &folder.path().join("x.ron")).unwrap_err().to_string();
+    assert!(message.contains("`Sensors` before `FirstShot`: there is no result yet"), "{message}");
+}
+
+#[test]
+fn a_stopped_run_says_how_it_can_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("room.obj"), ROOM).unwrap();
+    fs::write(folder.path().join("room.mtl"), MATERIALS).unwrap();
+    let text = r#"(stages: [Load(path: "room.obj", sides: Front), FirstShot(lines: 100),
+        Sensors(name: "a", at: Plane(height: 1, spacing: 0.05), rays: 1e6)])"#;
+    let pipeline = Pipeline::parse(text, &folder.path().join("x.ron")).unwrap();
+    let stop = Arc::new(AtomicBool::new(false));
+    let options =
+        RunOptions { out: Some(folder.path().join("out")), stop: Arc::clone(&stop), ..RunOptions::default() };
+    let outcome = std::thread::scope(|scope| {
+        let running = scope.spawn(|| run(&pipeline, &options));
+        // The first shot takes no time, the sensors take minutes.
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        stop.store(true, std::sync::atomic::Ordering::Relaxed);
+        running.join().unwrap()
+    });
+    let error = outcome.map(|_| ()).unwrap_err();
+    assert_eq!(error.exit_code(), 130);
+    assert!(error.chain().starts_with("interrupted at the sensors; `sir resume "), "{}", error.chain());
+}

@@ -1,0 +1,89 @@
+//! Part `domains`: how many global lines miss the scene.
+
+use serde::Serialize;
+use sir_radiosity::Model;
+
+use crate::error::StudyError;
+use crate::experiment::crossings::{count, scaled};
+use crate::experiment::markdown;
+use crate::experiment::markdown::{Grid, percent};
+use crate::experiment::runs::Runs;
+use sir_pipeline::plan::Body;
+
+/// Lines through each body, before they are scaled, and how few they may be.
+const LINES: (u64, u64) = (1_000_000, 100_000);
+
+/// A body, and the lines through it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Miss {
+    /// `Sphere`, `Box` or `Hull`.
+    pub(crate) body: String,
+    /// Its surface \[m²\].
+    pub(crate) surface: f64,
+    /// Share of the lines that meet nothing.
+    pub(crate) empty_share: f64,
+}
+
+/// What the part finds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Bodies {
+    /// Lines through each.
+    pub(crate) lines: u64,
+    /// The bodies.
+    pub(crate) bodies: Vec<Miss>,
+    /// Volume of the bounding sphere over that of the bounding box; none if the box is flat.
+    pub(crate) sphere_to_box: Option<f64>,
+}
+
+/// Traces the lines.
+pub(crate) fn find(runs: &Runs, model: &Model, scale: f64) -> Result<Bodies, StudyError> {
+    let lines = scaled(LINES.0, scale, LINES.1);
+    let miss = |body: Body| -> Result<Miss, StudyError> {
+        let domain = body.around(&model.scene);
+        let mut empty = 0u64;
+        count(runs, model, &domain, 0..lines, |crossings| empty += u64::from(crossings == 0))?;
+        // A hull that has no volume is a box: the name is that of what was asked for.
+        Ok(Miss {
+            body: format!("{body:?}"),
+            surface: domain.surface(),
+            empty_share: empty as f64 / lines.max(1) as f64,
+        })
+    };
+    let bodies = [Body::Sphere, Body::Box, Body::Hull].into_iter().map(miss).collect::<Result<_, _>>()?;
+    let sphere = 4.0 / 3.0 * std::f64::consts::PI * model.scene.bounding_sphere().radius.powi(3);
+    let volume = model.scene.bounding_box().size().element_product();
+    Ok(Bodies { lines, bodies, sphere_to_box: (volume > 0.0).then(|| sphere / volume) })
+}
+
+impl Bodies {
+    /// Share of the lines through the sphere that meet nothing.
+    pub(crate) fn empty_in_sphere(&self) -> Option<f64> {
+        self.bodies.iter().find(|miss| miss.body == "Sphere").map(|miss| miss.empty_share)
+    }
+
+    /// The section of the report.
+    pub(crate) fn section(&self) -> String {
+        let columns = ["domain", "surface [m²]", "lines that pass the hull by", "lines that meet nothing"];
+        let mut grid = Grid::new(&columns);
+        // Lines through a convex body meet a smaller one in it with a probability of the ratio of the surfaces.
+        let least = self.bodies.iter().map(|miss| miss.surface).fold(f64::INFINITY, f64::min);
+        for Miss { body, surface, empty_share } in &self.bodies {
+            let past = if *surface > 0.0 { 1.0 - least / surface } else { 0.0 };
+            grid.row([body.clone(), format!("{surface:.2}"), percent(past), percent(*empty_share)]);
+        }
+        let filled = self.sphere_to_box.map_or_else(String::new, |ratio| {
+            format!(
+                "The bounding box fills {} of the bounding sphere, whose volume is therefore {} larger. The \
+                 share of lines that pass a convex body by depends on surfaces, not on volumes.\n\n",
+                percent(1.0 / ratio),
+                percent(ratio - 1.0)
+            )
+        });
+        format!(
+            "### Lines that miss the scene\n\n{} lines through each body around the scene. How many pass \
+             the convex hull by follows from the surfaces; the others were counted:\n\n{}{filled}",
+            markdown::count(self.lines),
+            grid.end()
+        )
+    }
+}

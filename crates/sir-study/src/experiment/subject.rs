@@ -1,0 +1,173 @@
+//! What is experimented on: a pipeline, and others that are derived from it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+use crate::error::StudyError;
+use crate::experiment::error::ExperimentError;
+use crate::experiment::lines::{Lines, fitted};
+use crate::experiment::ron_text;
+use sir_pipeline::fingerprint::hex;
+use sir_pipeline::plan::{Action, Pipeline, Stage};
+use sir_pipeline::plan::{Body, Transport};
+use sir_pipeline::plan::{Content, Output};
+use sir_pipeline::run::{absolute, run_name};
+
+/// Name of the tables of derived pipelines, with all light.
+pub(crate) const TABLE: &str = "patches.npy";
+
+/// Name of the tables after the first shot.
+pub(crate) const DIRECT: &str = "direct.npy";
+
+/// A pipeline whose numbers of lines can be changed.
+pub(crate) struct Subject {
+    pub(crate) name: String,
+    pub(crate) pipeline: Pipeline,
+    /// Lines of the pipeline.
+    pub(crate) asked: Lines,
+    /// The same times the scale.
+    pub(crate) lines: Lines,
+    pub(crate) transport: Transport,
+    pub(crate) body: Body,
+    /// SHA-256 of the scene file: another file of this name makes other runs.
+    digest: String,
+}
+
+/// How a derived pipeline differs from the one it is derived from.
+#[derive(Clone, Debug)]
+pub(crate) struct Changes {
+    pub(crate) lines: Lines,
+    pub(crate) transport: Transport,
+    pub(crate) seed: u64,
+    /// Whether the direct light is saved, too.
+    pub(crate) direct: bool,
+    pub(crate) pictures: bool,
+}
+
+impl Subject {
+    /// Reads a pipeline.
+    pub(crate) fn read(path: &Path, scale: f64) -> Result<Self, StudyError> {
+        let pipeline = Pipeline::read(path)?;
+        let local = pipeline.flat_stages().find_map(|stage| match stage.action {
+            Action::FirstShot { lines } => Some(lines),
+            _ => None,
+        });
+        let multipath = pipeline.flat_stages().find_map(|stage| match stage.action {
+            Action::Multipath { lines, transport, body } => Some((lines, transport, body)),
+            _ => None,
+        });
+        let (Some(local), Some((global, transport, body))) = (local, multipath) else {
+            return Err(ExperimentError::NoMultipath { path: path.to_owned() }.into());
+        };
+        let scene = pipeline.scene_path();
+        let bytes =
+            fs::read(scene).map_err(|source| ExperimentError::Scene { path: scene.to_owned(), source })?;
+        let asked = Lines { local, global };
+        Ok(Self {
+            name: run_name(path),
+            digest: hex(Sha256::digest(&bytes).into()),
+            lines: asked.times(scale),
+            pipeline,
+            asked,
+            transport,
+            body,
+        })
+    }
+
+    /// The pipeline's transport for so many global lines.
+    pub(crate) fn transport_of(&self, lines: u64) -> Transport {
+        fitted(self.transport, self.asked.global, lines)
+    }
+
+    /// The pipeline itself, with its lines times the scale.
+    pub(crate) fn changes(&self) -> Changes {
+        Changes {
+            lines: self.lines,
+            transport: self.transport_of(self.lines.global),
+            seed: self.pipeline.seed,
+            direct: false,
+            pictures: false,
+        }
+    }
+
+    /// The pictures that the pipeline asks for.
+    pub(crate) fn pictures(&self) -> impl Iterator<Item = &Output> {
+        self.pipeline.outputs().filter(|output| matches!(output.content, Content::Image(_)))
+    }
+
+    /// The text of a derived pipeline.
+    pub(crate) fn derived(&self, changes: &Changes) -> String {
+        let table = |name: &str| Output { path: PathBuf::from(name), content: Content::Table };
+        let mut actions = Vec::new();
+        for stage in &self.pipeline.stages {
+            match &stage.action {
+                Action::Load { path, sides } => {
+                    actions.push(Action::Load { path: absolute(path), sides: *sides })
+                }
+                light @ Action::Light { .. } => actions.push(light.clone()),
+                Action::Subdivide(how) => actions.push(Action::Subdivide(*how)),
+                _ => {}
+            }
+        }
+        let second_shot = self.pipeline.flat_stages().find_map(|stage| match stage.action {
+            // In proportion to the local lines.
+            Action::SecondShot { lines } => {
+                let share = changes.lines.local as f64 / self.asked.local as f64;
+                Some(Action::SecondShot { lines: ((lines as f64 * share) as u64).max(1) })
+            }
+            _ => None,
+        });
+        actions.push(Action::FirstShot { lines: changes.lines.local });
+        if changes.direct {
+            actions.push(Action::Save(vec![table(DIRECT)]));
+        }
+        let (lines, transport, body) = (changes.lines.global, changes.transport, self.body);
+        actions.extend(second_shot);
+        actions.push(Action::Multipath { lines, transport, body });
+        let pictures = self.pictures().filter(|_| changes.pictures).cloned();
+        actions.push(Action::Save(std::iter::once(table(TABLE)).chain(pictures).collect()));
+        let stages = actions.into_iter().map(|action| Stage { action, span: 0..0 }).collect();
+        let (seed, units) = (changes.seed, self.pipeline.units);
+        let derived = Pipeline { path: PathBuf::new(), text: String::new(), seed, units, stages };
+        let Self { name, digest, .. } = self;
+        format!(
+            "// Derived from the pipeline of {name} by `sir experiment`. SHA-256 of the scene file:\n// \
+             {digest}\n{}",
+            ron_text::text(&derived)
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOX: &str = "../../scenes/cornell-box/pipeline.ron";
+
+    #[test]
+    fn derived_pipelines_are_valid_anywhere() {
+        let subject = Subject::read(Path::new(BOX), 0.01).unwrap();
+        assert_eq!(subject.lines, Lines { local: 100_000, global: 200_000 });
+        let changes = Changes { direct: true, pictures: true, seed: 9, ..subject.changes() };
+        let folder = tempfile::tempdir().unwrap();
+        let derived = Pipeline::parse(&subject.derived(&changes), &folder.path().join("x.ron")).unwrap();
+        assert_eq!(derived.seed, 9);
+        assert_eq!(derived.stages[1].action, subject.pipeline.stages[1].action);
+        assert_eq!(derived.stages[2].action, Action::FirstShot { lines: 100_000 });
+        let names: Vec<_> = derived.outputs().map(|o| o.path.display().to_string()).collect();
+        assert_eq!(names, ["direct.npy", "patches.npy", "view.png", "view.exr"]);
+    }
+
+    #[test]
+    fn multipath_is_needed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.ron");
+        std::fs::write(folder.path().join("x.obj"), "").unwrap();
+        std::fs::write(&path, r#"(stages: [Load(path: "x.obj"), FirstShot(lines: 1)])"#).unwrap();
+        let error = Subject::read(&path, 1.0).err().unwrap();
+        assert!(error.to_string().contains("x.ron has no `Multipath` stage"), "{error}");
+        assert_eq!(error.exit_code(), 2);
+    }
+}
