@@ -152,7 +152,7 @@ fn cosine_rays(scene: &Scene, rays: u64) -> Vec<Ray> {
             let normal = if stream.unit() < 0.5 { scene.normal(triangle) } else { -scene.normal(triangle) };
             let origin = point_on_triangle(stream.point()).point(scene.corners(triangle));
             let direction = cosine_direction(normal, stream.point());
-            Ray { line: sir::geom::Line { origin, direction }, leaving: Some(triangle) }
+            Ray::leaving(sir::geom::Line { origin, direction }, triangle)
         })
         .collect()
 }
@@ -372,7 +372,7 @@ fn growth(embree: Option<&Embree>, options: &Options) {
     for level in 1..=6 {
         let scene = scenes::balls(level);
         let mut accel = None;
-        let build = seconds(|| accel = Some(Accel::new(&scene)));
+        let build = seconds(|| accel = Some(sir::radiosity::build_accel(&scene).unwrap()));
         let accel = accel.unwrap();
         let rays = cosine_rays(&scene, options.lines / 4);
         let domain = Domain::Sphere(scene.bounding_sphere());

@@ -1,4 +1,4 @@
-//! Builds the hierarchy: `obvhs` makes a binary tree, which is gathered into nodes of many boxes.
+//! Builds the hierarchy: `obvhs` makes a binary tree, which is collapsed into nodes of sixteen boxes.
 
 use std::ops::Range;
 
@@ -6,15 +6,17 @@ use glam::Vec3A;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::PlocBuilder;
 
 use crate::grid::RADIUS;
-use crate::lanes::{BOXES, TRIANGLES};
-use crate::tree::{LEAF, MARGIN, Node};
+use crate::node::{LEAF, MARGIN, Node};
+use crate::simd::backend::{LEAF_WIDTH, NODE_WIDTH};
 use crate::triangle::GridTriangle;
 
-/// What a node costs in units of a triangle, when it is decided which triangles share a leaf. Between 2 and 6 the time of a
-/// search hardly changes; more saves memory.
+/// Cost of a node in units of a triangle, which decides which triangles share a leaf. Between 2 and 6 the time of a search
+/// hardly changes; more saves memory.
 const COLLAPSE_COST: f32 = 4.0;
 
 /// A tree of triangles that are named by their place in `order`.
@@ -25,22 +27,39 @@ pub(crate) struct Hierarchy {
     pub(crate) order: Vec<u32>,
 }
 
-/// Arranges triangles.
+/// Builds the hierarchy of the triangles, of which there may be none.
 pub(crate) fn hierarchy(triangles: &[GridTriangle]) -> Hierarchy {
+    if triangles.is_empty() {
+        return Hierarchy { nodes: vec![Node::empty()], leaves: Vec::new(), order: Vec::new() };
+    }
     let boxes: Vec<Aabb> = triangles.iter().map(bounding_box).collect();
-    let parameters = BvhBuildParams {
-        max_prims_per_leaf: TRIANGLES as u32,
-        collapse_traversal_cost: COLLAPSE_COST,
-        ..BvhBuildParams::medium_build()
-    };
-    let binary = build_bvh2(&boxes, parameters, &mut std::time::Duration::default());
-    let mut nodes = Vec::with_capacity(binary.nodes.len() / BOXES + 1);
+    let binary = binary_tree(&boxes);
+    let mut nodes = Vec::with_capacity(binary.nodes.len() / NODE_WIDTH + 1);
     let mut leaves = Vec::new();
     flatten(&binary, &mut nodes, |range| {
         leaves.push(range);
         leaves.len() as u32 - 1
     });
     Hierarchy { nodes, leaves, order: binary.primitive_indices }
+}
+
+/// Builds a binary tree by the steps of `obvhs::bvh2::builder::build_bvh2`. That function also validates the tree in debug
+/// builds, and panics where the tree is deeper than what the traversals of `obvhs` allow; they are not used here.
+fn binary_tree(boxes: &[Aabb]) -> Bvh2 {
+    let parameters = BvhBuildParams::medium_build();
+    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
+        parameters.ploc_search_distance,
+        boxes,
+        (0..boxes.len() as u32).collect(),
+        parameters.sort_precision,
+        parameters.search_depth_threshold,
+    );
+    let mut optimizer = ReinsertionOptimizer::default();
+    let ratio = parameters.reinsertion_batch_ratio;
+    optimizer.run(&mut binary, ratio, None);
+    collapse(&mut binary, LEAF_WIDTH as u32, COLLAPSE_COST);
+    optimizer.run(&mut binary, ratio * parameters.post_collapse_reinsertion_batch_ratio_multiplier, None);
+    binary
 }
 
 fn bounding_box(triangle: &GridTriangle) -> Aabb {
@@ -53,15 +72,15 @@ fn bounding_box(triangle: &GridTriangle) -> Aabb {
 
 /// The cheapest ways to cut the binary tree into nodes of many boxes.
 ///
-/// What a line costs is about the sum of the surfaces of the boxes of all nodes that it visits (surface-area heuristic).
+/// The cost of a line is about the sum of the surface areas of all nodes (surface-area heuristic).
 /// After Ylitie, Karras and Laine (2017), *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*: the
 /// least cost of a subtree that hangs on a wide node by at most `k` boxes follows from those of its two halves.
 struct Cuts {
     /// Per binary node, for `k` boxes at most, `k − 1` being the index: the least cost.
-    costs: Vec<[f32; BOXES - 1]>,
-    /// How many of the `k` boxes the first half gets; 0 if the node itself is the only box.
-    firsts: Vec<[u8; BOXES - 1]>,
-    /// How many of all boxes of a wide node the first half gets.
+    costs: Vec<[f32; NODE_WIDTH - 1]>,
+    /// Number of the `k` boxes that the first half gets; 0 if the node itself is the only box.
+    firsts: Vec<[u8; NODE_WIDTH - 1]>,
+    /// Number of boxes of a wide node that the first half gets.
     of_node: Vec<u8>,
 }
 
@@ -69,8 +88,8 @@ impl Cuts {
     fn new(binary: &Bvh2) -> Self {
         let count = binary.nodes.len();
         let mut cuts = Self {
-            costs: vec![[0.0; BOXES - 1]; count],
-            firsts: vec![[0; BOXES - 1]; count],
+            costs: vec![[0.0; NODE_WIDTH - 1]; count],
+            firsts: vec![[0; NODE_WIDTH - 1]; count],
             of_node: vec![0; count],
         };
         // Children after their parents.
@@ -93,10 +112,10 @@ impl Cuts {
                     let of = |first: usize| (a[first - 1] + b[k - first - 1], first as u8);
                     (1..k).map(of).min_by(|x, y| x.0.total_cmp(&y.0)).unwrap_or((f32::INFINITY, 0))
                 };
-                let (below, first) = split(BOXES);
+                let (below, first) = split(NODE_WIDTH);
                 cuts.of_node[i] = first;
                 let mut least = (node.aabb.half_area() + below, 0);
-                for k in 1..BOXES {
+                for k in 1..NODE_WIDTH {
                     let cut = split(k);
                     if cut.0 < least.0 {
                         least = cut;
@@ -110,7 +129,7 @@ impl Cuts {
 
     /// The binary nodes whose boxes a wide node has.
     fn members(&self, binary: &Bvh2, root: usize) -> Vec<usize> {
-        let mut members = Vec::with_capacity(BOXES);
+        let mut members = Vec::with_capacity(NODE_WIDTH);
         if binary.nodes[root].is_leaf() {
             return vec![root];
         }
@@ -119,9 +138,9 @@ impl Cuts {
             let child = binary.nodes[i].first_index as usize;
             waiting.extend([(child + 1, k - first), (child, first)]);
         };
-        halves(root, self.of_node[root], BOXES as u8, &mut waiting);
+        halves(root, self.of_node[root], NODE_WIDTH as u8, &mut waiting);
         while let Some((i, mut k)) = waiting.pop() {
-            // Not more boxes than are of use.
+            // No more boxes than lower the cost.
             while k > 1 && self.costs[i][usize::from(k) - 2] == self.costs[i][usize::from(k) - 1] {
                 k -= 1;
             }
@@ -136,14 +155,10 @@ impl Cuts {
     }
 }
 
-/// Makes nodes of many boxes.
+/// Collapses the binary tree into nodes of many boxes.
 fn flatten(binary: &Bvh2, nodes: &mut Vec<Node>, mut leaf: impl FnMut(Range<u32>) -> u32) {
     let cuts = Cuts::new(binary);
-    let empty = Node {
-        bounds: std::array::from_fn(|i| [if i < 3 { f32::INFINITY } else { f32::NEG_INFINITY }; BOXES]),
-        children: [0; BOXES],
-    };
-    nodes.push(empty);
+    nodes.push(Node::empty());
     // Pairs of a wide node that waits to be filled and the binary node it stands for.
     let mut waiting = vec![(0usize, 0usize)];
     while let Some((wide, root)) = waiting.pop() {
@@ -157,7 +172,7 @@ fn flatten(binary: &Bvh2, nodes: &mut Vec<Node>, mut leaf: impl FnMut(Range<u32>
                 LEAF | leaf(node.first_index..node.first_index + node.prim_count)
             } else {
                 waiting.push((nodes.len(), m));
-                nodes.push(empty);
+                nodes.push(Node::empty());
                 nodes.len() as u32 - 1
             };
         }

@@ -1,7 +1,7 @@
 //! The integer grid on which crossings are decided.
 
 use glam::DVec3;
-use sir_geom::{BoundingSphere, Line};
+use sir_types::{BoundingSphere, Line};
 
 /// Steps of the vertex grid in the radius of the bounding sphere.
 pub(crate) const RADIUS: f64 = (1u32 << 30) as f64;
@@ -9,13 +9,13 @@ pub(crate) const RADIUS: f64 = (1u32 << 30) as f64;
 const FINE: f64 = 256.0;
 /// Steps of a unit direction.
 const UNIT: f64 = (1u64 << 38) as f64;
-/// Lines start at most this far from the centre, in radii, so that 128 bits hold every determinant.
+/// Lines start at most this far from the center, in radii, so that 128 bits hold every determinant.
 const REACH: f64 = 1.75;
 
 /// The map between the scene and the grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid {
-    centre: DVec3,
+    center: DVec3,
     /// Steps per unit of length.
     scale: f64,
     /// Length of a step.
@@ -44,26 +44,29 @@ impl Grid {
     pub(crate) fn new(sphere: BoundingSphere) -> Self {
         // Two steps less than the radius: differences of coordinates then fit 32 bits.
         let scale = (RADIUS - 2.0) / sphere.radius;
-        Self { centre: sphere.centre, scale, step: 1.0 / scale }
+        Self { center: sphere.centre, scale, step: 1.0 / scale }
     }
 
-    /// The grid point next to a point of the scene.
+    /// Returns the grid point next to a point of the scene.
     pub(crate) fn vertex(&self, p: DVec3) -> [i32; 3] {
-        ((p - self.centre) * self.scale).to_array().map(|x| nearest(x) as i32)
+        ((p - self.center) * self.scale).to_array().map(|x| nearest(x) as i32)
     }
 
-    /// The grid line next to a line; `None` if it passes far from the scene.
+    /// Returns the grid line next to a line; `None` if it passes far from the scene, is not finite, or if its direction is much longer
+    /// than one.
     #[inline(always)]
     pub(crate) fn line(&self, line: &Line) -> Option<GridLine> {
-        let mut origin = (line.origin - self.centre) * self.scale;
+        let mut origin = (line.origin - self.center) * self.scale;
         let mut start = 0.0;
-        if origin.length_squared() > (REACH * RADIUS) * (REACH * RADIUS) {
+        let is_near = |origin: DVec3| origin.length_squared() <= (REACH * RADIUS) * (REACH * RADIUS);
+        if !is_near(origin) {
             // From far away: start where the line comes near.
             start = -origin.dot(line.direction) - 1.25 * RADIUS;
             origin += start * line.direction;
-            if origin.length_squared() > (REACH * RADIUS) * (REACH * RADIUS) {
-                return None;
-            }
+        }
+        // False for NaN, too. A longer direction would overflow the exact test.
+        if !(is_near(origin) && line.direction.length_squared() <= 2.0) {
+            return None;
         }
         // All six numbers alike, for vector instructions.
         let [o, d] = [origin.to_array(), line.direction.to_array()];
@@ -75,7 +78,13 @@ impl Grid {
         Some(GridLine { origin, direction, start })
     }
 
-    /// A distance in steps as a length of the scene.
+    /// Returns a length of the scene in steps.
+    #[inline]
+    pub(crate) fn steps(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
+    /// Returns a distance in steps as a length of the scene.
     #[inline]
     pub(crate) fn length(&self, steps: f64) -> f64 {
         steps * self.step
@@ -141,7 +150,7 @@ mod tests {
     #[test]
     fn exact_sides_are_antisymmetric_and_perturbed_when_zero() {
         let g = grid();
-        let line = g.line(&Line { origin: g.centre, direction: DVec3::Z }).unwrap();
+        let line = g.line(&Line { origin: g.center, direction: DVec3::Z }).unwrap();
         let (a, b) = ([-5, 0, 9], [7, 0, -3]);
         // The line meets this edge; the shift along x does not separate them, the one along y does.
         assert_ne!(line.exact_side(a, b), 0);

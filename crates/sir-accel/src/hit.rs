@@ -1,38 +1,52 @@
-//! Hits and their order along a line.
+//! Hits along lines.
 
-use sir_geom::{Barycentric, Side, TriangleId};
+use std::ops::Range;
 
-/// Where a line meets a triangle.
+use sir_types::{Barycentric, Side, TriangleId};
+
+/// A point where a line meets a triangle.
 ///
 /// # Surfaces in contact
 ///
-/// Hits of two parallel triangles within a millionth of the scene's radius are *coincident*, and rounding has no
-/// say in their order. Seen along the line, triangles whose front faces the origin come first, those added to the
-/// scene later before those added earlier; then the ones whose back faces the origin, earlier before later. In the
-/// opposite direction this gives the same hits in reverse. It means: of two sheets back to back, each one shows its
-/// front; of a decal on a wall, the later one is on top.
+/// Hits of two parallel triangles within a millionth of the radius of the bounding sphere are *in contact*, and rounding does
+/// not decide about their order. Seen along the line, triangles whose front faces the origin come first, those of high
+/// priority before those of low priority. Then come triangles whose back faces the origin, low priority before high priority.
+/// In the opposite direction this gives the same hits in reverse. It means: of two sheets back to back, each one shows its
+/// front; of a decal on a wall, the one with the higher priority is on top. Without
+/// [priorities](crate::Options::contact_priorities), a triangle has a higher priority than those before it in the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance from the origin of the line.
+    /// Distance from the origin of the line, negative behind it.
     pub t: f64,
-    /// The triangle that is met.
+    /// Number of the triangle in the list from which the structure was built.
     pub triangle: TriangleId,
-    /// Where on the triangle.
+    /// Place on the triangle.
     pub point: Barycentric,
-    /// The side that faces the origin of the line.
+    /// The side that faces the origin of the line; for hits behind the origin, the side that faces an origin far before them.
     pub side: Side,
 }
 
-/// Distance in radii of the scene within which parallel surfaces are in contact.
-pub(crate) const CONTACT: f64 = 1e-6;
+/// All hits of some consecutive lines.
+#[derive(Clone, Copy, Debug)]
+pub struct LineHits<'a> {
+    starts: &'a [u32],
+    hits: &'a [Hit],
+}
 
-/// Largest squared sine of the angle between surfaces in contact.
-pub(crate) const PARALLEL: f64 = 1e-6;
+impl<'a> LineHits<'a> {
+    /// Hits line by line; those of line `i` are `hits[starts[i]..starts[i + 1]]`.
+    pub(crate) fn new(starts: &'a [u32], hits: &'a [Hit]) -> Self {
+        Self { starts, hits }
+    }
 
-/// The place of a triangle among coincident hits, which are in the order of these along a line.
-pub(crate) fn contact_rank(triangle: TriangleId, side: Side) -> (Side, u32) {
-    match side {
-        Side::Front => (side, !triangle.0),
-        Side::Back => (side, triangle.0),
+    /// Returns the hits of all lines, line by line, in order along each.
+    #[must_use]
+    pub fn hits(&self) -> &'a [Hit] {
+        self.hits
+    }
+
+    /// Returns the range of [`hits`](Self::hits) that belongs to each line.
+    pub fn lines(&self) -> impl ExactSizeIterator<Item = Range<usize>> + use<'a> {
+        self.starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
     }
 }

@@ -1,58 +1,51 @@
-//! Leaves: up to eight triangles, among which those are found that a line may cross.
+//! Leaves: up to eight triangles, culled together in single precision.
 
-use crate::lanes::{Kit, Singles, TRIANGLES};
-use crate::search::ShortLine;
+use crate::line_f32::{LineF32, Span};
+use crate::simd::backend::{F32Lanes, LEAF_WIDTH, SimdBackend};
 use crate::triangle::GridTriangle;
 
-/// Triangles in single precision, one lane each, in radii of the scene about its centre.
+/// Triangles in single precision, one lane each, in radii of the scene about its center.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Leaf {
     /// The first corner, per axis.
-    corner: [[f32; TRIANGLES]; 3],
+    corner: [[f32; LEAF_WIDTH]; 3],
     /// From the first corner to the second.
-    ab: [[f32; TRIANGLES]; 3],
+    ab: [[f32; LEAF_WIDTH]; 3],
     /// From the first corner to the third.
-    ac: [[f32; TRIANGLES]; 3],
+    ac: [[f32; LEAF_WIDTH]; 3],
     /// Edge functions farther from zero than this have the right sign in single precision; not a number in unused lanes.
-    certain: [f32; TRIANGLES],
-}
-
-/// The part of a line that matters \[radii\]: finite numbers.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Span {
-    pub(crate) from: f32,
-    pub(crate) to: f32,
+    certain: [f32; LEAF_WIDTH],
 }
 
 /// Three coordinates, eight of each.
-type Vectors<K> = [<K as Kit>::Triangles; 3];
+type Vectors<B> = [<B as SimdBackend>::LeafF32; 3];
 
 #[inline(always)]
-fn load<K: Kit>(v: &[[f32; TRIANGLES]; 3]) -> Vectors<K> {
-    [K::Triangles::load(&v[0]), K::Triangles::load(&v[1]), K::Triangles::load(&v[2])]
+fn load<B: SimdBackend>(backend: B, v: &[[f32; LEAF_WIDTH]; 3]) -> Vectors<B> {
+    [backend.load_leaf(&v[0]), backend.load_leaf(&v[1]), backend.load_leaf(&v[2])]
 }
 
 #[inline(always)]
-fn splat<K: Kit>(v: [f32; 3]) -> Vectors<K> {
-    [K::Triangles::splat(v[0]), K::Triangles::splat(v[1]), K::Triangles::splat(v[2])]
+fn splat<B: SimdBackend>(backend: B, v: [f32; 3]) -> Vectors<B> {
+    [backend.splat_leaf(v[0]), backend.splat_leaf(v[1]), backend.splat_leaf(v[2])]
 }
 
 #[inline(always)]
-fn dot<K: Kit>(a: Vectors<K>, b: Vectors<K>) -> K::Triangles {
-    a[0].times_plus(b[0], a[1].times_plus(b[1], a[2].times(b[2])))
+fn dot<V: F32Lanes<LEAF_WIDTH>>(a: [V; 3], b: [V; 3]) -> V {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2].mul(b[2])))
 }
 
 #[inline(always)]
-fn cross<K: Kit>(a: Vectors<K>, b: Vectors<K>) -> Vectors<K> {
+fn cross<V: F32Lanes<LEAF_WIDTH>>(a: [V; 3], b: [V; 3]) -> [V; 3] {
     [
-        a[1].times_minus(b[2], a[2].times(b[1])),
-        a[2].times_minus(b[0], a[0].times(b[2])),
-        a[0].times_minus(b[1], a[1].times(b[0])),
+        a[1].mul_sub(b[2], a[2].mul(b[1])),
+        a[2].mul_sub(b[0], a[0].mul(b[2])),
+        a[0].mul_sub(b[1], a[1].mul(b[0])),
     ]
 }
 
-/// Rounding may take this much of the longest edge from an edge function.
+/// Error bound of an edge function, as a part of the longest edge.
 ///
 /// With u = 2⁻²⁴, a line that starts within 1.75 radii, and so M = 2.75 radii from any corner, and edges of length L ≤ 2:
 /// the offset of the corner is off by 6 u, its moment by 18 u, the functions of two edges by 35 u L and that of the third, the
@@ -61,9 +54,9 @@ const DOUBT: f32 = 1.0 / 65536.0;
 
 impl Leaf {
     pub(crate) fn new<'t>(triangles: impl Iterator<Item = &'t GridTriangle>) -> Self {
-        let none = [[0.0; TRIANGLES]; 3];
-        let mut leaf = Self { corner: none, ab: none, ac: none, certain: [f32::NAN; TRIANGLES] };
-        for (lane, triangle) in triangles.enumerate().take(TRIANGLES) {
+        let none = [[0.0; LEAF_WIDTH]; 3];
+        let mut leaf = Self { corner: none, ab: none, ac: none, certain: [f32::NAN; LEAF_WIDTH] };
+        for (lane, triangle) in triangles.enumerate().take(LEAF_WIDTH) {
             let [corner, ab, ac] = triangle.in_radii();
             for axis in 0..3 {
                 leaf.corner[axis][lane] = corner[axis] as f32;
@@ -75,33 +68,34 @@ impl Leaf {
         leaf
     }
 
-    /// Lanes of triangles that the infinite line may cross, within the span if there is one, as a mask.
+    /// Returns the mask of the triangles that the infinite line may cross, within the span if there is one.
     #[inline(always)]
-    pub(crate) fn candidates<K: Kit>(&self, line: &ShortLine, span: Option<Span>) -> u32 {
-        let (origin, direction) = (splat::<K>(line.origin), splat::<K>(line.direction));
-        let (corner, ab, ac) = (load::<K>(&self.corner), load::<K>(&self.ab), load::<K>(&self.ac));
-        let oa = [corner[0].minus(origin[0]), corner[1].minus(origin[1]), corner[2].minus(origin[2])];
-        // As in `Crossed::new`.
-        let zero = K::Triangles::splat(0.0);
-        let moment = cross::<K>(direction, oa);
-        let normal = cross::<K>(ab, ac);
-        let e_ab = dot::<K>(moment, ab);
-        let e_ca = zero.minus(dot::<K>(moment, ac));
-        let all = dot::<K>(direction, normal);
-        let e_bc = all.minus(e_ab).minus(e_ca);
+    pub(crate) fn candidates<B: SimdBackend>(&self, backend: B, line: &LineF32, span: Option<Span>) -> u32 {
+        let (origin, direction) = (splat(backend, line.origin), splat(backend, line.direction));
+        let (corner, ab, ac) =
+            (load(backend, &self.corner), load(backend, &self.ab), load(backend, &self.ac));
+        let oa = [corner[0].sub(origin[0]), corner[1].sub(origin[1]), corner[2].sub(origin[2])];
+        // As in `EdgeTest::new`.
+        let zero = backend.splat_leaf(0.0);
+        let moment = cross(direction, oa);
+        let normal = cross(ab, ac);
+        let e_ab = dot(moment, ab);
+        let e_ca = zero.sub(dot(moment, ac));
+        let all = dot(direction, normal);
+        let e_bc = all.sub(e_ab).sub(e_ca);
         let (low, high) = (e_ab.min(e_ca).min(e_bc), e_ab.max(e_ca).max(e_bc));
-        let certain = K::Triangles::load(&self.certain);
-        let mut may = zero.minus(certain).at_most(low) | high.at_most(certain);
+        let certain = backend.load_leaf(&self.certain);
+        let mut may = zero.sub(certain).mask_le(low) | high.mask_le(certain);
         if let Some(Span { from, to }) = span {
             // Height over `all` is the distance. The products are off by less than 70 u L² where the distance matters, and the
             // distance as it is found in double precision by much less.
-            let height = dot::<K>(normal, oa);
-            let doubt = certain.times(certain).times(K::Triangles::splat(1.0 / DOUBT));
-            let minus_doubt = zero.minus(doubt);
-            let after_end = height.minus(all.times(K::Triangles::splat(to)));
-            let after_begin = height.minus(all.times(K::Triangles::splat(from)));
-            let along = zero.at_most(all) & after_end.at_most(doubt) & minus_doubt.at_most(after_begin);
-            let against = all.at_most(zero) & minus_doubt.at_most(after_end) & after_begin.at_most(doubt);
+            let height = dot(normal, oa);
+            let doubt = certain.mul(certain).mul(backend.splat_leaf(1.0 / DOUBT));
+            let minus_doubt = zero.sub(doubt);
+            let after_end = height.sub(all.mul(backend.splat_leaf(to)));
+            let after_begin = height.sub(all.mul(backend.splat_leaf(from)));
+            let along = zero.mask_le(all) & after_end.mask_le(doubt) & minus_doubt.mask_le(after_begin);
+            let against = all.mask_le(zero) & minus_doubt.mask_le(after_end) & after_begin.mask_le(doubt);
             may &= along | against;
         }
         may

@@ -1,15 +1,15 @@
-//! Memory that is read in no order: hints for the processor and the system, without any other effect.
+//! Hints for memory that is read in random order: prefetching and huge pages. They have no effect on results.
 
-use crate::lanes;
+use crate::simd::prefetch::prefetch as prefetch_bytes;
 
-/// Begins to bring something to the caches, because it will soon be needed.
+/// Prefetches a value that will soon be read.
 #[inline]
 pub fn prefetch<T>(what: &T) {
-    lanes::prefetch(std::ptr::from_ref(what).cast(), size_of::<T>());
+    prefetch_bytes(std::ptr::from_ref(what).cast(), size_of::<T>());
 }
 
-/// Collects things that will be read in no order. Much memory comes in large pages where Linux has them to give, since looking up
-/// where a small page is takes as long as reading it.
+/// Collects items that will be read in random order. On Linux a large collection asks for huge pages (transparent huge pages),
+/// because a miss of the translation buffer takes as long as reading memory.
 pub fn collect_in_large_pages<T>(things: impl ExactSizeIterator<Item = T>) -> Vec<T> {
     let mut all = Vec::with_capacity(things.len());
     advise(&mut all);
@@ -17,22 +17,22 @@ pub fn collect_in_large_pages<T>(things: impl ExactSizeIterator<Item = T>) -> Ve
     all
 }
 
-/// Size of a large page of most processors \[bytes\].
+/// Size of a huge page of most processors \[bytes\].
 #[cfg(target_os = "linux")]
-const LARGE_PAGE: usize = 2 << 20;
+const HUGE_PAGE: usize = 2 << 20;
 
-/// Asks for large pages for what has not been written yet.
+/// Asks for huge pages for what has not been written yet.
 #[cfg(target_os = "linux")]
-#[allow(unsafe_code, reason = "a call of the system that changes nothing but how memory is organised")]
+#[allow(unsafe_code, reason = "a call of the system that changes nothing but how memory is organized")]
 fn advise<T>(empty: &mut Vec<T>) {
     let room = empty.spare_capacity_mut();
     let bytes = size_of_val(room);
     let start = room.as_mut_ptr().cast::<u8>();
     // Whole pages within.
-    let before = start.align_offset(LARGE_PAGE);
-    let whole = bytes.saturating_sub(before) / LARGE_PAGE * LARGE_PAGE;
+    let before = start.align_offset(HUGE_PAGE);
+    let whole = bytes.saturating_sub(before) / HUGE_PAGE * HUGE_PAGE;
     if whole > 0 {
-        // SAFETY: the range lies in memory that belongs to the vector, and its contents stay as they are. Failure is no harm.
+        // SAFETY: the range lies in memory that belongs to the vector, and the advice changes no contents. Failure does no harm.
         unsafe { libc::madvise(start.wrapping_add(before).cast(), whole, libc::MADV_HUGEPAGE) };
     }
 }

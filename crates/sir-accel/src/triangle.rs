@@ -1,11 +1,11 @@
-//! Does a line cross a triangle?
+//! Intersection of a line and a triangle.
 
 use glam::DVec3;
-use sir_geom::{Barycentric, Side, TriangleId};
+use sir_types::{Barycentric, Side, TriangleId};
 
 use crate::grid::{Grid, GridLine, RADIUS};
 use crate::hit::Hit;
-use crate::lanes::Doubles;
+use crate::simd::backend::F64Lanes;
 
 /// A triangle on the grid.
 #[derive(Clone, Copy, Debug)]
@@ -27,16 +27,17 @@ pub(crate) struct Crossing {
     pub(crate) id: TriangleId,
 }
 
-/// How triangles lie to lines: one of each per lane.
+/// The edge functions of pairs of a line and a triangle, a pair per lane, and what follows from their signs.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Crossed<N> {
-    /// Lanes whose triangle is certainly crossed by the (infinite, infinitesimally shifted) line, with the back, or with the
-    /// front, towards the origin, as masks.
+pub(crate) struct EdgeTest<N> {
+    /// Mask of the triangles that the (infinite, infinitesimally shifted) line certainly crosses, with the back towards
+    /// its origin.
     pub(crate) back: u32,
+    /// The same with the front towards the origin.
     pub(crate) front: u32,
-    /// Lanes of which rounding leaves it open.
+    /// Mask of the triangles for which rounding leaves it open.
     pub(crate) doubt: u32,
-    /// From what the crossing follows, see [`Crossing::locate`].
+    /// The numbers from which the crossing follows, see [`Crossing::locate`].
     pub(crate) factors: Factors<N>,
 }
 
@@ -48,25 +49,25 @@ pub(crate) type Factors<N> = [N; 6];
 type Vector<D> = [D; 3];
 
 #[inline(always)]
-fn minus<D: Doubles>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
-    [a[0].minus(b[0]), a[1].minus(b[1]), a[2].minus(b[2])]
+fn sub<D: F64Lanes>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
+    [a[0].sub(b[0]), a[1].sub(b[1]), a[2].sub(b[2])]
 }
 
 #[inline(always)]
-fn dot<D: Doubles>(a: Vector<D>, b: Vector<D>) -> D {
-    a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
+fn dot<D: F64Lanes>(a: Vector<D>, b: Vector<D>) -> D {
+    a[0].mul(b[0]).add(a[1].mul(b[1])).add(a[2].mul(b[2]))
 }
 
 #[inline(always)]
-fn cross<D: Doubles>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
+fn cross<D: F64Lanes>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
     [
-        a[1].times(b[2]).minus(a[2].times(b[1])),
-        a[2].times(b[0]).minus(a[0].times(b[2])),
-        a[0].times(b[1]).minus(a[1].times(b[0])),
+        a[1].mul(b[2]).sub(a[2].mul(b[1])),
+        a[2].mul(b[0]).sub(a[0].mul(b[2])),
+        a[0].mul(b[1]).sub(a[1].mul(b[0])),
     ]
 }
 
-impl<D: Doubles> Crossed<D> {
+impl<D: F64Lanes> EdgeTest<D> {
     #[inline(always)]
     pub(crate) fn new(
         [a, b, c]: [Vector<D>; 3],
@@ -74,32 +75,32 @@ impl<D: Doubles> Crossed<D> {
         origin: Vector<D>,
         direction: Vector<D>,
     ) -> Self {
-        let (oa, ab, ac) = (minus(a, origin), minus(b, a), minus(c, a));
+        let (oa, ab, ac) = (sub(a, origin), sub(b, a), sub(c, a));
         // Edge functions d · ((p − o) × (q − o)) of the three edges, after Möller and Trumbore (1997).
-        let zero = D::splat(0.0);
+        let zero = certain.splat(0.0);
         let moment = cross(direction, oa);
         let e_ab = dot(moment, ab);
-        let e_ca = zero.minus(dot(moment, ac));
+        let e_ca = zero.sub(dot(moment, ac));
         let all = dot(direction, cross(ab, ac));
-        let e_bc = all.minus(e_ab).minus(e_ca);
+        let e_bc = all.sub(e_ab).sub(e_ca);
         let (low, high) = (e_ab.min(e_ca).min(e_bc), e_ab.max(e_ca).max(e_bc));
-        let minus_certain = zero.minus(certain);
-        let (back, front) = (certain.below(low), high.below(minus_certain));
-        let doubt = (minus_certain.at_most(low) | high.at_most(certain)) & !(back | front);
+        let minus_certain = zero.sub(certain);
+        let (back, front) = (certain.mask_lt(low), high.mask_lt(minus_certain));
+        let doubt = (minus_certain.mask_le(low) | high.mask_le(certain)) & !(back | front);
         let factors = [e_ab, e_ca, all, dot(direction, oa), dot(direction, ab), dot(direction, ac)];
         Self { back, front, doubt, factors }
     }
 }
 
 impl Crossing {
-    /// The crossing as a hit in the scene.
+    /// Returns the crossing as a hit.
     #[inline(always)]
     pub(crate) fn hit(&self, grid: &Grid, line: &GridLine) -> Hit {
         let Self { t, point, side, id } = *self;
         Hit { t: grid.length(t + line.start), triangle: id, point, side }
     }
 
-    /// Distance and place of a crossing.
+    /// Returns the distance and the place of a crossing.
     ///
     /// Weights are clamped so that a crossing is a point of the triangle whatever rounding does: this keeps the distance
     /// meaningful on slivers and at grazing incidence.
@@ -143,28 +144,28 @@ impl GridTriangle {
         [a / RADIUS, (b - a) / RADIUS, (c - a) / RADIUS]
     }
 
-    /// The crossing of a line with this triangle.
+    /// Returns the crossing of a line with this triangle.
     #[inline(always)]
     pub(crate) fn cross(&self, line: &GridLine) -> Option<Crossing> {
         let [a, b, c] = self.corners;
         let corner = |p: [i32; 3]| [f64::from(p[0]), f64::from(p[1]), f64::from(p[2])];
         let corners = [corner(a), corner(b), corner(c)];
         let (origin, direction) = (line.origin.to_array(), line.direction.to_array());
-        let crossed = Crossed::new(corners, f64::from(self.certain), origin, direction);
-        let side = if crossed.back != 0 {
+        let test = EdgeTest::new(corners, f64::from(self.certain), origin, direction);
+        let side = if test.back != 0 {
             Side::Back
-        } else if crossed.front != 0 {
+        } else if test.front != 0 {
             Side::Front
-        } else if crossed.doubt != 0 {
+        } else if test.doubt != 0 {
             self.exact_crossing(line)?
         } else {
             return None;
         };
-        let (t, point) = Crossing::locate(crossed.factors);
+        let (t, point) = Crossing::locate(test.factors);
         Some(Crossing { t, point, side, id: self.id })
     }
 
-    /// The side that faces the origin if all three edges pass on the same side of the line.
+    /// Returns the side that faces the origin if all three edges pass on the same side of the line.
     #[cold]
     #[inline(never)]
     pub(crate) fn exact_crossing(&self, line: &GridLine) -> Option<Side> {

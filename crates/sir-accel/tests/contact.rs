@@ -1,8 +1,11 @@
 //! Surfaces in contact are put in order by their rule, in both directions.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
+mod common;
+
+use common::arrange;
 use glam::DVec3;
-use sir_accel::{Accel, Ray};
+use sir_accel::Ray;
 use sir_geom::{Line, Material, Rgb, Scene, SceneBuilder, Side, shapes};
 
 /// Squares in the plane through `height`, facing up or down, in the order given.
@@ -26,7 +29,7 @@ fn order(scene: &Scene, upwards: bool) -> Vec<(u32, Side)> {
     let tilt = glam::DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.7);
     let direction = tilt * DVec3::new(0.3, 0.2, if upwards { 1.0 } else { -1.0 }).normalize();
     let line = Line { origin: tilt * DVec3::new(0.15, -0.11, 0.0) - direction, direction };
-    let accel = Accel::new(scene);
+    let accel = arrange(scene);
     accel.tracer().all_hits(&line).iter().map(|h| (scene.triangle(h.triangle).face.0, h.side)).collect()
 }
 
@@ -62,7 +65,7 @@ fn a_thick_stack_of_copies_is_in_order() {
     }
     let scene = b.build().unwrap().scene;
     let line = Line { origin: DVec3::new(0.4, 0.4, 2.0), direction: -DVec3::Z };
-    let accel = Accel::new(&scene);
+    let accel = arrange(&scene);
     let met: Vec<_> = accel.tracer().all_hits(&line).iter().map(|h| (h.triangle.0, h.side)).collect();
     let fronts = (0..COPIES).rev().filter(|i| i % 2 == 0).map(|i| (i, Side::Front));
     let backs = (0..COPIES).filter(|i| i % 2 == 1).map(|i| (i, Side::Back));
@@ -73,12 +76,12 @@ fn a_thick_stack_of_copies_is_in_order() {
 #[test]
 fn a_ray_from_the_common_edge_of_coplanar_triangles_is_free() {
     let scene = sheets(&[(0.0, Side::Front)]);
-    let accel = Accel::new(&scene);
+    let accel = arrange(&scene);
     for t in scene.triangle_ids() {
         let [a, b, c] = scene.corners(t);
         for (p, q) in [(a, b), (b, c), (c, a)] {
             for direction in [scene.normal(t), (scene.normal(t) + 0.3 * DVec3::X).normalize()] {
-                let ray = Ray { line: Line { origin: p.midpoint(q), direction }, leaving: Some(t) };
+                let ray = Ray::leaving(Line { origin: p.midpoint(q), direction }, t);
                 assert_eq!(accel.tracer().closest(&ray), None);
             }
         }
@@ -95,12 +98,12 @@ fn a_gap_wider_than_contact_is_a_gap() {
 #[test]
 fn rays_follow_the_same_rule() {
     let scene = sheets(&[(0.0, Side::Front), (0.0, Side::Front)]);
-    let accel = Accel::new(&scene);
+    let accel = arrange(&scene);
     let mut tracer = accel.tracer();
     for t in scene.triangle_ids() {
         let [a, b, c] = scene.corners(t);
         let line = Line { origin: (a + b + c) / 3.0, direction: scene.normal(t) };
-        let met = tracer.closest(&Ray { line, leaving: Some(t) }).map(|h| scene.triangle(h.triangle).face.0);
+        let met = tracer.closest(&Ray::leaving(line, t)).map(|h| scene.triangle(h.triangle).face.0);
         let lower = scene.triangle(t).face.0 == 0;
         assert_eq!(met, lower.then_some(1), "{t}");
         let from_above = Line { origin: line.at(0.5), direction: -line.direction };

@@ -3,9 +3,9 @@
 
 mod common;
 
-use common::{KINDS, difficult_line, furnished_room};
+use common::{KINDS, arrange, difficult_line, furnished_room};
 use glam::DVec3;
-use sir_accel::{Accel, Hit, Ray};
+use sir_accel::{Hit, Ray};
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Line, Material, Rgb, Scene, SceneBuilder, Side};
 use sir_lines::{Stage, Streams};
@@ -19,7 +19,7 @@ fn ball(level: u32) -> Scene {
 }
 
 fn each_line(scene: &Scene, seed: u64, lines: u64, mut check: impl FnMut(&Line, &[Hit])) {
-    let accel = Accel::new(scene);
+    let accel = arrange(scene);
     let mut tracer = accel.tracer();
     let streams = Streams::new(seed, Stage::PROBE);
     for i in 0..lines {
@@ -56,7 +56,7 @@ fn a_convex_solid_is_entered_once_and_left_once() {
 #[test]
 fn both_directions_see_the_same_surfaces() {
     let scene = furnished_room();
-    let accel = Accel::new(&scene);
+    let accel = arrange(&scene);
     let mut backwards = accel.tracer();
     let sphere = scene.bounding_sphere();
     each_line(&scene, 3, 100_000, |line, hits| {
@@ -93,7 +93,7 @@ fn hits_lie_where_they_say_and_in_order() {
 #[test]
 fn the_closest_hit_is_the_first_of_all() {
     let scene = furnished_room();
-    let accel = Accel::new(&scene);
+    let accel = arrange(&scene);
     let mut tracer = accel.tracer();
     let back = 4.0 * scene.bounding_sphere().radius;
     let streams = Streams::new(5, Stage::PROBE);
@@ -109,7 +109,7 @@ fn the_closest_hit_is_the_first_of_all() {
 #[test]
 fn the_next_surface_is_the_next_of_all() {
     let scene = furnished_room();
-    let accel = Accel::new(&scene);
+    let accel = arrange(&scene);
     let (mut along, mut ahead) = (accel.tracer(), accel.tracer());
     let streams = Streams::new(6, Stage::PROBE);
     let (mut compared, mut different) = (0, 0);
@@ -117,7 +117,7 @@ fn the_next_surface_is_the_next_of_all() {
         let Some(line) = difficult_line(&scene, 0, &mut streams.line(i)) else { continue };
         for pair in along.all_hits(&line).windows(2) {
             let ray = Line { origin: line.at(pair[0].t), ..line };
-            let next = ahead.closest(&Ray { line: ray, leaving: Some(pair[0].triangle) }).map(|h| h.triangle);
+            let next = ahead.closest(&Ray::leaving(ray, pair[0].triangle)).map(|h| h.triangle);
             compared += 1;
             // The rounded origin makes a slightly different line, which may pass an edge on the other side.
             different += u32::from(next != Some(pair[1].triangle));

@@ -4,9 +4,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use sir_geom::LoadError;
-use sir_mesh::MeshError;
 use sir_parallel::{ConnectError, RunError};
-use sir_radiosity::SolveError;
+use sir_radiosity::{ModelError, SolveError};
 use sir_view::ViewError;
 use thiserror::Error;
 
@@ -19,9 +18,9 @@ pub enum Error {
     /// The pipeline file has problems.
     #[error(transparent)]
     Pipeline(#[from] Diagnostics),
-    /// The scene cannot be cut into patches.
+    /// The scene cannot be cut into patches, or not be traced.
     #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Model(#[from] ModelError),
     /// The pipeline file cannot be read.
     #[error("cannot read the pipeline {}", path.display())]
     ReadPipeline {

@@ -108,7 +108,7 @@ impl Vertex {
     }
 
     fn ray(&self, direction: DVec3) -> Ray {
-        Ray { line: Line { origin: self.point, direction }, leaving: Some(self.triangle) }
+        Ray::leaving(Line { origin: self.point, direction }, self.triangle)
     }
 }
 

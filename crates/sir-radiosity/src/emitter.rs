@@ -70,7 +70,7 @@ impl Emitter {
             Self::Surface { triangle, corners, normal, .. } => {
                 let origin = point_on_surface(scene, *triangle, *corners, stream);
                 let line = Line { origin, direction: cosine_direction(*normal, stream.point()) };
-                Ray { line, leaving: Some(*triangle) }
+                Ray::leaving(line, *triangle)
             }
             Self::Point { position, spread } => {
                 let direction = match *spread {

@@ -60,6 +60,7 @@
 
 mod balance;
 mod batches;
+mod build_accel;
 mod emitter;
 mod error;
 mod first_shot;
@@ -82,12 +83,13 @@ mod view_factors;
 
 pub use balance::{Balance, Books, Counts};
 pub use batches::{Batches, Part, Totals};
+pub use build_accel::build_accel;
 pub use emitter::{Emitter, Opening};
 pub use error::SolveError;
 pub use first_shot::{FirstShot, FirstShotTally, Shot};
 pub use grouping::Grouping;
 pub use inside::Inside;
-pub use model::Model;
+pub use model::{Model, ModelError};
 pub use multipath::{Multipath, MultipathSettings, Replica, Transported, share};
 pub use power::{PowerUnit, Quanta};
 pub use received::Received;

@@ -1,8 +1,22 @@
 //! What is solved: a scene, its patches, and the means to trace lines through it.
 
-use sir_accel::Accel;
+use sir_accel::{Accel, AccelError};
 use sir_geom::{BoundingBox, Rgb, Scene, Side, TriangleId};
 use sir_mesh::{MeshError, PatchId, PatchMesh, SideId, Subdivision};
+use thiserror::Error;
+
+use crate::build_accel::build_accel;
+
+/// The reason why a scene cannot be prepared.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ModelError {
+    /// The triangles cannot be cut into patches.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The triangles cannot be arranged for tracing.
+    #[error(transparent)]
+    Accel(#[from] AccelError),
+}
 
 /// A scene, cut into patches and ready for lines. Immutable, and shared by all who trace.
 #[derive(Clone, Debug)]
@@ -20,8 +34,8 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// If the subdivision is impossible.
-    pub fn new(scene: Scene, subdivision: Subdivision) -> Result<Self, MeshError> {
+    /// If the subdivision is impossible, or the triangles cannot be arranged for tracing.
+    pub fn new(scene: Scene, subdivision: Subdivision) -> Result<Self, ModelError> {
         Self::within(scene, subdivision, None)
     }
 
@@ -29,14 +43,14 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// If the subdivision is impossible.
+    /// If the subdivision is impossible, or the triangles cannot be arranged for tracing.
     pub fn within(
         scene: Scene,
         subdivision: Subdivision,
         bounds: Option<BoundingBox>,
-    ) -> Result<Self, MeshError> {
+    ) -> Result<Self, ModelError> {
         let mesh = PatchMesh::within(&scene, subdivision, bounds)?;
-        let accel = Accel::new(&scene);
+        let accel = build_accel(&scene)?;
         Ok(Self { scene, mesh, accel })
     }
 

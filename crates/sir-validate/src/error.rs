@@ -1,8 +1,8 @@
 //! Errors.
 
 use sir_geom::SceneError;
-use sir_mesh::MeshError;
 use sir_parallel::RunError;
+use sir_radiosity::ModelError;
 use thiserror::Error;
 
 /// Why a validation cannot be done. (That an answer is wrong is no error, but a verdict.)
@@ -45,9 +45,9 @@ pub enum ValidateError {
     /// The surfaces of a case do not make a scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// They cannot be cut into patches.
+    /// They cannot be cut into patches, or not be traced.
     #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Model(#[from] ModelError),
     /// The light cannot be computed, or someone wanted to stop.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -65,7 +65,7 @@ impl ValidateError {
     pub fn is_usage(&self) -> bool {
         match self {
             Self::File { .. } | Self::Layout { .. } | Self::Missing { .. } | Self::NoCase { .. } => true,
-            Self::Scene(_) | Self::Mesh(_) | Self::Run(_) => false,
+            Self::Scene(_) | Self::Model(_) | Self::Run(_) => false,
         }
     }
 }

@@ -5,10 +5,10 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
-use sir_accel::Accel;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Camera, Material, Rgb, SceneBuilder};
 use sir_mesh::{PatchMesh, Subdivision};
+use sir_radiosity::build_accel;
 use sir_view::{DisplayMesh, Exposure, PictureSettings, Table, render, write_exr, write_glb, write_png};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let camera = Camera::looking_at(DVec3::new(2.0, 1.5, 4.8), DVec3::new(2.0, 1.1, 0.0), DVec3::Y, 1.1)
         .ok_or("the camera looks along its up direction")?;
     let settings = PictureSettings { width: 800, height: 600, grid: 4, threads: 2 };
-    let picture = render(&display, &Accel::new(&scene), &camera, settings)?;
+    let picture = render(&display, &build_accel(&scene)?, &camera, settings)?;
     write_png(&folder.join("view.png"), &picture, Exposure::Auto)?;
     write_exr(&folder.join("view.exr"), &picture, &[])?;
     write_glb(&folder.join("lit.glb"), &display, Exposure::Auto, &[camera], DVec3::Y)?;

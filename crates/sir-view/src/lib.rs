@@ -32,7 +32,7 @@
 //!
 //! ```
 //! use glam::DVec3;
-//! use sir_accel::Accel;
+//! use sir_accel::{Accel, Options};
 //! use sir_geom::{Material, Rgb, SceneBuilder, shapes::{self, Facing}};
 //! use sir_mesh::{PatchMesh, Subdivision};
 //! use sir_view::{DisplayMesh, Exposure, PictureSettings, default_camera, render};
@@ -47,7 +47,8 @@
 //! let irradiance = vec![Rgb::splat(2.0); mesh.side_count()];
 //!
 //! let display = DisplayMesh::new(&scene, &mesh, &irradiance);
-//! let accel = Accel::new(&scene);
+//! let corners: Vec<_> = scene.triangles().iter().map(|triangle| triangle.vertices.map(|v| v.0)).collect();
+//! let accel = Accel::build(scene.vertices(), &corners, Options::default())?;
 //! let camera = default_camera(&display, &accel, DVec3::Y);
 //! let settings = PictureSettings { width: 40, height: 30, grid: 2, threads: 1 };
 //! let picture = render(&display, &accel, &camera, settings)?;

@@ -126,7 +126,7 @@ const LAYERS: usize = 64;
 impl Shader<'_> {
     /// Looks along rays, in order.
     fn see(&self, tracer: &mut Tracer<'_>, rays: &[Line], mut visit: impl FnMut(&Line, Seen)) {
-        if tracer.lets_lines_pass() {
+        if tracer.accel().has_transparency() {
             let mut next = 0;
             tracer.all_crossings_each(rays, |crossings| {
                 for (range, ray) in crossings.lines().zip(&rays[next..]) {

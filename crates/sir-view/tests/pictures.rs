@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
 
 use glam::DVec3;
-use sir_accel::Accel;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Camera, Material, MaterialId, Projection, Rgb, Scene, SceneBuilder, Sides, Sky, SkyModel};
 use sir_mesh::{PatchMesh, Subdivision};
+use sir_radiosity::build_accel;
 use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, default_camera, guess_up, render};
 
 const SIZE: DVec3 = DVec3::new(4.0, 2.5, 3.0);
@@ -39,7 +39,7 @@ fn uniform(scene: &Scene, camera: &Camera, threads: usize) -> Picture {
     let mesh = PatchMesh::new(scene, Subdivision::MaxArea(0.07)).unwrap();
     let irradiance = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
     let display = DisplayMesh::new(scene, &mesh, &irradiance);
-    render(&display, &Accel::new(scene), camera, settings(threads)).unwrap()
+    render(&display, &build_accel(scene).unwrap(), camera, settings(threads)).unwrap()
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn a_picture_of_errors_is_without_what_surfaces_emit() {
     let errors = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
     let camera = Camera::looking_at(DVec3::new(3.7, 2.0, 0.2), DVec3::ONE, DVec3::Y, 1.2).unwrap();
     let display = DisplayMesh::of_errors(&scene, &mesh, &errors);
-    assert_even(&render(&display, &Accel::new(&scene), &camera, settings(2)).unwrap());
+    assert_even(&render(&display, &build_accel(&scene).unwrap(), &camera, settings(2)).unwrap());
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn a_picture_of_errors_is_black_where_it_shows_the_sky() {
     let errors = vec![Rgb::ONE; mesh.side_count()];
     let camera =
         Camera::looking_at(DVec3::new(0.0, 0.0, 9.0), DVec3::new(0.0, 0.0, 10.0), DVec3::Y, 1.2).unwrap();
-    let accel = Accel::new(&scene);
+    let accel = build_accel(&scene).unwrap();
     let looks = |display: DisplayMesh<'_>| render(&display, &accel, &camera, settings(1)).unwrap();
     let light = looks(DisplayMesh::new(&scene, &mesh, &errors));
     let error = looks(DisplayMesh::of_errors(&scene, &mesh, &errors));
@@ -187,7 +187,7 @@ fn picture_of_strips(mut builder: SceneBuilder, strips: &[(f64, f64, MaterialId)
         ..Camera::looking_at(DVec3::new(4.5, 4.5, 1.0), DVec3::new(4.5, 4.5, 0.0), DVec3::Y, 1.0).unwrap()
     };
     let settings = PictureSettings { width: 9, height: 9, grid: 4, threads: 1 };
-    render(&display, &Accel::new(&scene), &camera, settings).unwrap()
+    render(&display, &build_accel(&scene).unwrap(), &camera, settings).unwrap()
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn an_empty_picture_is_refused() {
     let display = DisplayMesh::new(&scene, &mesh, &irradiance);
     let camera = Camera::looking_at(DVec3::ONE, DVec3::ZERO, DVec3::Y, 1.0).unwrap();
     let none = PictureSettings { width: 0, ..settings(1) };
-    let error = render(&display, &Accel::new(&scene), &camera, none).unwrap_err().to_string();
+    let error = render(&display, &build_accel(&scene).unwrap(), &camera, none).unwrap_err().to_string();
     assert!(error.contains("0 × 120"), "{error}");
 }
 
@@ -238,7 +238,7 @@ fn the_default_camera_stands_in_a_lit_closed_room() {
             irradiance.push(if side == sir_geom::Side::Front { Rgb::ONE } else { Rgb::ZERO });
         });
         let display = DisplayMesh::new(&scene, &mesh, &irradiance);
-        let accel = Accel::new(&scene);
+        let accel = build_accel(&scene).unwrap();
         let camera = default_camera(&display, &accel, DVec3::Y);
         let inside = |p: DVec3| p.cmpgt(DVec3::ZERO).all() && p.cmplt(SIZE).all();
         assert!(inside(camera.eye), "{camera:?}");

@@ -5,12 +5,12 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec2, Vec4};
-use sir_accel::Accel;
 use sir_geom::{
     Camera, ColourMap, Material, MaterialId, Opacity, Projection, Rgb, Scene, SceneBuilder, Sky, Texture,
     TextureId, TextureMap, Wrap,
 };
 use sir_mesh::{PatchMesh, Subdivision};
+use sir_radiosity::build_accel;
 use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, render, write_glb};
 
 /// Adds the square `[0, 1]² × z` that faces +z, with texture coordinates `repeats` times `x` and `1 − y`.
@@ -54,7 +54,7 @@ fn picture(scene: &Scene, subdivision: Subdivision, size: u32, grid: u32, of_err
         aspect: None,
     };
     let settings = PictureSettings { width: size, height: size, grid, threads: 2 };
-    render(&display, &Accel::new(scene), &camera, settings).unwrap()
+    render(&display, &build_accel(scene).unwrap(), &camera, settings).unwrap()
 }
 
 fn assert_near(found: impl IntoIterator<Item = f32>, expected: [f64; 3], tolerance: f64) {

@@ -1,10 +1,30 @@
 //! Closed scenes and difficult lines.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+#![allow(dead_code, reason = "not all tests use all of it")]
 
 use glam::DVec3;
+use sir_accel::{Accel, Options};
 use sir_geom::shapes::{self, Facing};
-use sir_geom::{Line, Material, Opacity, Rgb, Scene, SceneBuilder};
+use sir_geom::{Line, Material, Opacities, Opacity, Rgb, Scene, SceneBuilder};
 use sir_lines::{Stream, unit_vector};
+
+/// The positions and the corners of the triangles of a scene.
+pub(crate) fn mesh(scene: &Scene) -> (&[DVec3], Vec<[u32; 3]>) {
+    (scene.vertices(), scene.triangles().iter().map(|t| t.vertices.map(|v| v.0)).collect())
+}
+
+/// Transparent triangles of a scene, and their opacity.
+pub(crate) fn options(scene: &Scene) -> Options {
+    let Some(opacities) = Opacities::of(scene) else { return Options::default() };
+    let is_transparent = scene.triangle_ids().map(|t| scene.lets_light_through(t)).collect();
+    Options::default().opacity(is_transparent, move |t, p| opacities.at(t, p).unwrap_or(1.0))
+}
+
+/// The triangles of a scene, arranged for tracing.
+pub(crate) fn arrange(scene: &Scene) -> Accel {
+    let (positions, indices) = mesh(scene);
+    Accel::build(positions, &indices, options(scene)).unwrap()
+}
 
 /// A room with two spheres, overlapping boxes and a box that touches floor and wall: all closed.
 pub(crate) fn furnished_room() -> Scene {

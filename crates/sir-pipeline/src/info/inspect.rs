@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 use sir_geom::{LoadOptions, Scene, Sides, Warning};
 use sir_mesh::{PatchMesh, Subdivision};
-use sir_radiosity::{Source, sources};
+use sir_radiosity::{ModelError, Source, build_accel, sources};
 
 use crate::error::Error;
 use crate::fingerprint::PROGRAM;
@@ -29,7 +29,8 @@ const VERSION: u32 = 1;
 pub fn inspect(path: &Path) -> Result<Info, Error> {
     let built = sir_geom::load(path, &LoadOptions::default())?;
     let scene = &built.scene;
-    let mesh = PatchMesh::new(scene, Subdivision::PerTriangle)?;
+    let mesh = PatchMesh::new(scene, Subdivision::PerTriangle).map_err(ModelError::from)?;
+    let accel = build_accel(scene).map_err(ModelError::from)?;
     let sources = sources(scene, &mesh);
     let dropped = built.warnings.iter().map(|warning| match warning {
         Warning::DroppedTriangles { count } => *count,
@@ -64,7 +65,7 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         cameras: scene.cameras().iter().map(|camera| camera.name.clone()).collect(),
         twins: shape::twins(scene),
         dominant: shape::dominant(scene),
-        lines: lines::trace(scene, &sources),
+        lines: lines::trace(scene, &accel, &sources),
         findings: Vec::new(),
         settings: Vec::new(),
     };

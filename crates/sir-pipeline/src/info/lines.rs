@@ -63,24 +63,23 @@ pub struct Fates {
 }
 
 /// Traces all lines.
-pub(super) fn trace(scene: &Scene, sources: &[Source]) -> Lines {
-    let accel = Accel::new(scene);
+pub(super) fn trace(scene: &Scene, accel: &Accel, sources: &[Source]) -> Lines {
     let from = |side: Side, kind| {
         let sides: Vec<_> = scene.triangle_ids().map(|id| (id, side, scene.area(id))).collect();
-        local(scene, &accel, &starts(&sides, kind), kind)
+        local(scene, accel, &starts(&sides, kind), kind)
     };
     let (from_fronts, mut arrived) = from(Side::Front, 1);
     let (from_backs, _) = from(Side::Back, 2);
     let emitters: Vec<_> = sources.iter().filter_map(emitting_side).collect();
     let from_emitters = (!emitters.is_empty()).then(|| {
-        let (fates, lit) = local(scene, &accel, &starts(&emitters, 3), 3);
+        let (fates, lit) = local(scene, accel, &starts(&emitters, 3), 3);
         arrived = lit;
         fates
     });
-    let reflected = (!arrived.is_empty()).then(|| local(scene, &accel, &arrived, 4).0);
+    let reflected = (!arrived.is_empty()).then(|| local(scene, accel, &arrived, 4).0);
     Lines {
         lines_of_each_kind: LINES,
-        global: global(scene, &accel),
+        global: global(scene, accel),
         from_fronts,
         from_backs,
         from_emitters,
@@ -176,7 +175,7 @@ fn local(scene: &Scene, accel: &Accel, starts: &[Start], kind: u64) -> (Fates, V
             };
             let origin = start.point.point(scene.corners(start.triangle));
             let line = Line { origin, direction: cosine_direction(normal, streams.line(i).point()) };
-            Ray { line, leaving: Some(start.triangle) }
+            Ray::leaving(line, start.triangle)
         });
         let rays: Vec<Ray> = rays.collect();
         // Hits come in any order, but the lines that start at them shall be the same every time.

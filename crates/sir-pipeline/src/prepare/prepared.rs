@@ -6,8 +6,8 @@ use std::path::Path;
 use glam::DVec3;
 use sir_geom::{LoadOptions, Scene};
 use sir_lines::Focus;
-use sir_mesh::{MeshError, Subdivision};
-use sir_radiosity::{Inside, Model, SolveError, Source, emits, sources};
+use sir_mesh::Subdivision;
+use sir_radiosity::{Inside, Model, ModelError, SolveError, Source, emits, sources};
 use sir_view::guess_up;
 
 use crate::error::Error;
@@ -99,7 +99,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
             Ok(Prepared { model, up, warnings, sources, focus, inside, layouts, load_seconds, build_seconds })
         }
         outcome => {
-            problems.extend(outcome.err().map(|error| mesh_problem(error, span)));
+            problems.extend(outcome.err().map(|error| model_problem(error, span)));
             Err(pipeline.diagnostics(problems).into())
         }
     }
@@ -142,6 +142,10 @@ pub(crate) fn up(path: &Path, scene: &Scene) -> DVec3 {
     if is_obj { guess_up(scene) } else { DVec3::Y }
 }
 
-fn mesh_problem(error: MeshError, span: std::ops::Range<usize>) -> Diagnostic {
-    Diagnostic { span, message: error.to_string(), help: "ask for fewer or larger patches".into() }
+fn model_problem(error: ModelError, span: std::ops::Range<usize>) -> Diagnostic {
+    let help = match error {
+        ModelError::Mesh(_) => "ask for fewer or larger patches",
+        ModelError::Accel(_) => "change the scene",
+    };
+    Diagnostic { span, message: error.to_string(), help: help.into() }
 }

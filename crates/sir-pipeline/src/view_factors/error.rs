@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use sir_mesh::MeshError;
-use sir_radiosity::ClosureError;
+use sir_radiosity::{ClosureError, ModelError};
 use thiserror::Error;
 
 /// Why there are no view factors.
@@ -26,7 +25,7 @@ pub enum ViewFactorsError {
     },
     /// The scene has too many triangles.
     #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Model(#[from] ModelError),
     /// The factors cannot be adjusted as --closure asks.
     #[error("--closure is impossible")]
     Closure(#[from] ClosureError),
@@ -38,7 +37,7 @@ impl ViewFactorsError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::NoGroups { .. } | Self::Exists { .. } => 2,
-            Self::Closure(_) | Self::Mesh(_) => 1,
+            Self::Closure(_) | Self::Model(_) => 1,
         }
     }
 }

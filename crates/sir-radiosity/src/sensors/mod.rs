@@ -136,13 +136,14 @@ impl<'s> Sensors<'s> {
             if cosine <= 0.0 {
                 continue;
             }
-            rays.push(Ray::from(Line { origin, direction: arrival.towards }));
             // A light that lies on a surface is in front of it, as sensors are.
-            brings.push((cosine * arrival.irradiance, arrival.distance - self.lift));
+            let ray = Ray::new(Line { origin, direction: arrival.towards });
+            rays.push(ray.within(0.0..arrival.distance - self.lift));
+            brings.push(cosine * arrival.irradiance);
         }
         let mut seen = vec![false; rays.len()];
-        tracer.closest_each(&rays, |i, hit| seen[i] = hit.is_none_or(|hit| hit.t >= brings[i].1));
+        tracer.occluded_each(&rays, |i, is_occluded| seen[i] = !is_occluded);
         // Rays are done in any order, but floats have to be added up in always the same.
-        brings.iter().zip(seen).filter(|(_, seen)| *seen).fold(Rgb::ZERO, |sum, (brought, _)| sum + brought.0)
+        brings.iter().zip(seen).filter(|(_, seen)| *seen).fold(Rgb::ZERO, |sum, (brought, _)| sum + *brought)
     }
 }

@@ -119,7 +119,7 @@ impl<'m> ViewFactorLines<'m> {
         let normal = if back { -scene.normal(triangle) } else { scene.normal(triangle) };
         let origin = point_on_surface(scene, triangle, scene.corners(triangle), &mut stream);
         let line = Line { origin, direction: cosine_direction(normal, stream.point()) };
-        Ray { line, leaving: Some(triangle) }
+        Ray::leaving(line, triangle)
     }
 
     /// Traces some lines of this round. Each line should be traced once, by whomever.

@@ -3,9 +3,9 @@
 
 mod common;
 
-use common::{KINDS, difficult_line, furnished_room, furnished_room_of};
+use common::{KINDS, arrange, difficult_line, furnished_room, furnished_room_of};
 use glam::{DVec3, Vec2};
-use sir_accel::{Accel, Ray};
+use sir_accel::Ray;
 use sir_geom::{Line, Material, MaterialId, Opacity, Rgb, Scene, SceneBuilder, Texture, TextureMap, Wrap};
 use sir_lines::{Stage, Streams};
 
@@ -51,7 +51,7 @@ fn a_mask_stops_lines_exactly_where_it_is_closed() {
     // With a cutoff half covered fields are closed, too.
     for (alpha, cutoff) in [(255, None), (255, Some(0.5)), (140, Some(0.5))] {
         let scene = squares(&[0.0], |b| checkerboard(b, alpha, cutoff));
-        let accel = Accel::new(&scene);
+        let accel = arrange(&scene);
         let mut tracer = accel.tracer();
         let mut stopped = 0;
         // The middles of 16² cells in each of the fields.
@@ -78,7 +78,7 @@ fn opacity_is_the_share_of_lines_that_are_stopped() {
         assert!((share - expected).abs() < 5.0 * deviation, "{share} of {expected}");
     };
     let scene = squares(&[0.0, -0.001], even(0.3));
-    let accel = Accel::new(&scene);
+    let accel = arrange(&scene);
     let mut tracer = accel.tracer();
     let streams = Streams::new(6, Stage::PROBE);
     let (mut by_number, mut first_is_upper) = ([0; 3], 0);
@@ -98,7 +98,7 @@ fn opacity_is_the_share_of_lines_that_are_stopped() {
 #[test]
 fn closest_hits_are_the_first_of_all_hits() {
     let scene = furnished_room_of(Opacity { factor: 0.4, ..Opacity::default() });
-    let accel = Accel::new(&scene);
+    let accel = arrange(&scene);
     let (mut tracer, mut other) = (accel.tracer(), accel.tracer());
     let streams = Streams::new(7, Stage::PROBE);
     let lines: Vec<Line> = (0..50_000u64)
@@ -130,10 +130,10 @@ fn closest_hits_are_the_first_of_all_hits() {
 fn all_crossings_are_those_of_the_same_scene_without_gaps() {
     let open = furnished_room_of(Opacity { factor: 0.0, ..Opacity::default() });
     let closed = furnished_room();
-    let (accel, opaque) = (Accel::new(&open), Accel::new(&closed));
+    let (accel, opaque) = (arrange(&open), arrange(&closed));
     assert!(accel.bytes() > opaque.bytes());
     let (mut tracer, mut reference) = (accel.tracer(), opaque.tracer());
-    assert!(tracer.lets_lines_pass() && !reference.lets_lines_pass());
+    assert!(accel.has_transparency() && !opaque.has_transparency());
     let streams = Streams::new(8, Stage::PROBE);
     let lines: Vec<Line> = (0..20_000u64)
         .filter_map(|i| difficult_line(&open, i as usize % KINDS, &mut streams.line(i)))

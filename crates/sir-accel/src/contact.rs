@@ -1,0 +1,86 @@
+//! The order of surfaces in contact.
+
+use sir_types::{Side, TriangleId};
+
+use crate::grid::{GridLine, RADIUS};
+use crate::hit::Hit;
+use crate::tree::Tree;
+use crate::triangle::{Crossing, GridTriangle};
+
+/// Distance within which parallel surfaces are in contact \[steps of the grid\]: a millionth of the radius of the scene.
+pub(crate) const CONTACT: f64 = 1e-6 * RADIUS;
+
+/// Largest squared sine of the angle between surfaces in contact.
+const PARALLEL: f64 = 1e-6;
+
+/// The rule of [`Hit`] for surfaces in contact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactOrder<'a> {
+    pub(crate) tree: &'a Tree,
+    /// Place of each triangle in the order of priorities; `None` if that is its number.
+    pub(crate) ranks: Option<&'a [u32]>,
+}
+
+impl ContactOrder<'_> {
+    /// Returns the key by which hits in contact are sorted along a line.
+    fn key(&self, triangle: TriangleId, side: Side) -> (Side, u32) {
+        let rank = self.ranks.and_then(|ranks| ranks.get(triangle.index())).copied().unwrap_or(triangle.0);
+        match side {
+            Side::Front => (side, !rank),
+            Side::Back => (side, rank),
+        }
+    }
+
+    /// Returns true if a crossing lies ahead of the surface that a ray leaves.
+    #[inline]
+    pub(crate) fn is_ahead(&self, leaving: TriangleId, other: &Crossing, line: &GridLine) -> bool {
+        if other.t.abs() > CONTACT { other.t > 0.0 } else { self.is_on_top(leaving, other, line) }
+    }
+
+    /// Returns true if a crossing close to the surface that a ray leaves lies ahead of it.
+    #[cold]
+    fn is_on_top(&self, leaving: TriangleId, other: &Crossing, line: &GridLine) -> bool {
+        let (Some(left), Some(met)) = (self.tree.triangle(leaving), self.tree.triangle(other.id)) else {
+            return other.t > 0.0;
+        };
+        if !are_parallel(left, met) {
+            return other.t > 0.0;
+        }
+        // The side that the ray does not leave: it would face the origin if the line were followed from behind.
+        let along = left.scaled_normal().dot(line.direction) > 0.0;
+        let side = if along { Side::Back } else { Side::Front };
+        // A line that does not cross the start itself left it on an edge, and this is its neighbor there.
+        left.cross(line).is_some() && self.key(leaving, side) < self.key(other.id, other.side)
+    }
+
+    /// Sorts the hits of a line by distance, and those in contact by their rule. `contact` is the distance [`CONTACT`] as a length
+    /// of the scene.
+    #[cold]
+    pub(crate) fn sort(&self, hits: &mut [Hit], contact: f64) {
+        let key = |hit: &Hit| self.key(hit.triangle, hit.side);
+        // Copies of a triangle are met at the same distance. Sorted by their rule, they cost no swaps below; otherwise the time would
+        // grow with the square of their number.
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(key(a).cmp(&key(b))));
+        for i in 1..hits.len() {
+            for j in (1..=i).rev() {
+                let (first, second) = (hits[j - 1], hits[j]);
+                let is_apart = (first.t - second.t).abs() > contact || !self.are_parallel(&first, &second);
+                if is_apart || key(&first) < key(&second) {
+                    break;
+                }
+                hits.swap(j - 1, j);
+            }
+        }
+    }
+
+    fn are_parallel(&self, a: &Hit, b: &Hit) -> bool {
+        let triangles = (self.tree.triangle(a.triangle), self.tree.triangle(b.triangle));
+        matches!(triangles, (Some(a), Some(b)) if are_parallel(a, b))
+    }
+}
+
+/// Returns true if the squared sine of the angle between two triangles is small.
+fn are_parallel(a: &GridTriangle, b: &GridTriangle) -> bool {
+    let (a, b) = (a.scaled_normal(), b.scaled_normal());
+    a.cross(b).length_squared() <= PARALLEL * a.length_squared() * b.length_squared()
+}

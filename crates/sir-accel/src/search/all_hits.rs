@@ -1,0 +1,239 @@
+//! The search for all hits of lines.
+
+use sir_types::{Barycentric, Line, Side, TriangleId};
+
+use crate::contact::CONTACT;
+use crate::grid::{Grid, GridLine};
+use crate::hit::Hit;
+use crate::line_f32::{LineF32, Span};
+use crate::node::LEAF;
+use crate::ray::TRange;
+use crate::search::candidates::Candidates;
+use crate::search::queue::{MAX_LINES, Queue};
+use crate::simd::backend::{F32Lanes, F64Lanes, Kernel, LEAF_WIDTH, SimdBackend};
+use crate::tree::Tree;
+
+/// A line, or a part of one.
+pub(crate) trait Part {
+    /// False for whole lines, which then take no time for their ends.
+    const HAS_ENDS: bool;
+    fn line(&self) -> &Line;
+    fn range(&self) -> TRange;
+}
+
+impl Part for Line {
+    const HAS_ENDS: bool = false;
+
+    #[inline(always)]
+    fn line(&self) -> &Line {
+        self
+    }
+
+    #[inline(always)]
+    fn range(&self) -> TRange {
+        TRange::ALL
+    }
+}
+
+impl Part for (Line, TRange) {
+    const HAS_ENDS: bool = true;
+
+    #[inline(always)]
+    fn line(&self) -> &Line {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn range(&self) -> TRange {
+        self.1
+    }
+}
+
+/// Scratch memory of the search, and the hits found.
+#[derive(Clone, Debug)]
+pub(crate) struct AllHitsScratch {
+    lines: Vec<(GridLine, LineF32)>,
+    /// For parts of lines, the part of each.
+    spans: Vec<Span>,
+    nodes: Queue,
+    leaves: Queue,
+    candidates: Candidates,
+    /// Sorted by line: distances \[steps of the grid\].
+    distances: Vec<f64>,
+    /// Place in `distances` of each crossing.
+    places: Vec<u32>,
+    /// Where the hits of each line begin, and where the last ones end.
+    pub(crate) starts: [u32; MAX_LINES + 3],
+    /// Line by line, in order of distance; longer than needed.
+    pub(crate) hits: Vec<Hit>,
+    /// True for lines with hits so close together that their distance may not order them.
+    pub(crate) close: [bool; MAX_LINES],
+}
+
+impl Default for AllHitsScratch {
+    fn default() -> Self {
+        Self {
+            lines: Vec::new(),
+            spans: Vec::new(),
+            nodes: Queue::default(),
+            leaves: Queue::default(),
+            candidates: Candidates::default(),
+            distances: Vec::new(),
+            places: Vec::new(),
+            starts: [0; MAX_LINES + 3],
+            hits: Vec::new(),
+            close: [false; MAX_LINES],
+        }
+    }
+}
+
+impl AllHitsScratch {
+    /// The hits found, line by line, in order of distance.
+    pub(crate) fn hits(&self) -> &[Hit] {
+        &self.hits[..self.starts[MAX_LINES] as usize]
+    }
+
+    /// Drops hits: those of each line, by its number, for which `keeps` is false.
+    pub(crate) fn retain(&mut self, lines: usize, mut keeps: impl FnMut(usize, &Hit) -> bool) {
+        let (mut from, mut kept) = (0, 0);
+        for line in 0..lines {
+            let to = self.starts[line + 1] as usize;
+            for i in from..to {
+                let hit = self.hits[i];
+                self.hits[kept] = hit;
+                kept += usize::from(keeps(line, &hit));
+            }
+            from = to;
+            self.starts[line + 1] = kept as u32;
+        }
+        self.starts[lines..=MAX_LINES].fill(kept as u32);
+    }
+}
+
+/// Finds all hits of (infinite) lines, at most [`MAX_LINES`] of them; of parts of lines, all hits in the part and some that lie close
+/// to it.
+pub(crate) struct AllHits<'a, P> {
+    pub(crate) grid: &'a Grid,
+    pub(crate) tree: &'a Tree,
+    pub(crate) lines: &'a [P],
+    pub(crate) scratch: &'a mut AllHitsScratch,
+}
+
+/// How much longer than its range the searched part of a line is, on both sides \[steps of the grid\]: hits in contact with those in the
+/// range are found, too.
+const SLACK: f64 = 2.0 * CONTACT;
+
+impl<P: Part> Kernel for AllHits<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<B: SimdBackend>(self, backend: B) {
+        let Self { grid, tree, lines, scratch } = self;
+        let AllHitsScratch { lines: traced, spans, nodes, leaves, candidates, .. } = scratch;
+        traced.clear();
+        spans.clear();
+        let (mut waiting, mut reached) = (0, 0);
+        let root = &tree.nodes[0];
+        let leaf = backend.highest_bits(&root.children);
+        for (part, number) in lines.iter().zip(0u8..) {
+            // Lines that pass far from the scene meet nothing.
+            let line = grid.line(part.line()).unwrap_or(GridLine::far());
+            let boxes = LineF32::new(&line);
+            traced.push((line, boxes));
+            let [mut near, mut far] = root.slabs(backend, &boxes);
+            if P::HAS_ENDS {
+                let TRange { start, end } = part.range();
+                let span = Span::new(grid.steps(start) - line.start, grid.steps(end) - line.start, SLACK);
+                spans.push(span);
+                near = near.max(backend.splat_node(span.from));
+                far = far.min(backend.splat_node(span.to));
+            }
+            let met = near.mask_le(far);
+            waiting = nodes.add(backend, waiting, &root.children, met & !leaf, number);
+            reached = leaves.add(backend, reached, &root.children, met & leaf, number);
+        }
+        let mut next = 0;
+        while next < waiting {
+            tree.prefetch(nodes.ahead(next));
+            let (node, line) = (&tree.nodes[nodes.items[next] as usize], nodes.lines[next]);
+            next += 1;
+            let [mut near, mut far] = node.slabs(backend, &traced[usize::from(line)].1);
+            if P::HAS_ENDS {
+                let Span { from, to } = spans[usize::from(line)];
+                near = near.max(backend.splat_node(from));
+                far = far.min(backend.splat_node(to));
+            }
+            let met = near.mask_le(far);
+            let leaf = backend.highest_bits(&node.children);
+            waiting = nodes.add(backend, waiting, &node.children, met & !leaf, line);
+            reached = leaves.add(backend, reached, &node.children, met & leaf, line);
+        }
+        let mut count = 0;
+        for i in 0..reached {
+            tree.prefetch(leaves.ahead(i));
+            let (number, line) = ((leaves.items[i] & !LEAF) as usize, leaves.lines[i]);
+            let span = if P::HAS_ENDS { Some(spans[usize::from(line)]) } else { None };
+            let mask = tree.leaves[number].candidates(backend, &traced[usize::from(line)].1, span);
+            count = candidates.found.add_range(backend, count, tree.firsts[number], mask, line);
+        }
+        candidates.prefetch(count, tree);
+        candidates.test(backend, count, tree, traced);
+        sort(backend, grid, tree, count, scratch);
+    }
+}
+
+/// Turns crossings into hits, and sorts them by line and distance.
+#[inline(always)]
+fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scratch: &mut AllHitsScratch) {
+    let AllHitsScratch { lines, candidates, distances, places, starts, hits, close, .. } = scratch;
+    // Counting sort by line: while hits are added, each start moves to where the next line starts. Candidates that are not crossed
+    // come behind all lines.
+    starts.fill(0);
+    candidates.found.lines[..count].iter().for_each(|&line| starts[usize::from(line) + 2] += 1);
+    for line in 2..starts.len() {
+        starts[line] += starts[line - 1];
+    }
+    close.fill(false);
+    let nothing =
+        Hit { t: 0.0, triangle: TriangleId(0), point: Barycentric { v: 0.0, w: 0.0 }, side: Side::Back };
+    if hits.len() < count {
+        hits.resize(count, nothing);
+        places.resize(count, 0);
+        distances.resize(count + LEAF_WIDTH, 0.0);
+    }
+    candidates.locate(count);
+    let candidates = &*candidates;
+    let of_lines = &candidates.found.lines[..count];
+    let t = &candidates.distances()[..count];
+    let places = &mut places[..count];
+    for i in 0..count {
+        let next = &mut starts[usize::from(of_lines[i]) + 1];
+        distances[*next as usize] = t[i];
+        places[i] = *next;
+        *next += 1;
+    }
+    for i in 0..count {
+        let line = usize::from(of_lines[i]);
+        let Some((grid_line, _)) = lines.get(line) else { continue };
+        let (start, end, place) = (starts[line] as usize, starts[line + 1] as usize, places[i] as usize);
+        let mine = backend.load_f64(&[t[i]; LEAF_WIDTH]);
+        let (mut rank, mut first, mut near) = (0, start, 0);
+        while first < end {
+            let some = distances[first..].first_chunk().map_or(mine, |some| backend.load_f64(some));
+            let of_line = u32::MAX >> (32 - (end - first).min(LEAF_WIDTH));
+            // Bits of this crossing and of those found before it, if they are among these.
+            let this = 1u32.checked_shl(place.wrapping_sub(first).min(32) as u32).unwrap_or(0);
+            let earlier = if place < first { 0 } else { this.wrapping_sub(1) };
+            // Of equal ones, the one found first comes first.
+            let (before, not_after) = (some.mask_lt(mine), some.mask_le(mine));
+            rank += ((before | (not_after & earlier)) & of_line).count_ones() as usize;
+            near |= not_after & mine.mask_le(some.add(mine.splat(CLOSE))) & of_line & !this;
+            first += LEAF_WIDTH;
+        }
+        close[line] |= near != 0;
+        hits[start + rank] = candidates.crossing(i, tree).hit(grid, grid_line);
+    }
+}
+
+/// Distance \[steps of the grid\] within which hits may be in contact.
+const CLOSE: f64 = 1.001 * CONTACT;
