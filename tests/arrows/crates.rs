@@ -1,7 +1,5 @@
 //! The arrows between the crates point downward, and only along the lines of the design.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use std::process::Command;
 
 use serde_json::Value;
