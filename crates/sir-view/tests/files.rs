@@ -125,6 +125,27 @@ fn tables_are_read_back_to_the_last_bit() {
 }
 
 #[test]
+fn tables_of_other_programs_are_read() {
+    let written = table(&scene(), Subdivision::PerFace);
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("t.csv");
+    written.write_csv(&path).unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.starts_with("patch,triangle,area,") && !text.contains(['"', '\r', ' ']), "{text}");
+    let quoted: Vec<String> =
+        text.lines().map(|line| format!("\"{}\" ", line.replace(',', "\", \""))).collect();
+    for other in [
+        text.replace('\n', "\r\n"),
+        format!("\u{feff}{}", text.replace(',', " , ")),
+        text.replace('\n', ",note\n\n   \n"),
+        quoted.join("\n").replace(" \"", "\""),
+    ] {
+        fs::write(&path, &other).unwrap();
+        assert_eq!(Table::read(&path).unwrap(), written, "{other}");
+    }
+}
+
+#[test]
 fn a_broken_table_names_its_fault() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("broken");

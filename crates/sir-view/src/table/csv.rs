@@ -1,45 +1,46 @@
 //! Tables as comma-separated values.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, Read, Write};
 use std::path::Path;
+
+use csv::{ReaderBuilder, StringRecord, Trim, Writer};
 
 use crate::error::ViewError;
 use crate::table::row::{COLUMNS, Row, bad_value, checked, row};
 
 pub(super) fn write(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "{}", COLUMNS.join(","))?;
+    let mut csv = Writer::from_writer(out);
+    csv.write_record(COLUMNS)?;
     for row in rows {
-        write!(out, "{},{}", row.patch, row.triangle)?;
+        csv.write_field(row.patch.to_string())?;
+        csv.write_field(row.triangle.to_string())?;
         for x in row.numbers() {
             // The debug form is the shortest that reads back to the same number, with an exponent if that is short.
-            write!(out, ",{x:?}")?;
+            csv.write_field(format!("{x:?}"))?;
         }
-        writeln!(out)?;
+        csv.write_record(None::<&[u8]>)?;
     }
-    Ok(())
+    csv.flush()
 }
 
-pub(super) fn read(path: &Path, file: impl BufRead) -> Result<Vec<Row>, ViewError> {
-    let mut lines = file.lines();
-    let header = match lines.next() {
-        Some(line) => line.map_err(ViewError::reading(path))?,
-        None => String::new(),
-    };
-    let names: Vec<&str> = header.trim_start_matches('\u{feff}').split(',').map(str::trim).collect();
+pub(super) fn read(path: &Path, file: impl Read) -> Result<Vec<Row>, ViewError> {
+    let failed = |error: csv::Error| ViewError::reading(path)(error.into());
+    let mut csv = ReaderBuilder::new().flexible(true).trim(Trim::All).from_reader(file);
+    let names = csv.headers().map_err(failed)?;
     let mut places = [0; COLUMNS.len()];
     for (place, column) in places.iter_mut().zip(COLUMNS) {
-        *place = names.iter().position(|&name| name == column).ok_or_else(|| ViewError::NotATable {
+        *place = names.iter().position(|name| name == column).ok_or_else(|| ViewError::NotATable {
             path: path.to_owned(),
             why: format!("its first line does not name the column {column}; expected {}", COLUMNS.join(",")),
         })?;
     }
     let mut rows = Vec::new();
-    for (number, line) in (1..).zip(lines) {
-        let line = line.map_err(ViewError::reading(path))?;
-        if line.trim().is_empty() {
+    let mut fields = StringRecord::new();
+    while csv.read_record(&mut fields).map_err(failed)? {
+        // A line of spaces.
+        if fields.iter().all(str::is_empty) {
             continue;
         }
-        let fields: Vec<&str> = line.split(',').map(str::trim).collect();
         let mut values = [0.0; COLUMNS.len()];
         for (column, &place) in places.iter().enumerate() {
             let value = match fields.get(place) {
@@ -49,7 +50,7 @@ pub(super) fn read(path: &Path, file: impl BufRead) -> Result<Vec<Row>, ViewErro
                     Err(_) => Err(format!("\"{field}\" is not a number")),
                 },
             };
-            values[column] = value.map_err(|why| bad_value(path, number, column, why))?;
+            values[column] = value.map_err(|why| bad_value(path, rows.len() + 1, column, why))?;
         }
         rows.push(row(&values));
     }
