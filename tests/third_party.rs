@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use sir::geom::{LoadOptions, Rgb, Side, load};
 use sir::lines::Domain;
 use sir::mesh::Subdivision;
-use sir::parallel::{Crew, batches, first_shot};
-use sir::radiosity::Model;
+use sir::parallel::{Executor, Start};
+use sir::radiosity::{BatchSettings, Batches, FirstShot, Model, ShotSettings};
 
 /// The folder of a scene.
 fn scene_folder(name: &str) -> Option<PathBuf> {
@@ -81,10 +81,11 @@ fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
     let (local, global) = effort.lines;
     let domain = Domain::hull(model.scene.vertices());
     let one = |seed| {
-        let crew = &mut Crew::default();
-        let shot = first_shot(model, local, seed, crew, None).unwrap().outcome;
-        let solution =
-            batches(model, shot, global, domain.clone(), seed, crew, None).unwrap().outcome.solution;
+        let executor = &mut Executor::default();
+        let settings = ShotSettings::new(model, local, seed);
+        let shot = executor.run::<FirstShot<'_>>(settings, Start::Fresh(())).unwrap().outcome;
+        let settings = BatchSettings::new(model, domain.clone(), global, seed);
+        let solution = executor.run::<Batches<'_>>(settings, Start::Fresh(shot)).unwrap().outcome.solution;
         let mut radiosity = vec![Rgb::ZERO; model.scene.triangles().len()];
         model.mesh.for_each_side(|t, _, side, id| {
             if side == Side::Front {

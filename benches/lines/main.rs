@@ -16,9 +16,12 @@ use std::time::Instant;
 
 use sir::accel::{Accel, Ray};
 use sir::geom::Scene;
-use sir::lines::{Domain, Stage, Streams, cosine_direction, point_on_triangle};
+use sir::lines::{Domain, Stage as Purpose, Streams, cosine_direction, point_on_triangle};
 use sir::mesh::Subdivision;
-use sir::radiosity::{Batches, Books, FirstShot, Model, Segments};
+use sir::radiosity::{
+    AnyOrder, BatchSettings, Batches, FirstShot, Model, OneWorker, Segments, ShotSettings, Stage, StageTotals,
+    run_stage,
+};
 
 use embree::{Embree, Peer, Quality, RayHit};
 
@@ -130,7 +133,7 @@ fn rates(name: &str, scene: Scene, embree: Option<&Embree>, options: &Options) {
     let all = embree.map(|e| e.scene(scene, Quality::Medium, true));
     let cosine = cosine_rays(scene, options.lines);
     compare_closest(name, "(a) cosine rays", &model.accel, &cosine, closest.as_ref(), options.rounds);
-    let shot = FirstShot::new(&model, options.lines, 1).unwrap();
+    let shot = FirstShot::begin(ShotSettings::new(&model, options.lines, 1), (), &OneWorker).unwrap();
     let rays: Vec<Ray> = (0..options.lines).map(|i| shot.ray(i)).collect();
     compare_closest(name, "(b) first-shot rays", &model.accel, &rays, closest.as_ref(), options.rounds);
     compare_all(name, &model, options.lines, all.as_ref(), options.rounds);
@@ -142,7 +145,7 @@ fn cosine_rays(scene: &Scene, rays: u64) -> Vec<Ray> {
     for i in 1..areas.len() {
         areas[i] += areas[i - 1];
     }
-    let streams = Streams::new(1, Stage::PROBE);
+    let streams = Streams::new(1, Purpose::PROBE);
     (0..rays)
         .map(|i| {
             let mut stream = streams.line(i);
@@ -199,7 +202,7 @@ fn compare_closest(
 fn compare_all(name: &str, model: &Model, lines: u64, peer: Option<&Peer<'_>>, rounds: usize) {
     let sphere = model.scene.bounding_sphere();
     let domain = Domain::Sphere(sphere);
-    let streams = Streams::new(1, Stage::GLOBAL);
+    let streams = Streams::new(1, Purpose::GLOBAL);
     let lines: Vec<_> = (0..lines).map(|i| domain.line(streams.line(i).point())).collect();
     let (mut hits, mut odd) = (0, 0);
     model.accel.tracer().all_hits_each(&lines, |found| {
@@ -256,7 +259,7 @@ fn patches(options: &Options) {
         let few = scene.triangles().len() as u64;
         let models = [few, 10 * few].map(|n| Model::new(scene.clone(), Subdivision::Patches(n)).unwrap());
         let domain = Domain::Sphere(scene.bounding_sphere());
-        let streams = Streams::new(1, Stage::GLOBAL);
+        let streams = Streams::new(1, Purpose::GLOBAL);
         let lines: Vec<_> = (0..options.lines).map(|i| domain.line(streams.line(i).point())).collect();
         let mut sides = 0;
         let mut find = |model: &Model| {
@@ -267,16 +270,14 @@ fn patches(options: &Options) {
             });
         };
         let mut stages = models.each_ref().map(|model| {
-            let shot = FirstShot::new(model, 100_000, 1).unwrap();
-            let (tally, mut books) = (shot.tally(1), Books::default());
-            shot.trace(0, 0..100_000, &tally, &mut books);
-            let shot = shot.finish(tally, books).unwrap();
-            let mut batches = Batches::new(model, shot, options.lines, domain.clone(), 1, 1);
-            batches.parts(1).for_each(|mut part| part.open());
-            batches
+            let shot = run_stage::<FirstShot<'_>>(ShotSettings::new(model, 100_000, 1), ()).unwrap();
+            let settings = BatchSettings::new(model, domain.clone(), options.lines, 1);
+            Batches::begin(settings, shot, &OneWorker).unwrap()
         });
         let [one, ten] = &mut stages;
-        let exchange = |stage: &Batches<'_>| stage.trace(0, 0..options.lines, &mut Books::default());
+        let exchange = |stage: &Batches<'_>| {
+            stage.trace(0, &mut AnyOrder, 0..options.lines, &mut StageTotals::default());
+        };
         let mut find_few = || find(&models[0]);
         let few_times = by_turns(options.rounds, &mut [&mut find_few, &mut || exchange(one)]);
         let mut find_many = || find(&models[1]);
@@ -307,30 +308,17 @@ fn experiment(embree: Option<&Embree>, options: &Options) {
         let model = Model::new(scene, Subdivision::Patches(patches)).unwrap();
         let (local, global) = (options.lines, options.lines * 13 / 10);
         let domain = Domain::hull(model.scene.vertices());
-        let shoot = || {
-            let stage = FirstShot::new(&model, local, 1).unwrap();
-            let (tally, mut books) = (stage.tally(1), Books::default());
-            stage.trace(0, 0..local, &tally, &mut books);
-            stage.finish(tally, books).unwrap()
-        };
+        let shoot = || run_stage::<FirstShot<'_>>(ShotSettings::new(&model, local, 1), ()).unwrap();
         let shot = shoot();
         let transport = || {
-            let mut stage = Batches::new(&model, shot.clone(), global, domain.clone(), 1, 1);
-            let mut books = Books::default();
-            loop {
-                stage.parts(1).for_each(|mut part| part.open());
-                stage.trace(0, stage.lines(), &mut books);
-                let totals = stage.parts(1).map(|mut part| part.close()).next().unwrap();
-                if !stage.advance(totals) {
-                    break;
-                }
-            }
-            drop(stage.finish(books).unwrap());
+            let settings = BatchSettings::new(&model, domain.clone(), global, 1);
+            drop(run_stage::<Batches<'_>>(settings, shot.clone()).unwrap());
         };
         let (mut sum, mut hits) = (0, 0);
         let peers = embree.map(|e| {
-            let (stage, streams) =
-                (FirstShot::new(&model, local, 1).unwrap(), Streams::new(1, Stage::GLOBAL));
+            let settings = ShotSettings::new(&model, local, 1);
+            let stage = FirstShot::begin(settings, (), &OneWorker).unwrap();
+            let streams = Streams::new(1, Purpose::GLOBAL);
             let rays: Vec<_> = (0..local).map(|i| RayHit::new(&stage.ray(i).line, 1e-5)).collect();
             let lines = (0..global).map(|i| RayHit::new(&domain.line(streams.line(i).point()), 0.0));
             let lines: Vec<_> = lines.collect();
@@ -376,7 +364,7 @@ fn growth(embree: Option<&Embree>, options: &Options) {
         let accel = accel.unwrap();
         let rays = cosine_rays(&scene, options.lines / 4);
         let domain = Domain::Sphere(scene.bounding_sphere());
-        let streams = Streams::new(1, Stage::GLOBAL);
+        let streams = Streams::new(1, Purpose::GLOBAL);
         let lines: Vec<_> = (0..options.lines / 4).map(|i| domain.line(streams.line(i).point())).collect();
         let n = rays.len() as f64;
         let mut sum = 0;

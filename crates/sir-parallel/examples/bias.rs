@@ -13,8 +13,10 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
-use sir_parallel::{Crew, batches, first_shot, multipath};
-use sir_radiosity::{Model, MultipathSettings, Shot, Transported};
+use sir_parallel::{Executor, Start};
+use sir_radiosity::{
+    BatchSettings, Batches, FirstShot, Model, Multipath, MultipathSettings, Shot, ShotSettings, Transported,
+};
 
 /// Crossings of a patch by all lines together.
 const CROSSINGS: u64 = 2560;
@@ -69,14 +71,17 @@ fn measure(model: &Model, reflectance: f64, workers: usize) -> Result<Row, Box<d
     let domain = Domain::Sphere(model.scene.bounding_sphere());
     // Every line crosses two patches.
     let lines = CROSSINGS * model.mesh.side_count() as u64 / 2;
-    let crew = &mut Crew::of(NonZeroUsize::new(workers).unwrap_or(NonZeroUsize::MIN));
-    let shot = first_shot(model, 4_000_000, 1, crew, None)?.outcome;
+    let executor = &mut Executor::new(NonZeroUsize::new(workers).unwrap_or(NonZeroUsize::MIN));
+    let settings = ShotSettings::new(model, 4_000_000, 1);
+    let shot = executor.run::<FirstShot<'_>>(settings, Start::Fresh(()))?.outcome;
     let mut replicas = |tail| {
-        let settings = MultipathSettings { lines, tail, replicas: workers as u64, domain: domain.clone() };
-        multipath(model, shot.clone(), settings, 1, crew, None)
+        let settings = MultipathSettings::new(model, domain.clone(), lines, 1);
+        let settings = MultipathSettings { tail, replicas: workers as u64, ..settings };
+        executor.run::<Multipath<'_>>(settings, Start::Fresh(shot.clone()))
     };
     let (published, tail) = (replicas(0)?.outcome, replicas(lines / 10)?.outcome);
-    let frozen = batches(model, shot.clone(), lines, domain.clone(), 1, crew, None)?.outcome;
+    let settings = BatchSettings::new(model, domain, lines, 1);
+    let frozen = executor.run::<Batches<'_>>(settings, Start::Fresh(shot.clone()))?.outcome;
     let runs = [&published, &tail, &frozen];
     let bias = runs.map(|run| bias(&shot, run, reflectance));
     let noise = runs.map(|run| noise(model, &shot, run));

@@ -6,8 +6,8 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
-use sir_parallel::{Crew, Observer, batches, first_shot};
-use sir_radiosity::Model;
+use sir_parallel::{Executor, Observer, Start};
+use sir_radiosity::{BatchSettings, Batches, FirstShot, Model, ShotSettings};
 
 /// Prints a line at every tenth of a stage.
 struct Tenths(u64);
@@ -23,17 +23,18 @@ impl Observer for Tenths {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut builder = SceneBuilder::new();
-    let grey = Material::diffuse("grey", Rgb::new(0.5, 0.8, 0.9)).emitting(Rgb::ONE);
-    let grey = builder.add_material(grey);
-    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
+    let gray = Material::diffuse("gray", Rgb::new(0.5, 0.8, 0.9)).emitting(Rgb::ONE);
+    let gray = builder.add_material(gray);
+    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [gray; 6], Facing::Inward);
     let model = Model::new(builder.build()?.scene, Subdivision::Patches(600))?;
 
-    let mut crew = Crew::default().watched_by(Tenths(0));
     let (lines, seed) = (1_000_000, 1);
-    let shot = first_shot(&model, lines, seed, &mut crew, None)?.outcome;
-    let domain = Domain::hull(model.scene.vertices());
-    let mut crew = Crew::default().watched_by(Tenths(0));
-    let run = batches(&model, shot, lines, domain, seed, &mut crew, None)?;
+    let mut executor = Executor::default().watched_by(Tenths(0));
+    let settings = ShotSettings::new(&model, lines, seed);
+    let shot = executor.run::<FirstShot<'_>>(settings, Start::Fresh(()))?.outcome;
+    let mut executor = Executor::default().watched_by(Tenths(0));
+    let settings = BatchSettings::new(&model, Domain::hull(model.scene.vertices()), lines, seed);
+    let run = executor.run::<Batches<'_>>(settings, Start::Fresh(shot))?;
     let mean = run.outcome.solution.irradiance.iter().sum::<Rgb>() / model.mesh.side_count() as f64;
     println!(
         "mean irradiance {mean:.4}, exact [2, 5, 10], in {:.2} s and {} batches",

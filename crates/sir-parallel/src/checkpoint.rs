@@ -16,7 +16,7 @@ use crate::communicator::Communicator;
 use crate::error::CheckpointError;
 
 /// First line of a checkpoint: what it is, and the version of its layout.
-const MAGIC: &str = "SIR checkpoint 3";
+const MAGIC: &str = "SIR checkpoint 4";
 
 /// Work that is worth a checkpoint at the end of a stage.
 const AT_THE_END: Duration = Duration::from_secs(30);

@@ -38,9 +38,9 @@ pub trait Communicator {
 
 /// One process by itself.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Alone;
+pub struct SingleProcess;
 
-impl Communicator for Alone {
+impl Communicator for SingleProcess {
     fn rank(&self) -> usize {
         0
     }

@@ -37,7 +37,7 @@ const STARTED_BY_MPI: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RAN
 #[cfg(feature = "mpi")]
 pub fn connect() -> Result<Box<dyn Communicator>, ConnectError> {
     if STARTED_BY_MPI.iter().all(|variable| std::env::var_os(variable).is_none()) {
-        return Ok(Box::new(crate::communicator::Alone));
+        return Ok(Box::new(crate::communicator::SingleProcess));
     }
     crate::mpi::World::new().map(|world| Box::new(world) as _).ok_or(ConnectError::Initialise)
 }
@@ -56,5 +56,5 @@ pub fn connect() -> Result<Box<dyn Communicator>, ConnectError> {
             return Err(ConnectError::NoMpi { size });
         }
     }
-    Ok(Box::new(crate::communicator::Alone))
+    Ok(Box::new(crate::communicator::SingleProcess))
 }

@@ -13,8 +13,8 @@ pub trait Observer {
 
 /// An observer that says nothing and lets everything finish.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Silent;
+pub struct NoProgress;
 
-impl Observer for Silent {
+impl Observer for NoProgress {
     fn progress(&mut self, _done: u64, _total: u64) {}
 }

@@ -11,7 +11,10 @@ use std::time::Instant;
 use sir_geom::{LoadOptions, load};
 use sir_lines::{ConvexHull, Domain};
 use sir_mesh::Subdivision;
-use sir_radiosity::{Batches, Books, Counts, FirstShot, Model};
+use sir_radiosity::{
+    AnyOrder, BatchSettings, Batches, Counts, FirstShot, Model, OneWorker, ShotSettings, Stage, StageTotals,
+    run_stage,
+};
 
 const CROSSINGS: f64 = 2e6;
 const TRIES: usize = 7;
@@ -35,10 +38,7 @@ fn measure(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let hull_time = start.elapsed().as_secs_f64();
     let model = Model::new(scene, Subdivision::Patches(100_000))?;
     let scene = &model.scene;
-    let shot = FirstShot::new(&model, 100_000, 1)?;
-    let (tally, mut books) = (shot.tally(1), Books::default());
-    shot.trace(0, 0..100_000, &tally, &mut books);
-    let shot = shot.finish(tally, books)?;
+    let shot = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, 100_000, 1), ())?;
 
     let domains = [
         Domain::Sphere(scene.bounding_sphere()),
@@ -50,12 +50,12 @@ fn measure(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     for _ in 0..TRIES {
         for (k, domain) in domains.iter().enumerate() {
             let lines = (CROSSINGS / domain.forecast(1).crossings(scene.total_area())) as u64;
-            let mut transport = Batches::new(&model, shot.clone(), lines, domain.clone(), 1, 1);
-            transport.parts(1).for_each(|mut part| part.open());
-            let (start, mut books) = (Instant::now(), Books::default());
-            transport.trace(0, 0..lines, &mut books);
+            let settings = BatchSettings::new(&model, domain.clone(), lines, 1);
+            let transport = Batches::begin(settings, shot.clone(), &OneWorker)?;
+            let (start, mut totals) = (Instant::now(), StageTotals::default());
+            transport.trace(0, &mut AnyOrder, 0..lines, &mut totals);
             times[k] = f64::min(times[k], start.elapsed().as_secs_f64());
-            counts[k] = books.counts;
+            counts[k] = totals.counts;
         }
     }
     let each = |value: &dyn Fn(f64, &Counts) -> f64, digits: usize| {

@@ -9,7 +9,7 @@ use glam::DVec3;
 use sir_geom::shapes::{Facing, cuboid};
 use sir_geom::{Light, LightKind, Material, Rgb, SceneBuilder, Spread};
 use sir_mesh::Subdivision;
-use sir_radiosity::{Books, FirstShot, Model, Sensor, SensorSettings, Sensors, Solution};
+use sir_radiosity::{FirstShot, Gatherer, Model, Sensor, SensorSettings, ShotSettings, Solution, run_stage};
 
 const POWER: f64 = 1000.0;
 const LINES: u64 = 1_000_000;
@@ -37,10 +37,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         };
         let model = room(&lamps)?;
         let start = Instant::now();
-        let shot = FirstShot::new(&model, LINES, 1)?;
-        let (tally, mut books) = (shot.tally(1), Books::default());
-        shot.trace(0, 0..LINES, &tally, &mut books);
-        let solution = shot.finish(tally, books)?.solution(&model);
+        let shot = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, LINES, 1), ())?;
+        let solution = shot.solution(&model);
         let first = start.elapsed().as_secs_f64();
         let [few, many] = [64, 16_384].map(|rays| measure(&model, &solution, rays));
         let times = [first, few.0, many.0];
@@ -100,7 +98,7 @@ fn room(lamps: &Lamps) -> Result<Model, Box<dyn std::error::Error>> {
 /// Seconds per sensor, and the mean relative error.
 fn measure(model: &Model, solution: &Solution, rays: u64) -> (f64, f64) {
     // What is made once for all sensors does not count.
-    let sensors = Sensors::new(model, solution, SensorSettings { rays, error: 0.0 }, 1);
+    let sensors = Gatherer::new(model, solution, SensorSettings { rays, error: 0.0 }, 1);
     let start = Instant::now();
     let mut error = 0.0;
     for i in 0..POINTS {

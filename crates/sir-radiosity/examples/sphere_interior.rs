@@ -7,7 +7,7 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
-use sir_radiosity::{Books, FirstShot, Model, Multipath, MultipathSettings, sources};
+use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings, ShotSettings, run_stage, sources};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let reflectance = 0.7;
@@ -21,15 +21,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Model::new(builder.build()?.scene, Subdivision::PerTriangle)?;
 
     let (seed, lines) = (1, 2_000_000);
-    let shot = FirstShot::new(&model, lines, seed)?;
-    let (tally, mut books) = (shot.tally(1), Books::default());
-    shot.trace(0, 0..lines, &tally, &mut books);
-    let domain = Domain::hull(model.scene.vertices());
-    let settings = MultipathSettings::new(lines, domain);
-    let multipath = Multipath::new(&model, shot.finish(tally, books)?, settings, seed, 1);
-    let mut books = Books::default();
-    multipath.trace(0, &mut multipath.replica(0), lines, &mut books);
-    let done = multipath.finish(books)?;
+    let shot = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, lines, seed), ())?;
+    let settings = MultipathSettings::new(&model, Domain::hull(model.scene.vertices()), lines, seed);
+    let done = run_stage::<Multipath<'_>>(settings, shot)?;
 
     let power: f64 = sources(&model.scene, &model.mesh).iter().map(|s| s.power.x).sum();
     let exact = power / (model.scene.total_area() * (1.0 - reflectance));

@@ -45,14 +45,14 @@ pub enum Emitter {
         around: Option<BoundingBox>,
     },
     /// The scene's sky, above the horizon.
-    Dome(Opening),
+    Dome(SkyAperture),
     /// The ground of the scene's sky.
-    Ground(Opening),
+    Ground(SkyAperture),
 }
 
 /// Where light from the sky is let in.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Opening {
+pub struct SkyAperture {
     /// What its lines pass through.
     pub through: BoundingBox,
     /// Those that meet this box do not count.
@@ -86,8 +86,8 @@ impl Emitter {
                     break from_outside(scene, lines.bounds(), line);
                 }
             },
-            Self::Dome(opening) => from_sky(scene, opening, stream, Sky::share),
-            Self::Ground(opening) => from_sky(scene, opening, stream, |sky, towards| {
+            Self::Dome(aperture) => from_sky(scene, aperture, stream, Sky::share),
+            Self::Ground(aperture) => from_sky(scene, aperture, stream, |sky, towards| {
                 f64::from(u8::from(towards.dot(sky.up()) <= 0.0))
             }),
         }
@@ -117,22 +117,22 @@ pub(crate) fn point_on_surface(
     point
 }
 
-/// A ray from the sky: a uniform one through an opening that was kept with the probability `share`.
+/// A ray from the sky: a uniform one through an aperture that was kept with the probability `share`.
 fn from_sky(
     scene: &Scene,
-    opening: &Opening,
+    aperture: &SkyAperture,
     stream: &mut Stream,
     share: impl Fn(&Sky, DVec3) -> f64,
 ) -> Ray {
-    let bounds = Domain::Box(opening.through);
+    let bounds = Domain::Box(aperture.through);
     loop {
         let line = bounds.line(stream.point());
-        if opening.around.is_some_and(|around| around.meets(&line)) {
+        if aperture.around.is_some_and(|around| around.meets(&line)) {
             continue;
         }
         // Only a scene with a sky has such sources.
         if scene.sky().is_none_or(|sky| stream.unit() < share(sky, -line.direction)) {
-            break from_outside(scene, opening.through, line);
+            break from_outside(scene, aperture.through, line);
         }
     }
 }

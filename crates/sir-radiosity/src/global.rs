@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use sir_geom::Line;
+use sir_lines::Domain;
 use sir_mesh::SideId;
 
-use crate::balance::Counts;
 use crate::model::Model;
 use crate::segments::{End, Segment, Segments};
+use crate::totals::Counts;
 
 /// How many records ahead memory is asked for.
 pub(crate) const AHEAD: usize = 40;
@@ -61,4 +62,9 @@ pub(crate) fn trace(
         });
         first = end;
     }
+}
+
+/// Returns a number that tells the domains of one scene apart: their surface, to the last bit.
+pub(crate) fn domain_identity(domain: &Domain) -> u64 {
+    domain.surface().to_bits()
 }

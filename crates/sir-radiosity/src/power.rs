@@ -4,8 +4,7 @@ use std::ops::{Add, AddAssign, Sub};
 
 use sir_geom::Rgb;
 
-use crate::state::Visitor;
-use crate::state::visit_float;
+use crate::visitor::{Visitor, visit_float, visit_slice};
 
 /// Power per band in whole quanta of a [`PowerUnit`].
 ///
@@ -70,6 +69,11 @@ impl Sub for Quanta {
     }
 }
 
+/// Shows power that every worker holds identically.
+pub(crate) fn visit_quanta(quanta: &mut [Quanta], visitor: &mut dyn Visitor) {
+    visit_slice(quanta, visitor, |quanta| quanta.0, Quanta);
+}
+
 /// The size of a quantum in watts: a power of two, so that converting costs no more than one rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerUnit {
@@ -88,6 +92,13 @@ impl PowerUnit {
         // The next power of two, by its exponent bits: exact, where `log2` is not.
         let exponent = ((ceiling.max(f64::MIN_POSITIVE).to_bits() >> 52) as i32) - 1023 + 1;
         Self { quantum: 2f64.powi((exponent - 62).max(-1000)) }
+    }
+
+    /// Returns the unit that [`visit`](Self::visit) has shown to the visitor who saved it.
+    pub(crate) fn restore(visitor: &mut dyn Visitor) -> Self {
+        let mut unit = Self { quantum: 1.0 };
+        unit.visit(visitor);
+        unit
     }
 
     /// Shows the unit to a visitor.

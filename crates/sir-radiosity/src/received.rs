@@ -3,8 +3,9 @@
 use sha2::{Digest, Sha256};
 
 use crate::power::Quanta;
-use crate::state::Visitor;
-use crate::state::{visit_floats, visit_quanta};
+use crate::power::visit_quanta;
+use crate::visitor::Visitor;
+use crate::visitor::visit_floats;
 
 /// Power received per side, with its variance.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,19 +5,19 @@
 //! errors of a single run leave out, such as noise that a patch inherits from its neighbours, is in there.
 //!
 //! The spread of few runs is itself uncertain: with `k` of them the deviation from the truth over the standard error
-//! follows Student's t distribution of `k − 1` degrees of freedom. With fewer than [`ENOUGH`] the variance is therefore the mean of
+//! follows Student's t distribution of `k − 1` degrees of freedom. With fewer than [`MIN_REPEATS`] the variance is therefore the mean of
 //! those that the runs state, over `k`.
 
 use std::ops::AddAssign;
 
-use crate::balance::{Balance, Counts};
 use crate::power::Quanta;
 use crate::received::Received;
-use crate::state::Visitor;
-use crate::state::{from_word, to_word, visit_counts, visit_slice};
+use crate::totals::{Balance, Counts};
+use crate::visitor::Visitor;
+use crate::visitor::{from_word, to_word, visit_counts, visit_slice};
 
 /// Repeats from which on errors come from their spread.
-pub const ENOUGH: u64 = 8;
+pub const MIN_REPEATS: u64 = 8;
 
 /// A sum of power over repeats, of which there may be too many for the 64 bits of [`Quanta`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,7 +84,7 @@ impl Repeats {
     /// Whether the errors come from the spread of the repeats, and not from what each of them states.
     #[must_use]
     pub fn have_spread(&self) -> bool {
-        self.count >= ENOUGH
+        self.count >= MIN_REPEATS
     }
 
     /// Adds one more repeat, in the order of their numbers: power adds up in any, squares are rounded.
@@ -145,21 +145,21 @@ impl Repeats {
 
 /// What the lines of one stage met, and where their power went, in all repeats so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RepeatedBooks {
+pub struct RepeatedTotals {
     counts: Counts,
     /// Emitted, absorbed, blocked, escaped, unshot.
     balance: [QuantaSum; 5],
-    made_up: QuantaSum,
+    extrapolated: QuantaSum,
 }
 
-impl RepeatedBooks {
+impl RepeatedTotals {
     /// Adds those of one more repeat.
-    pub fn add(&mut self, balance: &Balance, counts: Counts, made_up: Quanta) {
+    pub fn add(&mut self, balance: &Balance, counts: Counts, extrapolated: Quanta) {
         let Balance { emitted, absorbed, blocked, escaped, unshot } = *balance;
         let powers = [emitted, absorbed, blocked, escaped, unshot];
         self.balance.iter_mut().zip(powers).for_each(|(sum, power)| *sum += power);
         self.counts += counts;
-        self.made_up += made_up;
+        self.extrapolated += extrapolated;
     }
 
     /// What all lines met.
@@ -186,8 +186,8 @@ impl RepeatedBooks {
 
     /// The mean power made up for the unshot in `count` repeats.
     #[must_use]
-    pub fn mean_made_up(&self, count: u64) -> Quanta {
-        self.made_up.mean(count)
+    pub fn mean_extrapolated(&self, count: u64) -> Quanta {
+        self.extrapolated.mean(count)
     }
 
     /// Shows the sums to a visitor.
@@ -195,7 +195,12 @@ impl RepeatedBooks {
         let Counts { lines, empty, odd, crossings } = &mut self.counts;
         visit_counts([lines, empty, odd, crossings], visitor);
         visit_slice(&mut self.balance, visitor, |sum| sum.words(), QuantaSum::of_words);
-        visit_slice(std::slice::from_mut(&mut self.made_up), visitor, |sum| sum.words(), QuantaSum::of_words);
+        visit_slice(
+            std::slice::from_mut(&mut self.extrapolated),
+            visitor,
+            |sum| sum.words(),
+            QuantaSum::of_words,
+        );
     }
 }
 
@@ -244,26 +249,26 @@ mod tests {
 
     #[test]
     fn mean_balances_close() {
-        let mut books = RepeatedBooks::default();
+        let mut totals = RepeatedTotals::default();
         for k in 0..7 {
             let q = |x: i64| Quanta([x; 3]);
             let (absorbed, blocked, escaped, unshot) = (q(k * k), q(1 + k), q(5), q(-k));
             let emitted = absorbed + blocked + escaped + unshot;
             let balance = Balance { emitted, absorbed, blocked, escaped, unshot };
-            books.add(&balance, Counts { lines: 10, ..Counts::default() }, q(k));
+            totals.add(&balance, Counts { lines: 10, ..Counts::default() }, q(k));
         }
-        let mean = books.mean_balance(7);
+        let mean = totals.mean_balance(7);
         assert!(mean.closes(), "{mean:?}");
         assert_eq!((mean.absorbed.0[0], mean.escaped.0[0]), (13, 5));
-        assert_eq!((books.counts().lines, books.mean_made_up(7)), (70, Quanta([3; 3])));
+        assert_eq!((totals.counts().lines, totals.mean_extrapolated(7)), (70, Quanta([3; 3])));
     }
 
     #[test]
     fn a_balance_that_does_not_close_is_not_closed_by_the_mean() {
-        let mut books = RepeatedBooks::default();
+        let mut totals = RepeatedTotals::default();
         let balance = Balance { emitted: Quanta([7; 3]), absorbed: Quanta([3; 3]), ..Balance::default() };
-        books.add(&balance, Counts::default(), Quanta::ZERO);
-        assert!(!books.mean_balance(1).closes());
+        totals.add(&balance, Counts::default(), Quanta::ZERO);
+        assert!(!totals.mean_balance(1).closes());
     }
 
     #[test]

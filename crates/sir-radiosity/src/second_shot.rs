@@ -5,36 +5,54 @@
 //! see it. Local lines carry the same from everywhere. The brightest patches are those whose power is to all the power of the
 //! sources as the lines of this shot are to those of the first: then a line carries as much as a line of the first shot.
 
+use std::ops::Range;
+
 use sir_geom::{Rgb, Side};
-use sir_lines::{LocalLines, Stage};
+use sir_lines::Stage as Purpose;
 use sir_mesh::{PatchId, SideId};
 
-use crate::balance::Books;
 use crate::emitter::Emitter;
 use crate::error::SolveError;
-use crate::first_shot::{FirstShot, FirstShotTally, Shot};
-use crate::inside::Inside;
+use crate::focus_sides::FocusSides;
 use crate::model::Model;
 use crate::power::Quanta;
-use crate::sources::{Aimed, Source};
+use crate::shot::{Shot, ShotSettings};
+use crate::shot_lines::ShotLines;
+use crate::sources::{FocusedSources, Source};
+use crate::stage::{AnyOrder, Stage, Workers};
+use crate::tallies::{Counters, PatchTallies};
+use crate::totals::StageTotals;
+use crate::visitor::Visitor;
 
-/// The lines of a second shot.
-#[derive(Clone, Debug)]
+/// The second shot: lines from the brightest patches; with a focus, that of the first shot, from those in it. There are no lines
+/// if nothing reflects.
+#[derive(Debug)]
 pub struct SecondShot<'m> {
-    lines: FirstShot<'m>,
+    /// The outcome of the first shot.
+    first: Shot,
+    lines: ShotLines<'m>,
     /// The side that each source of the lines is, or is a part of.
     sides: Vec<SideId>,
+    tallies: PatchTallies,
 }
 
-impl<'m> SecondShot<'m> {
-    /// Shares lines among the brightest patches; with a focus, that of the first shot, among those in it. If none reflects, there are no lines.
-    #[must_use]
-    pub fn new(model: &'m Model, shot: &Shot, lines: impl Into<LocalLines>, seed: u64) -> Self {
-        let LocalLines { count: lines, focus } = lines.into();
+impl<'m> Stage for SecondShot<'m> {
+    type Settings = ShotSettings<'m>;
+    type Input = Shot;
+    type Outcome = Shot;
+    type Chain = AnyOrder;
+
+    fn identity(settings: &Self::Settings) -> Vec<u64> {
+        settings.identity(4)
+    }
+
+    fn begin(settings: Self::Settings, shot: Shot, workers: &dyn Workers) -> Result<Self, SolveError> {
+        let ShotSettings { model, lines, seed } = settings;
         let unshot = shot.unshot(model);
-        let total = shot.balance.emitted.total() * lines as f64 / shot.counts.lines.max(1) as f64;
-        let share = focus.map_or(1.0, |focus| Aimed::new(model, Some(&focus)).inner_share());
-        let bright = brightest(model, &unshot, &Inside::of(model, focus.as_ref()), total * share);
+        let total = shot.balance.emitted.total() * lines.count as f64 / shot.counts.lines.max(1) as f64;
+        let focus = lines.focus.as_ref();
+        let share = focus.map_or(1.0, |focus| FocusedSources::new(model, Some(focus)).inner_share());
+        let bright = brightest(model, &unshot, &FocusSides::of(model, focus), total * share);
         let (mut sources, mut sides) = (Vec::new(), Vec::new());
         for triangle in model.scene.triangle_ids() {
             let (corners, front) = (model.scene.corners(triangle), model.scene.normal(triangle));
@@ -55,43 +73,66 @@ impl<'m> SecondShot<'m> {
                 }
             }
         }
-        let lines = if sources.is_empty() { 0 } else { lines };
-        let lines = FirstShot::of(model, Aimed::plain(sources), shot.unit, lines, seed, Stage::SECOND_SHOT);
-        Self { lines, sides }
+        let count = if sources.is_empty() { 0 } else { lines.count };
+        let sources = FocusedSources::plain(sources);
+        let lines = ShotLines::new(model, sources, shot.unit, count, seed, Purpose::SECOND_SHOT);
+        let tallies = lines.tallies(workers.count());
+        Ok(Self { first: shot, lines, sides, tallies })
     }
 
-    /// The lines, which are traced as those of a first shot. There are none if nothing reflects.
-    #[must_use]
-    pub fn lines(&self) -> &FirstShot<'m> {
-        &self.lines
+    fn restore(
+        settings: Self::Settings,
+        workers: &dyn Workers,
+        visitor: &mut dyn Visitor,
+    ) -> Result<Self, SolveError> {
+        // Which patches are bright follows from the first shot.
+        let first = Shot::restore(settings.model, visitor);
+        let stage = Self::begin(settings, first, workers)?;
+        stage.tallies.visit(Counters::All, visitor);
+        Ok(stage)
     }
 
-    /// Closes the books once all lines are traced: the light of both shots, and what patches have still to send. `shot` is the
-    /// first one.
-    ///
-    /// # Errors
-    ///
-    /// If a tally overflowed.
-    pub fn finish(self, shot: Shot, tally: FirstShotTally, books: Books) -> Result<Shot, SolveError> {
-        let (Self { lines, sides }, Shot { received, sent, .. }) = (self, shot);
-        let shot = lines.add(received, tally, books)?;
-        let mut all = sent;
+    fn round(&self) -> Range<u64> {
+        0..self.lines.lines()
+    }
+
+    fn chain(&self, _number: u64) -> AnyOrder {
+        AnyOrder
+    }
+
+    fn trace(&self, worker: usize, _chain: &mut AnyOrder, lines: Range<u64>, totals: &mut StageTotals) {
+        self.lines.trace(worker, lines, &self.tallies, totals);
+    }
+
+    fn visit_round(&mut self, visitor: &mut dyn Visitor) {
+        self.tallies.visit(Counters::All, visitor);
+    }
+
+    fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.first.visit(visitor);
+        self.tallies.visit(Counters::All, visitor);
+    }
+
+    /// Returns the light of both shots, and what patches have still to send.
+    fn finish(self, totals: StageTotals) -> Result<Shot, SolveError> {
+        let Self { first: Shot { received, sent: mut all, .. }, lines, sides, tallies } = self;
+        let both = lines.add_to(received, &tallies, totals)?;
         for (side, power) in sides.into_iter().zip(lines.sent()) {
             match all.last_mut() {
                 Some((last, sum)) if *last == side => *sum += power,
                 _ => all.push((side, power)),
             }
         }
-        Ok(Shot { sent: all, ..shot })
+        Ok(Shot { sent: all, ..both })
     }
 }
 
-/// Which sides are the brightest ones `inside` that hold `total` together, or all that hold something.
-fn brightest(model: &Model, unshot: &[Quanta], inside: &Inside, total: f64) -> Vec<bool> {
+/// Returns, per side, whether it is one of the brightest in the focus that hold `total` together, or of all that hold something.
+fn brightest(model: &Model, unshot: &[Quanta], in_focus: &FocusSides, total: f64) -> Vec<bool> {
     let mut sides = Vec::new();
     model.mesh.for_each_side(|triangle, _, _, side| {
         let power = unshot[side.index()].total();
-        if power > 0.0 && inside.has(side) {
+        if power > 0.0 && in_focus.contains(side) {
             sides.push((power / model.area(triangle, side), power, side));
         }
     });

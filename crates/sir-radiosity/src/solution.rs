@@ -17,6 +17,12 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// Returns a solution without any light, of this number of sides.
+    #[must_use]
+    pub fn dark(sides: usize) -> Self {
+        Self { irradiance: vec![Rgb::ZERO; sides], error: vec![Rgb::ZERO; sides] }
+    }
+
     /// Irradiance is received power over covered area; `unit` is that of the power.
     #[must_use]
     pub fn new(model: &Model, received: &Received, unit: PowerUnit) -> Self {

@@ -4,7 +4,7 @@ use sir_geom::{LightKind, Rgb, Scene, Side};
 use sir_lines::{DENSEST, Focus, ParallelLines};
 use sir_mesh::{PatchId, PatchMesh};
 
-use crate::emitter::{Emitter, Opening};
+use crate::emitter::{Emitter, SkyAperture};
 use crate::model::Model;
 
 /// Something that emits.
@@ -37,9 +37,9 @@ pub fn sources(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
     }
     if let Some(sky) = scene.sky() {
         let areas = bounds.face_areas();
-        let opening = Opening { through: bounds, around: None };
-        sources.push(Source { emitter: Emitter::Dome(opening), power: sky.dome_through(areas) });
-        sources.push(Source { emitter: Emitter::Ground(opening), power: sky.ground_through(areas) });
+        let aperture = SkyAperture { through: bounds, around: None };
+        sources.push(Source { emitter: Emitter::Dome(aperture), power: sky.dome_through(areas) });
+        sources.push(Source { emitter: Emitter::Ground(aperture), power: sky.ground_through(areas) });
     }
     sources.retain(|source| source.power != Rgb::ZERO);
     sources
@@ -94,7 +94,7 @@ const AROUND: f64 = 1.0 / 64.0;
 
 /// Sources, and where more of their lines go.
 #[derive(Clone, Debug)]
-pub(crate) struct Aimed {
+pub(crate) struct FocusedSources {
     /// All sources; with a focus, light from outside is cut into what passes through it and what does not.
     pub(crate) sources: Vec<Source>,
     /// Which of them are in the focus.
@@ -103,7 +103,7 @@ pub(crate) struct Aimed {
     pub(crate) density: f64,
 }
 
-impl Aimed {
+impl FocusedSources {
     /// The sources of a scene, with so many lines for those in the focus that they have the share of all that it asks for. Within both kinds lines
     /// are in proportion to power. Where sources in the focus have that share of the power, all lines are alike.
     pub(crate) fn new(model: &Model, focus: Option<&Focus>) -> Self {
@@ -154,8 +154,8 @@ impl Aimed {
 fn split(scene: &Scene, source: Source, focus: &Focus) -> Vec<(Source, bool)> {
     let bounds = focus.bounds();
     let around = Some(bounds);
-    let beside = |around| Opening { through: scene.bounding_box(), around };
-    let opening = Opening { through: bounds, around: None };
+    let beside = |around| SkyAperture { through: scene.bounding_box(), around };
+    let aperture = SkyAperture { through: bounds, around: None };
     let [whole, inner] = [scene.bounding_box().face_areas(), bounds.face_areas()];
     // Shares of all bands are the same.
     let (through, passing, share) = match source.emitter {
@@ -170,11 +170,11 @@ fn split(scene: &Scene, source: Source, focus: &Focus) -> Vec<(Source, bool)> {
         }
         Emitter::Dome(_) => {
             let power = |areas| scene.sky().map_or(Rgb::ZERO, |sky| sky.dome_through(areas)).element_sum();
-            (Emitter::Dome(opening), Emitter::Dome(beside(around)), power(inner) / power(whole))
+            (Emitter::Dome(aperture), Emitter::Dome(beside(around)), power(inner) / power(whole))
         }
         Emitter::Ground(_) => {
             let share = inner.element_sum() / whole.element_sum();
-            (Emitter::Ground(opening), Emitter::Ground(beside(around)), share)
+            (Emitter::Ground(aperture), Emitter::Ground(beside(around)), share)
         }
     };
     match share {

@@ -9,7 +9,9 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{BoundingBox, Light, LightKind, Material, Rgb, SceneBuilder, Sky, SkyModel};
 use sir_lines::{Domain, Focus, GlobalLines, LocalLines};
 use sir_mesh::Subdivision;
-use sir_radiosity::{Batches, Books, FirstShot, Model, Shot, Totals, Transported, sources};
+use sir_radiosity::{
+    BatchSettings, Batches, FirstShot, Model, Shot, ShotSettings, Transported, run_stage, sources,
+};
 
 /// A black square metre in the middle of a black ground of 60 × 60 m, a hand above it, under a sky and the sun. A
 /// speck high above a corner of the ground, which nearly covers no sky, makes the box of the scene high: of the lines through the
@@ -37,25 +39,12 @@ fn square() -> (Model, Focus, f64) {
 }
 
 fn shoot(model: &Model, lines: u64, focus: Option<Focus>, seed: u64) -> Shot {
-    let shot = FirstShot::new(model, LocalLines { count: lines, focus }, seed).unwrap();
-    let (tally, mut books) = (shot.tally(1), Books::default());
-    shot.trace(0, 0..lines, &tally, &mut books);
-    shot.finish(tally, books).unwrap()
+    let lines = LocalLines { count: lines, focus };
+    run_stage::<FirstShot<'_>>(ShotSettings::new(model, lines, seed), ()).unwrap()
 }
 
-fn batches(model: &Model, shot: Shot, lines: u64, through: GlobalLines, seed: u64) -> Transported {
-    let mut transport = Batches::new(model, shot, lines, through, seed, 1);
-    let mut books = Books::default();
-    transport.parts(1).for_each(|mut part| part.open());
-    loop {
-        transport.trace(0, transport.lines(), &mut books);
-        let mut totals = Totals::default();
-        transport.parts(1).for_each(|mut part| totals += part.close());
-        if !transport.advance(totals) {
-            break transport.finish(books).unwrap();
-        }
-        transport.parts(1).for_each(|mut part| part.open());
-    }
+fn batches(model: &Model, shot: Shot, lines: u64, domain: GlobalLines, seed: u64) -> Transported {
+    run_stage::<Batches<'_>>(BatchSettings::new(model, domain, lines, seed), shot).unwrap()
 }
 
 /// Mean irradiance of the patches of a material, and its error if that of each patch is independent.

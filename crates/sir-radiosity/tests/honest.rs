@@ -14,7 +14,7 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::{Domain, seed_of_repeat};
 use sir_mesh::Subdivision;
-use sir_radiosity::{ENOUGH, Model, MultipathSettings, PowerUnit, Received, Repeats, Solution};
+use sir_radiosity::{MIN_REPEATS, Model, MultipathSettings, PowerUnit, Received, Repeats, Solution};
 
 const SEEDS: u64 = 200;
 
@@ -93,9 +93,9 @@ impl Exact {
         let settings = MultipathSettings {
             replicas: 2,
             tail: lines / 2,
-            ..MultipathSettings::new(lines, Domain::hull(self.model.scene.vertices()))
+            ..MultipathSettings::new(&self.model, Domain::hull(self.model.scene.vertices()), lines, seed)
         };
-        let all = replicas(&self.model, shot, settings, seed);
+        let all = replicas(shot, settings);
         (all.received, all.unit)
     }
 
@@ -103,7 +103,7 @@ impl Exact {
     fn repeats(&self, seed: u64) -> Outcome {
         let mut repeats = Repeats::new(self.model.mesh.side_count());
         let mut unit = None;
-        for repeat in 0..ENOUGH {
+        for repeat in 0..MIN_REPEATS {
             let (received, of) = self.batches(24, seed_of_repeat(seed, repeat));
             repeats.add(&received);
             unit = Some(of);

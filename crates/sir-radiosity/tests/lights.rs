@@ -11,7 +11,7 @@ use glam::DVec3;
 use sir_geom::shapes::{Facing, cuboid, quad};
 use sir_geom::{Light, LightKind, Rgb, SceneBuilder, Sky, SkyModel, Spread};
 use sir_mesh::Subdivision;
-use sir_radiosity::{Model, Shot, sources};
+use sir_radiosity::{FirstShot, Model, Shot, ShotSettings, run_stage, sources};
 
 const LINES: u64 = 400_000;
 
@@ -275,5 +275,5 @@ fn lights_without_power_are_no_sources() {
     b.set_sky(Sky::new(DVec3::Z, SkyModel::Uniform, Rgb::ZERO, Rgb::ZERO).unwrap());
     let model = model(b, Subdivision::PerTriangle);
     assert!(sources(&model.scene, &model.mesh).is_empty());
-    assert!(sir_radiosity::FirstShot::new(&model, 10, 1).is_err());
+    assert!(run_stage::<FirstShot<'_>>(ShotSettings::new(&model, 10, 1), ()).is_err());
 }

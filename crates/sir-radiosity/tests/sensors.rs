@@ -11,7 +11,9 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Light, LightKind, Material, Rgb, SceneBuilder, Sides, Sky, SkyModel, Spread};
 use sir_mesh::Subdivision;
-use sir_radiosity::{LIFT, Measurement, Model, REPLICATIONS, Sensor, SensorSettings, Sensors, Solution};
+use sir_radiosity::{
+    Gatherer, Measurement, Model, REPLICATIONS, SENSOR_OFFSET, Sensor, SensorSettings, Solution,
+};
 
 const RAYS: SensorSettings = SensorSettings { rays: 16_384, error: 0.0 };
 
@@ -49,7 +51,7 @@ fn factor(sensor: &Sensor, corners: &[DVec3]) -> f64 {
 
 /// Measures, and compares with what is exact: within four standard errors, which are at most `largest` of the exact value.
 #[track_caller]
-fn assert_exact(what: &str, sensors: &Sensors<'_>, cases: &[(Sensor, f64)], largest: f64) {
+fn assert_exact(what: &str, sensors: &Gatherer<'_>, cases: &[(Sensor, f64)], largest: f64) {
     let start = Instant::now();
     for (i, (sensor, exact)) in (0..).zip(cases) {
         let measured = sensors.measure(i, sensor);
@@ -112,7 +114,7 @@ fn a_thousand_lamps_are_measured_as_one_by_one() {
     let upwards = [at(v(1.75, 1.7, 2.9), DVec3::Z), at(v(2.0, 2.0, 2.5), v(0.5, 0.2, 1.0))];
     let close = upwards.into_iter().chain([at(v(1.5 + 12.0 * edge, 2.0, 2.5), DVec3::X)]);
     let cases: Vec<_> = points().chain(close).map(|s| (s, exact(&s))).collect();
-    assert_exact("1,250", &Sensors::new(&model, &uniform(&model, 0.0), RAYS, 1), &cases, 0.003);
+    assert_exact("1,250", &Gatherer::new(&model, &uniform(&model, 0.0), RAYS, 1), &cases, 0.003);
 }
 
 /// CIE 171:2006, 5.3: a luminous square in the ceiling.
@@ -126,7 +128,7 @@ fn a_luminous_square_is_measured_to_a_thousandth() {
     let cases: Vec<_> = points().map(|s| (s, 1000.0 * PI * factor(&s, &OPENING))).collect();
     // CIE-5.3 G, from the closed form.
     assert!((cases[6].1 - 61.424_098_538_5).abs() < 1e-9);
-    assert_exact("5.3", &Sensors::new(&model, &uniform(&model, 0.0), RAYS, 1), &cases, 0.001);
+    assert_exact("5.3", &Gatherer::new(&model, &uniform(&model, 0.0), RAYS, 1), &cases, 0.001);
 }
 
 /// CIE 171:2006, 5.2: a point light with the distribution of a diffuse surface. And sunlight, and a shadow.
@@ -147,7 +149,7 @@ fn lights_without_a_surface_are_exact() {
     b.add_light(Light { name: String::new(), kind: LightKind::Distant { direction, irradiance } });
     let model = model(b);
     let solution = uniform(&model, 0.0);
-    let sensors = Sensors::new(&model, &solution, RAYS, 1);
+    let sensors = Gatherer::new(&model, &solution, RAYS, 1);
     for (x, y, point) in
         [(0.0, 0.0, 111.111_111_111), (0.5, 0.5, 99.722_991_689_8), (1.0, 0.5, 85.663_295_657_3)]
     {
@@ -183,7 +185,7 @@ fn the_sky_is_measured_through_an_opening() {
     let cases: Vec<_> = points().map(|s| (s, 100.0 * factor(&s, &OPENING))).collect();
     assert!((cases[9].1 - 3.367_026_022_79).abs() < 1e-9);
     // Only one ray of thirty to a hundred finds the opening.
-    assert_exact("5.9", &Sensors::new(&model, &uniform(&model, 0.0), MANY, 1), &cases, 0.01);
+    assert_exact("5.9", &Gatherer::new(&model, &uniform(&model, 0.0), MANY, 1), &cases, 0.01);
 }
 
 /// CIE 171:2006, 5.7: what a wall sends past an obstruction, whether it emits or reflects.
@@ -207,8 +209,8 @@ fn an_obstruction_hides_a_wall_that_emits_or_reflects() {
         // Reflected: 200 of irradiance times one half.
         let solution = uniform(&model, if emits { 0.0 } else { 200.0 });
         let settings = if emits { RAYS } else { MANY };
-        assert_exact("5.7", &Sensors::new(&model, &solution, settings, 1), &cases, 0.004);
-        let hidden = Sensors::new(&model, &solution, RAYS, 1).measure(0, &at(v(2.0, 1.75, 0.0), DVec3::Z));
+        assert_exact("5.7", &Gatherer::new(&model, &solution, settings, 1), &cases, 0.004);
+        let hidden = Gatherer::new(&model, &solution, RAYS, 1).measure(0, &at(v(2.0, 1.75, 0.0), DVec3::Z));
         assert_eq!(hidden.irradiance, Rgb::ZERO);
     }
 }
@@ -222,7 +224,7 @@ fn in_a_furnace_the_irradiance_is_the_same_everywhere() {
     let model = model(b);
     let positions = [v(2.0, 2.0, 1.5), v(1.0, 3.0, 0.0), v(1e-4, 2.0, 0.0), v(0.001, 0.002, 0.0)];
     let cases: Vec<_> = positions.into_iter().map(|p| (at(p, DVec3::Z), 6.0)).collect();
-    assert_exact("furnace", &Sensors::new(&model, &uniform(&model, 6.0), RAYS, 1), &cases, 0.001);
+    assert_exact("furnace", &Gatherer::new(&model, &uniform(&model, 6.0), RAYS, 1), &cases, 0.001);
 }
 
 /// Thousands of emitters, most of which do not matter; one so close that it takes nearly the whole hemisphere; one that
@@ -264,11 +266,11 @@ fn many_and_close_emitters_are_measured_well() {
         seen.map(|(corners, _, m)| m * factor(&sensor, corners)).sum::<f64>()
     };
     let solution = uniform(&model, 0.0);
-    let sensors = Sensors::new(&model, &solution, RAYS, 1);
+    let sensors = Gatherer::new(&model, &solution, RAYS, 1);
     let below = at(DVec3::ZERO, DVec3::Z);
     assert_exact("tiny", &sensors, &[(below, exact(below))], 0.003);
     // The two large ones hide faint ones, which bring less than 1.
-    let lift = LIFT * model.scene.bounding_sphere().radius;
+    let lift = SENSOR_OFFSET * model.scene.bounding_sphere().radius;
     for (x, lamp, largest) in
         [(21.0, 2501, 1e-3), (10.001, 2502, 0.005), (10.01, 2502, 0.002), (10.3, 2502, 0.002)]
     {
@@ -291,7 +293,7 @@ fn backs_are_black() {
         shapes::cuboid(&mut b, DVec3::ZERO, DVec3::ONE, [m; 6], Facing::Outward);
         let model = model(b);
         let solution = uniform(&model, 10.0);
-        let measured = Sensors::new(&model, &solution, RAYS, 1).measure(0, &at(DVec3::splat(0.5), DVec3::X));
+        let measured = Gatherer::new(&model, &solution, RAYS, 1).measure(0, &at(DVec3::splat(0.5), DVec3::X));
         assert!((measured.irradiance.x - exact).abs() < 1e-12, "{measured:?}");
     }
 }
@@ -309,7 +311,7 @@ fn standard_errors_are_honest() {
     let sensor = at(v(1.0, 1.3, 0.0), v(0.1, 0.2, 1.0));
     let settings = SensorSettings { rays: 2048, error: 0.0 };
     let runs: Vec<Measurement> =
-        (0..300).map(|seed| Sensors::new(&model, &solution, settings, seed).measure(0, &sensor)).collect();
+        (0..300).map(|seed| Gatherer::new(&model, &solution, settings, seed).measure(0, &sensor)).collect();
     let rms = rms_of_deviations(&runs);
     println!("rms of the deviations: {rms:.3}");
     assert!((0.9..1.1).contains(&rms), "{rms}");
@@ -346,7 +348,7 @@ fn errors_of_patches_are_passed_on() {
         let runs: Vec<Measurement> = (1..=100)
             .map(|seed| {
                 let run = batches(&model, shoot(&model, 20_000, seed), 20_000, seed);
-                Sensors::new(&model, &run.solution, RAYS, seed).measure(0, &sensor)
+                Gatherer::new(&model, &run.solution, RAYS, seed).measure(0, &sensor)
             })
             .collect();
         let rms = rms_of_deviations(&runs);
@@ -369,7 +371,7 @@ fn an_aim_saves_rays() {
     let rays = |error| {
         let settings = SensorSettings { rays: 1 << 20, error };
         let measured =
-            Sensors::new(&model, &solution, settings, 1).measure(0, &at(v(1.0, 1.0, 0.0), DVec3::Z));
+            Gatherer::new(&model, &solution, settings, 1).measure(0, &at(v(1.0, 1.0, 0.0), DVec3::Z));
         assert!(measured.luminance_error() < error * measured.luminance());
         measured.rays
     };

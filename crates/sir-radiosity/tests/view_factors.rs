@@ -9,7 +9,8 @@ use sir_geom::shapes::{Facing, cuboid, quad};
 use sir_geom::{Material, MaterialId, Rgb, SceneBuilder, Sides};
 use sir_mesh::Subdivision;
 use sir_radiosity::{
-    Accuracy, Books, Grouping, Model, Receiver, SolveError, ViewFactorLines, ViewFactorSettings, ViewFactors,
+    Accuracy, AnyOrder, Grouping, Model, OneWorker, Receiver, SolveError, Stage, StageTotals,
+    ViewFactorLines, ViewFactorSettings, ViewFactorTask, ViewFactors,
 };
 
 /// Opposite and adjacent faces of a cube (Howell, catalogue of configuration factors, C-11 and C-14).
@@ -28,15 +29,22 @@ fn model(builder: SceneBuilder) -> Model {
 
 fn count(model: &Model, settings: ViewFactorSettings) -> ViewFactors {
     let grouping = Grouping::by_material(&model.scene);
-    let mut stage = ViewFactorLines::new(model, &grouping, settings).unwrap();
+    let task = ViewFactorTask { model, grouping: &grouping, settings };
+    let mut stage = ViewFactorLines::begin(task, (), &OneWorker).unwrap();
     loop {
-        let mut books = Books::default();
-        stage.trace(stage.lines(), &mut books);
-        assert_eq!(books.counts.lines, stage.lines().end - stage.lines().start);
-        if !stage.advance() {
-            return stage.finish();
+        let mut totals = StageTotals::default();
+        stage.trace(0, &mut AnyOrder, stage.round(), &mut totals);
+        assert_eq!(totals.counts.lines, stage.round().end - stage.round().start);
+        if !stage.advance(&OneWorker) {
+            return stage.finish(totals).unwrap();
         }
     }
+}
+
+/// Why the factors cannot be counted.
+fn refusal(model: &Model, grouping: &Grouping, settings: ViewFactorSettings) -> SolveError {
+    let task = ViewFactorTask { model, grouping, settings };
+    ViewFactorLines::begin(task, (), &OneWorker).unwrap_err()
 }
 
 /// With a standard error of at most `error`, the factor is what it should be but for chance.
@@ -272,7 +280,7 @@ fn lines_used_give_the_same_again() {
 fn too_few_lines_and_too_many_groups_are_refused() {
     let cube = cube();
     let grouping = Grouping::by_material(&cube.scene);
-    let refused = ViewFactorLines::new(&cube, &grouping, ViewFactorSettings::of_lines(95, 1)).unwrap_err();
+    let refused = refusal(&cube, &grouping, ViewFactorSettings::of_lines(95, 1));
     assert_eq!(refused, SolveError::TooFewLines { lines: 95, groups: 6, fewest: 96 });
 
     let mut b = SceneBuilder::new();
@@ -284,6 +292,6 @@ fn too_few_lines_and_too_many_groups_are_refused() {
     }
     let many = model(b);
     let parts = Grouping::by_part(&many.scene);
-    let refused = ViewFactorLines::new(&many, &parts, ViewFactorSettings::to_error(0.1, 1)).unwrap_err();
+    let refused = refusal(&many, &parts, ViewFactorSettings::to_error(0.1, 1));
     assert_eq!(refused, SolveError::TooManyGroups { groups: 4097, most: 4096 });
 }

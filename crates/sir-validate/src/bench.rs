@@ -1,8 +1,8 @@
-//! Who makes the runs: a crew, and someone who watches it.
+//! Who makes the runs: a executor, and someone who watches it.
 
 use std::num::NonZeroUsize;
 
-use sir_parallel::{Crew, Observer, RunError};
+use sir_parallel::{Executor, Observer, RunError};
 
 use crate::trial::Sample;
 
@@ -43,7 +43,7 @@ impl<'w> Bench<'w> {
             limit: self.done + lines,
             total: self.total,
         };
-        let values = sample(lines, seed, &mut Crew::of(self.threads).watched_by(tick))?;
+        let values = sample(lines, seed, &mut Executor::new(self.threads).watched_by(tick))?;
         self.done += lines;
         Ok(values)
     }

@@ -112,8 +112,8 @@ fn averages<'a>(case: &'a Case, some: &'a [FaceAverage]) -> Trial<'a> {
     let prepare = move |_: Effort| -> Result<Sample<'a>, ValidateError> {
         let scene = plain(case, bands(some.iter().map(|average| average.reflectance)))?;
         let model = Model::new(scene, Subdivision::Patches(patches))?;
-        Ok(Box::new(move |lines, seed, crew| {
-            let light = solve(&model, lines, seed, crew)?;
+        Ok(Box::new(move |lines, seed, executor| {
+            let light = solve(&model, lines, seed, executor)?;
             let (direct, all) = (means(&model, &light.direct), means(&model, &light.all));
             let mut values = Vec::new();
             for band in 0..some.len() {
@@ -151,9 +151,9 @@ fn at_points<'a>(
         let cells = if effort == Effort::Full { cells } else { cells / 2 };
         let model = per_face(graded(case, rho, cells)?)?;
         let sensors = sensors.clone();
-        Ok(Box::new(move |lines, seed, crew| {
-            let light = solve(&model, lines, seed, crew)?;
-            let found = irradiances(&model, &light.all, &sensors, RAYS, seed, crew)?;
+        Ok(Box::new(move |lines, seed, executor| {
+            let light = solve(&model, lines, seed, executor)?;
+            let found = irradiances(&model, &light.all, &sensors, RAYS, seed, executor)?;
             Ok((0..count).flat_map(|band| found.iter().map(move |rgb| rgb[band])).collect())
         }))
     };

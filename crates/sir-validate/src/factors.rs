@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use sir_mesh::Subdivision;
-use sir_parallel::view_factors;
-use sir_radiosity::{Grouping, Model, ViewFactorSettings};
+use sir_parallel::Start;
+use sir_radiosity::{Grouping, Model, ViewFactorLines, ViewFactorSettings, ViewFactorTask};
 
 use crate::data::{Case, Surface};
 use crate::effort::Effort;
@@ -33,8 +33,10 @@ pub(crate) fn factors(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
         // Every surface has a material of its own, and a triangle: the numbers of groups are those of surfaces.
         let grouping = Grouping::by_material(&model.scene);
         let pairs = pairs.clone();
-        Ok(Box::new(move |lines, seed, crew| {
-            let found = view_factors(&model, &grouping, ViewFactorSettings::of_lines(lines, seed), crew)?;
+        Ok(Box::new(move |lines, seed, executor| {
+            let settings = ViewFactorSettings::of_lines(lines, seed);
+            let task = ViewFactorTask { model: &model, grouping: &grouping, settings };
+            let found = executor.run::<ViewFactorLines<'_>>(task, Start::Fresh(()))?.outcome;
             Ok(pairs.iter().map(|&(from, to)| found.factor(from, to)).collect())
         }))
     };

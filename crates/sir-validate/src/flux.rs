@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use sir_geom::SceneBuilder;
-use sir_parallel::first_shot;
-use sir_radiosity::Model;
+use sir_parallel::Start;
+use sir_radiosity::{FirstShot, Model, ShotSettings};
 
 use crate::data::{Case, Surface};
 use crate::effort::Effort;
@@ -79,8 +79,9 @@ fn trial<'a>(
     let walls = quantities.len() - 1;
     let prepare = move |_: Effort| -> Result<Sample<'a>, ValidateError> {
         let model: Model = per_face(build()?.build()?.scene)?;
-        Ok(Box::new(move |lines, seed, crew| {
-            let shot = first_shot(&model, lines, seed, crew, None)?.outcome;
+        Ok(Box::new(move |lines, seed, executor| {
+            let settings = ShotSettings::new(&model, lines, seed);
+            let shot = executor.run::<FirstShot<'_>>(settings, Start::Fresh(()))?.outcome;
             let received = means(&model, &shot.solution(&model)).into_iter().map(|m| m.irradiance.x * m.area);
             let mut values: Vec<f64> = received.take(walls).collect();
             values.push(values.iter().sum::<f64>() / flux);

@@ -3,8 +3,8 @@
 use sir_geom::{Material, MaterialId, Rgb, Scene, SceneBuilder, Side};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
-use sir_parallel::{Crew, RunError, batches, first_shot, second_shot};
-use sir_radiosity::{Model, Solution};
+use sir_parallel::{Executor, RunError, Start};
+use sir_radiosity::{BatchSettings, Batches, FirstShot, Model, SecondShot, ShotSettings, Solution};
 
 use crate::data::Surface;
 use crate::error::ValidateError;
@@ -59,12 +59,19 @@ pub(crate) struct Light {
 }
 
 /// Lights a scene: a first and a second shot with 40 and 10 % of the lines, and the rest through the convex hull.
-pub(crate) fn solve(model: &Model, lines: u64, seed: u64, crew: &mut Crew<'_>) -> Result<Light, RunError> {
-    let shot = first_shot(model, lines * 2 / 5, seed, crew, None)?.outcome;
+pub(crate) fn solve(
+    model: &Model,
+    lines: u64,
+    seed: u64,
+    executor: &mut Executor<'_>,
+) -> Result<Light, RunError> {
+    let first = ShotSettings::new(model, lines * 2 / 5, seed);
+    let shot = executor.run::<FirstShot<'_>>(first, Start::Fresh(()))?.outcome;
     let direct = shot.solution(model);
-    let shot = second_shot(model, shot, lines / 10, seed, crew, None)?.outcome;
-    let domain = Domain::hull(model.scene.vertices());
-    let all = batches(model, shot, lines / 2, domain, seed, crew, None)?.outcome.solution;
+    let second = ShotSettings::new(model, lines / 10, seed);
+    let shot = executor.run::<SecondShot<'_>>(second, Start::Fresh(shot))?.outcome;
+    let transport = BatchSettings::new(model, Domain::hull(model.scene.vertices()), lines / 2, seed);
+    let all = executor.run::<Batches<'_>>(transport, Start::Fresh(shot))?.outcome.solution;
     Ok(Light { direct, all })
 }
 

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use sir_geom::{Rgb, Scene};
 use sir_mesh::Subdivision;
-use sir_parallel::{Crew, RunError, measure};
-use sir_radiosity::{LIFT, Model, Sensor, SensorSettings, Shot, Solution};
+use sir_parallel::{Executor, RunError, Start};
+use sir_radiosity::{Model, SENSOR_OFFSET, Sensor, SensorSettings, SensorStage, SensorTask, Solution};
 
 use crate::data::{Case, Point, Surface};
 use crate::effort::Effort;
@@ -36,10 +36,11 @@ pub(crate) fn irradiances(
     sensors: &[Sensor],
     rays: u64,
     seed: u64,
-    crew: &mut Crew<'_>,
+    executor: &mut Executor<'_>,
 ) -> Result<Vec<Rgb>, RunError> {
     let settings = SensorSettings { rays, error: 0.0 };
-    let measured = measure(model, solution, sensors, settings, seed, crew)?.outcome;
+    let task = SensorTask { model, solution, sensors, settings, seed };
+    let measured = executor.run::<SensorStage<'_>>(task, Start::Fresh(()))?.outcome;
     Ok(measured.iter().map(|measurement| measurement.irradiance).collect())
 }
 
@@ -86,7 +87,7 @@ impl Setting {
     /// Where a sensor has to be to look from a point of the scene. Sensors look from a little above their position, for them not to be
     /// below the surface that they lie on. Where that is left out, they need not, and some points see just nothing.
     fn place(&self, sensor: Sensor, scene: &Scene) -> Sensor {
-        let lift = LIFT * scene.bounding_sphere().radius;
+        let lift = SENSOR_OFFSET * scene.bounding_sphere().radius;
         let lowered = Sensor::new(sensor.position() - lift * sensor.direction(), sensor.direction());
         match self {
             Self::Reflector => lowered.unwrap_or(sensor),
@@ -115,10 +116,10 @@ pub(crate) fn points(case: &Case, setting: Setting) -> Result<Vec<Trial<'_>>, Va
         let model = Model::new(setting.scene(case)?, Subdivision::PerTriangle)?;
         let place = |&sensor: &Sensor| setting.place(sensor, &model.scene);
         let (sensors, unit): (Vec<_>, _) = (sensors.iter().map(place).collect(), setting.unit());
-        Ok(Box::new(move |lines, seed, crew| {
+        Ok(Box::new(move |lines, seed, executor| {
             // All surfaces are black: what they receive is seen by nobody.
-            let solution = Shot::nothing(&model).solution(&model);
-            let found = irradiances(&model, &solution, &sensors, lines / count, seed, crew)?;
+            let solution = Solution::dark(model.mesh.side_count());
+            let found = irradiances(&model, &solution, &sensors, lines / count, seed, executor)?;
             Ok(found.iter().map(|irradiance| irradiance.x * unit).collect())
         }))
     };

@@ -120,8 +120,8 @@ pub(crate) fn surfaces(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     let (segments, lines) = effort(&surfaces);
     let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
         let model = per_face(scene(&surfaces, |i| paints[i], effort.segments(segments))?)?;
-        Ok(Box::new(move |lines, seed, crew| {
-            let means = means(&model, &solve(&model, lines, seed, crew)?.all);
+        Ok(Box::new(move |lines, seed, executor| {
+            let means = means(&model, &solve(&model, lines, seed, executor)?.all);
             let (mut values, mut emitted, mut absorbed) = (Vec::new(), 0.0, 0.0);
             for (mean, material) in means.iter().zip(model.scene.materials()) {
                 values.extend([mean.radiosity.x, mean.irradiance.x]);
@@ -168,8 +168,8 @@ pub(crate) fn enclosures(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
             let walls: Vec<&Surface> = walls.iter().collect();
             let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
                 let model = per_face(scene(&walls, |_| paint, effort.segments(SEGMENTS))?)?;
-                Ok(Box::new(move |lines, seed, crew| {
-                    let means = means(&model, &solve(&model, lines, seed, crew)?.all);
+                Ok(Box::new(move |lines, seed, executor| {
+                    let means = means(&model, &solve(&model, lines, seed, executor)?.all);
                     let of_band = |band: usize| {
                         means.iter().flat_map(move |mean| [mean.radiosity[band], mean.irradiance[band]])
                     };
@@ -189,7 +189,7 @@ mod tests {
     use super::*;
     use crate::data::Reference;
     use crate::estimate::Estimate;
-    use sir_parallel::Crew;
+    use sir_parallel::Executor;
 
     /// By how much the irradiance of the first zone of RE-06 is off, relatively, if circles are cut into so many parts.
     fn facets(segments: u32) -> Estimate {
@@ -204,8 +204,8 @@ mod tests {
         };
         let model = per_face(scene(&surfaces, paint, segments).unwrap()).unwrap();
         let run = |seed| {
-            let crew = &mut Crew::of(NonZeroUsize::MIN);
-            let light = solve(&model, 400_000, seed, crew).unwrap().all;
+            let executor = &mut Executor::new(NonZeroUsize::MIN);
+            let light = solve(&model, 400_000, seed, executor).unwrap().all;
             means(&model, &light)[0].irradiance.x / exact - 1.0
         };
         Estimate::of(&(0..16).map(run).collect::<Vec<_>>())

@@ -1,6 +1,6 @@
 //! What is to be computed, and how: quantities, and a function that estimates them.
 
-use sir_parallel::{Crew, RunError};
+use sir_parallel::{Executor, RunError};
 
 use crate::effort::Effort;
 use crate::error::ValidateError;
@@ -24,7 +24,7 @@ impl Quantity {
 }
 
 /// Gives one estimate of each quantity, from about this many lines with this seed.
-pub(crate) type Sample<'a> = Box<dyn Fn(u64, u64, &mut Crew<'_>) -> Result<Vec<f64>, RunError> + 'a>;
+pub(crate) type Sample<'a> = Box<dyn Fn(u64, u64, &mut Executor<'_>) -> Result<Vec<f64>, RunError> + 'a>;
 
 /// Some numbers that the same runs give.
 pub(crate) struct Trial<'a> {

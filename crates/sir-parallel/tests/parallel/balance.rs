@@ -2,12 +2,12 @@
 
 use sir_radiosity::{Balance, Quanta};
 
-use crate::jobs::{JOBS, Job, LINES, Outcome, ROOM, crew};
+use crate::jobs::{JOBS, Job, LINES, Outcome, ROOM, executor};
 use crate::ranks::run_ranks;
 
-/// What a crew of two ranks with two threads makes.
+/// What a executor of two ranks with two threads makes.
 fn outcome(job: Job) -> Outcome {
-    run_ranks(2, |comm| job.run(&ROOM, &mut crew(comm, 2), None).unwrap()).swap_remove(0)
+    run_ranks(2, |comm| job.run(&ROOM, &mut executor(comm, 2), None).unwrap()).swap_remove(0)
 }
 
 fn wide(q: Quanta) -> [i128; 3] {
@@ -45,7 +45,7 @@ fn all_lines_are_traced_once() {
         assert_eq!(counts.lines, LINES, "{job:?}");
         // Of the lines through the hull of the room, none misses it; some local lines leave it.
         let some =
-            if matches!(job, Job::FirstShot | Job::AimedShot | Job::SecondShot) { 1..LINES } else { 0..1 };
+            if matches!(job, Job::FirstShot | Job::FocusedShot | Job::SecondShot) { 1..LINES } else { 0..1 };
         assert!(some.contains(&counts.empty) && counts.crossings > 0, "{job:?}: {counts:?}");
     }
 }
@@ -54,12 +54,12 @@ fn all_lines_are_traced_once() {
 #[test]
 fn what_is_received_is_absorbed_or_reflected() {
     for job in JOBS {
-        let Outcome { received, balance, made_up, counts, .. } = outcome(job);
+        let Outcome { received, balance, extrapolated, counts, .. } = outcome(job);
         let mut absorbed = [0.0; 3];
         ROOM.model.mesh.for_each_side(|triangle, _, _, side| {
             let reflectance = ROOM.model.scene.material(triangle).reflectance;
             let before = match job {
-                Job::FirstShot | Job::AimedShot => Quanta::ZERO,
+                Job::FirstShot | Job::FocusedShot => Quanta::ZERO,
                 _ => ROOM.shot.received.power[side.index()],
             };
             let new = received.power[side.index()] - before;
@@ -70,17 +70,17 @@ fn what_is_received_is_absorbed_or_reflected() {
             let difference = absorbed - balance.absorbed.0[band] as f64;
             // When the books of batches are closed, the tail is stretched, and numbers of lines are corrected: surfaces that
             // absorb more may then have received a little more.
-            let made_up = made_up.0[band] as f64;
+            let extrapolated = extrapolated.0[band] as f64;
             let corrected =
-                if matches!(job, Job::Batches | Job::AimedBatches) { 1e-2 * absorbed } else { 0.0 };
+                if matches!(job, Job::Batches | Job::FocusedBatches) { 1e-2 * absorbed } else { 0.0 };
             let rounding = 4.0 * counts.crossings as f64 + corrected;
             assert!(
-                difference >= made_up.min(0.0) - rounding,
-                "{job:?}: {difference}, {made_up}, {absorbed}"
+                difference >= extrapolated.min(0.0) - rounding,
+                "{job:?}: {difference}, {extrapolated}, {absorbed}"
             );
             assert!(
-                difference <= made_up.max(0.0) + rounding,
-                "{job:?}: {difference}, {made_up}, {absorbed}"
+                difference <= extrapolated.max(0.0) + rounding,
+                "{job:?}: {difference}, {extrapolated}, {absorbed}"
             );
         }
     }

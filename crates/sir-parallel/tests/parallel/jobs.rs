@@ -8,12 +8,11 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{BoundingBox, Light, LightKind, Material, Rgb, SceneBuilder, Sides, Sky, SkyModel, Spread};
 use sir_lines::{Domain, Focus, GlobalLines, LocalLines};
 use sir_mesh::{SideId, Subdivision};
-use sir_parallel::{
-    Communicator, Crew, RunError, Saved, StageRun, batches, first_shot, multipath, second_shot,
-};
+use sir_parallel::{Communicator, Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
-    Balance, Batches, Books, Counts, FirstShot, Model, Multipath, MultipathSettings, Quanta, Received,
-    SecondShot, Shot, Totals, Transported,
+    Balance, BatchSettings, Batches, Counts, FirstShot, Model, Multipath, MultipathSettings, OneWorker,
+    Quanta, Received, SecondShot, Shot, ShotSettings, Stage, StageTotals, Transported, chain_units,
+    run_stage,
 };
 
 use crate::observers::StopAfter;
@@ -41,11 +40,11 @@ pub(crate) static FINE_ROOM: LazyLock<Room> = LazyLock::new(|| Room::new(40_000)
 pub(crate) enum Job {
     FirstShot,
     /// With a focus.
-    AimedShot,
+    FocusedShot,
     SecondShot,
     Batches,
     /// With a focus.
-    AimedBatches,
+    FocusedBatches,
     Multipath {
         replicas: u64,
         tail: u64,
@@ -59,7 +58,7 @@ pub(crate) struct Outcome {
     pub(crate) quantum: f64,
     pub(crate) balance: Balance,
     pub(crate) counts: Counts,
-    pub(crate) made_up: Quanta,
+    pub(crate) extrapolated: Quanta,
     pub(crate) batches: u64,
     pub(crate) sent: Vec<(SideId, Quanta)>,
 }
@@ -67,10 +66,10 @@ pub(crate) struct Outcome {
 /// All stages, multipath with various settings.
 pub(crate) const JOBS: [Job; 11] = [
     Job::FirstShot,
-    Job::AimedShot,
+    Job::FocusedShot,
     Job::SecondShot,
     Job::Batches,
-    Job::AimedBatches,
+    Job::FocusedBatches,
     Job::Multipath { replicas: 1, tail: 0 },
     Job::Multipath { replicas: 3, tail: 0 },
     Job::Multipath { replicas: 8, tail: 0 },
@@ -125,7 +124,7 @@ impl Room {
         b.set_sky(Sky::new(DVec3::Z, sun, Rgb::new(0.1, 0.2, 0.4), Rgb::splat(0.05)).unwrap());
 
         let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(patches)).unwrap();
-        let shot = first_shot(&model, LINES, SEED, &mut Crew::of(NonZeroUsize::MIN), None).unwrap().outcome;
+        let shot = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, LINES, SEED), ()).unwrap();
         let domain = Domain::hull(model.scene.vertices());
         Self { model, shot, domain }
     }
@@ -136,11 +135,12 @@ impl Room {
         Focus::new(bounds, 0.75, self.model.scene.bounding_box(), self.model.scene.bounding_sphere()).unwrap()
     }
 
-    fn aimed_shot(&self) -> LocalLines {
-        LocalLines { count: LINES, focus: Some(self.focus()) }
+    fn focused_shot(&self) -> ShotSettings<'_> {
+        let lines = LocalLines { count: LINES, focus: Some(self.focus()) };
+        ShotSettings::new(&self.model, lines, SEED)
     }
 
-    fn aimed_lines(&self) -> GlobalLines {
+    fn focused_lines(&self) -> GlobalLines {
         let lines = GlobalLines::focused(self.domain.clone(), self.focus());
         assert!(lines.weight() > 1);
         lines
@@ -148,102 +148,98 @@ impl Room {
 }
 
 impl Job {
-    fn settings(replicas: u64, tail: u64, domain: Domain) -> MultipathSettings {
-        MultipathSettings { lines: LINES, tail, replicas, domain }
+    fn settings(room: &Room, replicas: u64, tail: u64) -> MultipathSettings<'_> {
+        let settings = MultipathSettings::new(&room.model, room.domain.clone(), LINES, SEED);
+        MultipathSettings { tail, replicas, ..settings }
     }
 
-    /// Lets a crew do the stage, or go on with what was saved.
+    /// Runs the stage, or goes on with what was saved.
     pub(crate) fn run(
         self,
         room: &Room,
-        crew: &mut Crew<'_>,
+        executor: &mut Executor<'_>,
         saved: Option<Saved>,
     ) -> Result<Outcome, RunError> {
-        let (model, domain) = (&room.model, room.domain.clone());
-        // Who goes on has not made the first shot.
-        let shot = || if saved.is_some() { Shot::nothing(model) } else { room.shot.clone() };
+        let shot = ShotSettings::new(&room.model, LINES, SEED);
         match self {
-            Self::FirstShot => first_shot(model, LINES, SEED, crew, saved).map(Outcome::of_shot),
-            Self::AimedShot => first_shot(model, room.aimed_shot(), SEED, crew, saved).map(Outcome::of_shot),
-            Self::SecondShot => second_shot(model, shot(), LINES, SEED, crew, saved).map(Outcome::of_shot),
-            Self::Batches => {
-                batches(model, shot(), LINES, domain, SEED, crew, saved).map(Outcome::of_transport)
+            Self::FirstShot => executor.run::<FirstShot<'_>>(shot, start((), saved)).map(Outcome::of_shot),
+            Self::FocusedShot => {
+                executor.run::<FirstShot<'_>>(room.focused_shot(), start((), saved)).map(Outcome::of_shot)
             }
-            Self::AimedBatches => {
-                let through = room.aimed_lines();
-                batches(model, shot(), LINES, through, SEED, crew, saved).map(Outcome::of_transport)
+            Self::SecondShot => {
+                executor.run::<SecondShot<'_>>(shot, start(room.shot.clone(), saved)).map(Outcome::of_shot)
+            }
+            Self::Batches | Self::FocusedBatches => {
+                let start = start(room.shot.clone(), saved);
+                executor.run::<Batches<'_>>(self.batches(room), start).map(Outcome::of_transport)
             }
             Self::Multipath { replicas, tail } => {
-                let settings = Self::settings(replicas, tail, domain);
-                multipath(model, shot(), settings, SEED, crew, saved).map(Outcome::of_transport)
+                let start = start(room.shot.clone(), saved);
+                let settings = Self::settings(room, replicas, tail);
+                executor.run::<Multipath<'_>>(settings, start).map(Outcome::of_transport)
             }
         }
     }
 
-    /// The same stage without any crew: line by line.
+    fn batches(self, room: &Room) -> BatchSettings<'_> {
+        let domain = match self {
+            Self::FocusedBatches => room.focused_lines(),
+            _ => room.domain.clone().into(),
+        };
+        BatchSettings::new(&room.model, domain, LINES, SEED)
+    }
+
+    /// The same stage without an executor: line by line.
     pub(crate) fn by_hand(self, room: &Room) -> Outcome {
-        let (model, shot, mut books) = (&room.model, room.shot.clone(), Books::default());
-        let run = match self {
-            Self::FirstShot | Self::AimedShot => {
-                let lines =
-                    if let Self::AimedShot = self { room.aimed_shot() } else { LocalLines::from(LINES) };
-                let stage = FirstShot::new(model, lines, SEED).unwrap();
-                let tally = stage.tally(1);
-                stage.trace(0, 0..LINES, &tally, &mut books);
-                let outcome = stage.finish(tally, books).unwrap();
-                return Outcome::of_shot(StageRun { outcome, time: Default::default(), batches: 1 });
-            }
-            Self::SecondShot => {
-                let stage = SecondShot::new(model, &shot, LINES, SEED);
-                let tally = stage.lines().tally(1);
-                stage.lines().trace(0, 0..LINES, &tally, &mut books);
-                let outcome = stage.finish(shot, tally, books).unwrap();
-                return Outcome::of_shot(StageRun { outcome, time: Default::default(), batches: 1 });
-            }
-            Self::Batches | Self::AimedBatches => {
-                let through = match self {
-                    Self::AimedBatches => room.aimed_lines(),
-                    _ => room.domain.clone().into(),
-                };
-                let mut stage = Batches::new(model, shot, LINES, through, SEED, 1);
-                loop {
-                    stage.parts(1).for_each(|mut part| part.open());
-                    stage.trace(0, stage.lines(), &mut books);
-                    let mut totals = Totals::default();
-                    stage.parts(1).for_each(|mut part| totals += part.close());
-                    if !stage.advance(totals) {
-                        break;
-                    }
-                }
-                let batches = stage.number() + 1;
-                StageRun { outcome: stage.finish(books).unwrap(), time: Default::default(), batches }
+        let shot = ShotSettings::new(&room.model, LINES, SEED);
+        match self {
+            Self::FirstShot => Outcome::of_shot(by_hand::<FirstShot<'_>>(shot, ())),
+            Self::FocusedShot => Outcome::of_shot(by_hand::<FirstShot<'_>>(room.focused_shot(), ())),
+            Self::SecondShot => Outcome::of_shot(by_hand::<SecondShot<'_>>(shot, room.shot.clone())),
+            Self::Batches | Self::FocusedBatches => {
+                Outcome::of_transport(by_hand::<Batches<'_>>(self.batches(room), room.shot.clone()))
             }
             Self::Multipath { replicas, tail } => {
-                let settings = Self::settings(replicas, tail, room.domain.clone());
-                let stage = Multipath::new(model, shot, settings, SEED, 1);
-                for number in 0..replicas {
-                    stage.trace(0, &mut stage.replica(number), u64::MAX, &mut books);
-                }
-                StageRun {
-                    outcome: stage.finish(books).unwrap(),
-                    time: Default::default(),
-                    batches: replicas,
-                }
+                let settings = Self::settings(room, replicas, tail);
+                Outcome::of_transport(by_hand::<Multipath<'_>>(settings, room.shot.clone()))
             }
-        };
-        Outcome::of_transport(run)
+        }
     }
+}
+
+/// Who goes on has no input.
+fn start<I>(input: I, saved: Option<Saved>) -> Start<I> {
+    saved.map_or(Start::Fresh(input), Start::Resumed)
+}
+
+/// Runs a stage line by line, one call for each.
+fn by_hand<S: Stage>(settings: S::Settings, input: S::Input) -> StageRun<S::Outcome> {
+    let mut stage = S::begin(settings, input, &OneWorker).unwrap();
+    let mut totals = StageTotals::default();
+    loop {
+        let (round, chains) = (stage.round(), stage.chains());
+        for number in 0..chains.max(1) {
+            let units = if chains == 0 { round.clone() } else { chain_units(&round, number, chains) };
+            let mut chain = stage.chain(number);
+            units.for_each(|unit| stage.trace(0, &mut chain, unit..unit + 1, &mut totals));
+        }
+        if !stage.advance(&OneWorker) {
+            break;
+        }
+    }
+    let batches = stage.batches();
+    StageRun { outcome: stage.finish(totals).unwrap(), time: StageTime::default(), batches }
 }
 
 impl Outcome {
     fn of_shot(StageRun { outcome, batches, .. }: StageRun<Shot>) -> Self {
         let Shot { received, unit, balance, counts, sent } = outcome;
-        Self { received, quantum: unit.quantum(), balance, counts, made_up: Quanta::ZERO, batches, sent }
+        Self { received, quantum: unit.quantum(), balance, counts, extrapolated: Quanta::ZERO, batches, sent }
     }
 
     fn of_transport(StageRun { outcome, batches, .. }: StageRun<Transported>) -> Self {
-        let Transported { received, unit, balance, counts, made_up, .. } = outcome;
-        Self { received, quantum: unit.quantum(), balance, counts, made_up, batches, sent: Vec::new() }
+        let Transported { received, unit, balance, counts, extrapolated, .. } = outcome;
+        Self { received, quantum: unit.quantum(), balance, counts, extrapolated, batches, sent: Vec::new() }
     }
 
     /// Equal to the last bit.
@@ -256,14 +252,14 @@ impl Outcome {
             self.received.variance == expected.received.variance,
             "{what}: variance of the power received"
         );
-        assert_eq!(self.made_up, expected.made_up, "{what}: power made up");
+        assert_eq!(self.extrapolated, expected.extrapolated, "{what}: power made up");
         assert_eq!(self.batches, expected.batches, "{what}: batches");
         assert!(self == expected, "{what}");
     }
 }
 
-/// A crew of this rank with so many threads.
-pub(crate) fn crew(comm: &dyn Communicator, threads: usize) -> Crew<'_> {
+/// Some threads of this rank.
+pub(crate) fn executor(comm: &dyn Communicator, threads: usize) -> Executor<'_> {
     let threads = NonZeroUsize::new(threads).unwrap();
-    Crew { comm, threads, observer: Box::new(StopAfter::NEVER), checkpoints: None, earlier: None }
+    Executor { comm, threads, observer: Box::new(StopAfter::NEVER), checkpoints: None, prior: None }
 }

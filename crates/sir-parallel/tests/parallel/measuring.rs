@@ -1,10 +1,10 @@
 //! What sensors measure does not depend on how many work on it.
 
 use glam::DVec3;
-use sir_parallel::{RunError, measure};
-use sir_radiosity::{Measurement, Sensor, SensorSettings, Sensors};
+use sir_parallel::{Executor, RunError, StageRun, Start};
+use sir_radiosity::{Gatherer, Measurement, Sensor, SensorSettings, SensorStage, SensorTask, Solution};
 
-use crate::jobs::{ROOM, crew};
+use crate::jobs::{ROOM, executor};
 use crate::observers::StopAfter;
 use crate::ranks::run_ranks;
 
@@ -18,17 +18,26 @@ fn sensors() -> Vec<Sensor> {
     (0..13).map(|i| Sensor::new(at(i), DVec3::new(0.1, -0.3, 1.0)).unwrap()).collect()
 }
 
+fn measure(
+    solution: &Solution,
+    sensors: &[Sensor],
+    executor: &mut Executor<'_>,
+) -> Result<StageRun<Vec<Measurement>>, RunError> {
+    let task = SensorTask { model: &ROOM.model, solution, sensors, settings: SETTINGS, seed: SEED };
+    executor.run::<SensorStage<'_>>(task, Start::Fresh(()))
+}
+
 #[test]
 fn sensors_measure_the_same_by_any_number_of_workers() {
     let (sensors, solution) = (sensors(), ROOM.shot.solution(&ROOM.model));
-    let by_hand = Sensors::new(&ROOM.model, &solution, SETTINGS, SEED);
+    let by_hand = Gatherer::new(&ROOM.model, &solution, SETTINGS, SEED);
     let expected: Vec<Measurement> = (0..).zip(&sensors).map(|(i, s)| by_hand.measure(i, s)).collect();
     assert!(expected.iter().any(|m| m.rays < SETTINGS.rays), "some are done with fewer rays");
     assert!(expected.iter().all(|m| m.irradiance.min_element() > 0.0 && m.inherited.x > 0.0));
     for (ranks, threads) in [(1, 1), (1, 3), (2, 1), (3, 2), (4, 1)] {
         let all = run_ranks(ranks, |comm| {
-            let crew = &mut crew(comm, threads);
-            measure(&ROOM.model, &solution, &sensors, SETTINGS, SEED, crew).unwrap().outcome
+            let executor = &mut executor(comm, threads);
+            measure(&solution, &sensors, executor).unwrap().outcome
         });
         for measured in all {
             assert_eq!(measured, expected, "{ranks} ranks, {threads} threads");
@@ -40,8 +49,8 @@ fn sensors_measure_the_same_by_any_number_of_workers() {
 fn measuring_can_be_stopped() {
     let (sensors, solution) = (sensors(), ROOM.shot.solution(&ROOM.model));
     let outcomes = run_ranks(2, |comm| {
-        let crew = &mut crew(comm, 1).watched_by(StopAfter(1));
-        measure(&ROOM.model, &solution, &sensors, SETTINGS, SEED, crew).map(|run| run.outcome)
+        let executor = &mut executor(comm, 1).watched_by(StopAfter(1));
+        measure(&solution, &sensors, executor).map(|run| run.outcome)
     });
     for outcome in outcomes {
         let Err(RunError::Interrupted { done, total }) = outcome else { panic!("{outcome:?}") };

@@ -8,10 +8,10 @@ use std::time::Duration;
 
 use sha2::{Digest, Sha256};
 use sir_lines::Domain;
-use sir_parallel::{Alone, CheckpointError, Checkpoints, Communicator, Crew, RunError, Saved};
+use sir_parallel::{CheckpointError, Checkpoints, Communicator, Executor, RunError, Saved, SingleProcess};
 use tempfile::{TempDir, tempdir};
 
-use crate::jobs::{Job, ROOM, Room, crew};
+use crate::jobs::{Job, ROOM, Room, executor};
 use crate::observers::StopAfter;
 use crate::ranks::run_ranks;
 
@@ -23,8 +23,11 @@ fn stopped(room: &Room, job: Job) -> (TempDir, PathBuf) {
     let path = folder.path().join("run.checkpoint");
     let mut checkpoints = Checkpoints::new(path.clone(), Duration::MAX);
     checkpoints.set_head("a head".into());
-    let mut crew = Crew { checkpoints: Some(&mut checkpoints), ..crew(&Alone, 1).watched_by(StopAfter(2)) };
-    let end = job.run(room, &mut crew, None).map(|_| ());
+    let mut executor = Executor {
+        checkpoints: Some(&mut checkpoints),
+        ..executor(&SingleProcess, 1).watched_by(StopAfter(2))
+    };
+    let end = job.run(room, &mut executor, None).map(|_| ());
     assert!(matches!(end, Err(RunError::Interrupted { .. })), "{job:?}: {end:?}");
     (folder, path)
 }
@@ -48,7 +51,7 @@ fn assert_not_opened(file: &Path, reason: &str) {
 #[track_caller]
 fn assert_not_taken(room: &Room, job: Job, file: &Path) {
     let saved = Saved::open(file).unwrap();
-    match job.run(room, &mut crew(&Alone, 1), Some(saved)).map(|_| ()) {
+    match job.run(room, &mut executor(&SingleProcess, 1), Some(saved)).map(|_| ()) {
         Err(RunError::Checkpoint(error)) => assert_unfit(&error, file, "another stage, scene or pipeline"),
         other => panic!("{job:?} takes {}: {other:?}", file.display()),
     }
@@ -75,7 +78,7 @@ fn a_checkpoint_with_a_flipped_bit_is_refused() {
     let (_folder, path) = stopped(&ROOM, Job::Batches);
     let whole = fs::read(&path).unwrap();
     // In the head, in the state, and in the hash.
-    let head = "SIR checkpoint 3\n".len();
+    let head = "SIR checkpoint 4\n".len();
     for place in
         [head + 1, whole.len() / 3, whole.len() / 2, whole.len() - 33, whole.len() - 32, whole.len() - 1]
     {
@@ -94,7 +97,7 @@ fn a_file_of_another_kind_is_refused() {
     let picture = [&b"\x89PNG\r\n\x1a\n"[..], &[0xFF; 500]].concat();
     for content in [text, picture, vec![b'S'; 1000], b"SIR".repeat(20), vec![b'\n'; 64]] {
         fs::write(&path, content).unwrap();
-        assert_not_opened(&path, "it does not begin with \"SIR checkpoint 3\"");
+        assert_not_opened(&path, "it does not begin with \"SIR checkpoint 4\"");
     }
 }
 
@@ -130,7 +133,7 @@ fn a_missing_checkpoint_cannot_be_read() {
 
 #[test]
 fn a_checkpoint_of_another_stage_is_refused() {
-    let jobs = [Job::FirstShot, Job::AimedShot, Job::Batches, Job::AimedBatches, MULTIPATH];
+    let jobs = [Job::FirstShot, Job::FocusedShot, Job::Batches, Job::FocusedBatches, MULTIPATH];
     for saved in jobs {
         let (_folder, path) = stopped(&ROOM, saved);
         for job in jobs {
@@ -174,7 +177,7 @@ fn a_checkpoint_of_another_domain_is_refused() {
 fn a_checkpoint_without_a_state_is_refused_by_stages() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("run.checkpoint");
-    Checkpoints::new(path.clone(), Duration::MAX).save_start(&Alone).unwrap();
+    Checkpoints::new(path.clone(), Duration::MAX).save_start(&SingleProcess).unwrap();
     for job in [Job::FirstShot, Job::Batches, MULTIPATH] {
         assert_not_taken(&ROOM, job, &path);
     }
@@ -192,7 +195,7 @@ fn a_refusal_reaches_all_ranks() {
         for job in jobs {
             let ends = run_ranks(3, |comm| {
                 let saved = if comm.is_first() { Saved::open(&path).unwrap() } else { Saved::elsewhere() };
-                job.run(&ROOM, &mut crew(comm, 2), Some(saved)).map(|_| ())
+                job.run(&ROOM, &mut executor(comm, 2), Some(saved)).map(|_| ())
             });
             let [Err(RunError::Checkpoint(first)), others @ ..] = &ends[..] else {
                 panic!("{job:?}: {ends:?}")
@@ -212,6 +215,6 @@ fn a_checkpoint_that_was_refused_by_one_stage_can_be_resumed_by_another() {
     let (_folder, path) = stopped(&ROOM, Job::FirstShot);
     assert_not_taken(&ROOM, Job::Batches, &path);
     let saved = Saved::open(&path).unwrap();
-    let outcome = Job::FirstShot.run(&ROOM, &mut crew(&Alone, 1), Some(saved)).unwrap();
+    let outcome = Job::FirstShot.run(&ROOM, &mut executor(&SingleProcess, 1), Some(saved)).unwrap();
     outcome.assert_is(&Job::FirstShot.by_hand(&ROOM), "after a refusal");
 }

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::time::Duration;
 
-use sir_parallel::{Checkpoints, Communicator, Crew, RunError, Saved};
+use sir_parallel::{Checkpoints, Communicator, Executor, RunError, Saved};
 use tempfile::tempdir;
 
-use crate::jobs::{FINE_ROOM, JOBS, Job, LINES, Outcome, ROOM, Room, crew};
+use crate::jobs::{FINE_ROOM, JOBS, Job, LINES, Outcome, ROOM, Room, executor};
 use crate::observers::{Collect, StopAfter};
 use crate::ranks::{Ranks, run_ranks};
 
@@ -51,8 +51,9 @@ fn run(room: &Room, job: Job, legs: &[Leg]) -> (Outcome, Vec<u64>) {
             // Any rank may ask.
             let asks = comm.rank() == n % leg.ranks;
             let observer = Box::new(StopAfter(if asks { leg.looks } else { u32::MAX }));
-            let mut crew = Crew { observer, checkpoints: Some(&mut checkpoints), ..crew(comm, leg.threads) };
-            job.run(room, &mut crew, saved)
+            let mut executor =
+                Executor { observer, checkpoints: Some(&mut checkpoints), ..executor(comm, leg.threads) };
+            job.run(room, &mut executor, saved)
         });
         let mut ends = outcomes.into_iter().map(|outcome| match outcome {
             Ok(outcome) => Ok(outcome),
@@ -74,7 +75,7 @@ fn run(room: &Room, job: Job, legs: &[Leg]) -> (Outcome, Vec<u64>) {
     panic!("{job:?} does not finish: {legs:?}, {stops:?}");
 }
 
-/// Stops after each of some numbers of reports, and goes on with another crew.
+/// Stops after each of some numbers of reports, and goes on with another executor.
 fn assert_resumable(job: Job) {
     let expected = job.by_hand(&ROOM);
     let mut within = 0;
@@ -115,13 +116,13 @@ fn assert_resumable_often(job: Job) {
 #[test]
 fn a_first_shot_goes_on_after_a_stop() {
     assert_resumable(Job::FirstShot);
-    assert_resumable(Job::AimedShot);
+    assert_resumable(Job::FocusedShot);
 }
 
 #[test]
 fn batches_go_on_after_a_stop() {
     assert_resumable(Job::Batches);
-    assert_resumable(Job::AimedBatches);
+    assert_resumable(Job::FocusedBatches);
 }
 
 #[test]
@@ -173,12 +174,12 @@ fn assert_saved_at_every_look(job: Job) {
     let outcomes = run_ranks(2, |comm| {
         let mut copies = Vec::new();
         let mut checkpoints = checkpoints(comm, &path, Duration::ZERO);
-        let mut crew = Crew { checkpoints: Some(&mut checkpoints), ..crew(comm, 2) };
+        let mut executor = Executor { checkpoints: Some(&mut checkpoints), ..executor(comm, 2) };
         if comm.is_first() {
-            crew.observer = Box::new(Collect { checkpoint: &path, copies: &mut copies });
+            executor.observer = Box::new(Collect { checkpoint: &path, copies: &mut copies });
         }
-        let outcome = job.run(&ROOM, &mut crew, None).unwrap();
-        drop(crew);
+        let outcome = job.run(&ROOM, &mut executor, None).unwrap();
+        drop(executor);
         (outcome, copies)
     });
     for (rank, (outcome, _)) in outcomes.iter().enumerate() {
@@ -189,7 +190,7 @@ fn assert_saved_at_every_look(job: Job) {
     for (k, (done, copy)) in copies.iter().chain([&(LINES, path)]).enumerate() {
         let (ranks, threads) = [(1, 1), (3, 1), (1, 3)][k % 3];
         let resumed =
-            run_ranks(ranks, |comm| job.run(&ROOM, &mut crew(comm, threads), Some(saved(comm, copy))));
+            run_ranks(ranks, |comm| job.run(&ROOM, &mut executor(comm, threads), Some(saved(comm, copy))));
         for outcome in resumed {
             outcome.unwrap().assert_is(&expected, &format!("{job:?}, copy {k}, of before line {done}"));
         }
@@ -216,8 +217,8 @@ fn every_checkpoint_of_multipath_is_good() {
 fn a_stop_without_checkpoints_is_only_a_stop() {
     for job in JOBS {
         let outcomes = run_ranks(2, |comm| {
-            let mut crew = crew(comm, 1).watched_by(StopAfter(1));
-            job.run(&ROOM, &mut crew, None).map(|_| ())
+            let mut executor = executor(comm, 1).watched_by(StopAfter(1));
+            job.run(&ROOM, &mut executor, None).map(|_| ())
         });
         let stopped = |end: &Result<(), RunError>| matches!(end, Err(RunError::Interrupted { .. }));
         assert!(outcomes.iter().all(stopped), "{job:?}: {outcomes:?}");

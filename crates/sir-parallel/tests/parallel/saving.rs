@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use sir_parallel::{Alone, CheckpointError, Checkpoints, Communicator, Crew, RunError, Saved};
+use sir_parallel::{CheckpointError, Checkpoints, Communicator, Executor, RunError, Saved, SingleProcess};
 use tempfile::tempdir;
 
-use crate::jobs::{JOBS, Job, Outcome, ROOM, crew};
+use crate::jobs::{JOBS, Job, Outcome, ROOM, executor};
 use crate::observers::StopAfter;
 use crate::ranks::run_ranks;
 
@@ -19,8 +19,9 @@ fn stop(
     checkpoints: &mut Checkpoints,
     looks: u32,
 ) -> Result<Outcome, RunError> {
-    let mut crew = Crew { checkpoints: Some(checkpoints), ..crew(comm, 1).watched_by(StopAfter(looks)) };
-    job.run(&ROOM, &mut crew, None)
+    let mut executor =
+        Executor { checkpoints: Some(checkpoints), ..executor(comm, 1).watched_by(StopAfter(looks)) };
+    job.run(&ROOM, &mut executor, None)
 }
 
 /// The message names the file, and says what can still be relied on.
@@ -49,10 +50,10 @@ fn the_head_comes_back_as_it_was() {
     for head in ["", "{\"stage\": \"first shot\", \"seed\": 3}", "Wände, 壁, 🏠", " \tx\r ", " ", &long] {
         let mut checkpoints = Checkpoints::new(path.clone(), Duration::MAX);
         checkpoints.set_head(head.to_owned());
-        checkpoints.save_start(&Alone).unwrap();
+        checkpoints.save_start(&SingleProcess).unwrap();
         assert_eq!(Saved::open(&path).unwrap().head(), head);
         for job in JOBS {
-            assert!(stop(job, &Alone, &mut checkpoints, 1).is_err());
+            assert!(stop(job, &SingleProcess, &mut checkpoints, 1).is_err());
             assert_eq!(Saved::open(&path).unwrap().head(), head, "{job:?}");
         }
     }
@@ -65,10 +66,10 @@ fn a_new_head_replaces_the_old_one_at_the_next_save() {
     let path = folder.path().join("run.checkpoint");
     let mut checkpoints = Checkpoints::new(path.clone(), Duration::MAX);
     checkpoints.set_head("first".into());
-    checkpoints.save_start(&Alone).unwrap();
+    checkpoints.save_start(&SingleProcess).unwrap();
     checkpoints.set_head("second".into());
     assert_eq!(Saved::open(&path).unwrap().head(), "first");
-    checkpoints.save_start(&Alone).unwrap();
+    checkpoints.save_start(&SingleProcess).unwrap();
     assert_eq!(Saved::open(&path).unwrap().head(), "second");
 }
 
@@ -80,7 +81,7 @@ fn there_is_only_one_file() {
     fs::write(folder.path().join("run.checkpoint.part"), [b'x'; 1_000_000]).unwrap();
     for looks in [0, 1, 2] {
         let mut checkpoints = Checkpoints::new(path.clone(), Duration::ZERO);
-        assert!(stop(Job::Batches, &Alone, &mut checkpoints, looks).is_err());
+        assert!(stop(Job::Batches, &SingleProcess, &mut checkpoints, looks).is_err());
         assert_eq!(names(folder.path()), ["run.checkpoint"]);
         assert!(Saved::open(&path).is_ok());
     }
@@ -97,7 +98,7 @@ fn checkpoints_with_similar_names_do_not_mix() {
                 let mut checkpoints = Checkpoints::new(path.clone(), Duration::ZERO);
                 checkpoints.set_head(path.to_str().unwrap().to_owned());
                 for _ in 0..20 {
-                    checkpoints.save_start(&Alone).unwrap();
+                    checkpoints.save_start(&SingleProcess).unwrap();
                     assert_eq!(Saved::open(path).unwrap().head(), path.to_str().unwrap());
                 }
             });
@@ -110,10 +111,10 @@ fn checkpoints_with_similar_names_do_not_mix() {
 fn a_folder_that_does_not_exist_is_reported() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("missing/run.checkpoint");
-    let error = Checkpoints::new(path.clone(), Duration::MAX).save_start(&Alone).unwrap_err();
+    let error = Checkpoints::new(path.clone(), Duration::MAX).save_start(&SingleProcess).unwrap_err();
     assert!(matches!(&error, CheckpointError::Write { path: named, .. } if *named == path), "{error:?}");
     for job in JOBS {
-        let end = stop(job, &Alone, &mut Checkpoints::new(path.clone(), Duration::MAX), 1);
+        let end = stop(job, &SingleProcess, &mut Checkpoints::new(path.clone(), Duration::MAX), 1);
         assert_not_written(end, &path);
     }
 }
@@ -138,14 +139,14 @@ fn the_file_before_stays_whole_if_a_new_one_cannot_be_made() {
         let folder = tempdir().unwrap();
         let path = folder.path().join("run.checkpoint");
         let mut checkpoints = Checkpoints::new(path.clone(), Duration::MAX);
-        assert!(stop(job, &Alone, &mut checkpoints, 1).is_err());
+        assert!(stop(job, &SingleProcess, &mut checkpoints, 1).is_err());
         let before = fs::read(&path).unwrap();
 
         fs::create_dir(folder.path().join("run.checkpoint.part")).unwrap();
-        assert_not_written(stop(job, &Alone, &mut checkpoints, 2), &path);
+        assert_not_written(stop(job, &SingleProcess, &mut checkpoints, 2), &path);
         assert!(fs::read(&path).unwrap() == before, "{job:?}");
         let saved = Saved::open(&path).unwrap();
-        let outcome = job.run(&ROOM, &mut crew(&Alone, 2), Some(saved)).unwrap();
+        let outcome = job.run(&ROOM, &mut executor(&SingleProcess, 2), Some(saved)).unwrap();
         outcome.assert_is(&job.by_hand(&ROOM), &format!("{job:?}"));
     }
 }
@@ -157,7 +158,7 @@ fn the_file_before_stays_whole_if_the_disk_is_full() {
     for job in JOBS {
         let folder = tempdir().unwrap();
         let path = folder.path().join("run.checkpoint");
-        assert!(stop(job, &Alone, &mut Checkpoints::new(path.clone(), Duration::MAX), 1).is_err());
+        assert!(stop(job, &SingleProcess, &mut Checkpoints::new(path.clone(), Duration::MAX), 1).is_err());
         let before = fs::read(&path).unwrap();
 
         for every in [Duration::MAX, Duration::ZERO] {

@@ -1,9 +1,12 @@
 //! View factors are the same by any number of workers, and can be stopped.
 
-use sir_parallel::{Communicator, RunError, view_factors};
-use sir_radiosity::{Accuracy, Books, Grouping, Receiver, ViewFactorLines, ViewFactorSettings, ViewFactors};
+use sir_parallel::{Communicator, Executor, RunError, Start};
+use sir_radiosity::{
+    Accuracy, AnyOrder, Grouping, OneWorker, Receiver, Stage, StageTotals, ViewFactorLines,
+    ViewFactorSettings, ViewFactorTask, ViewFactors,
+};
 
-use crate::jobs::{ROOM, crew};
+use crate::jobs::{ROOM, executor};
 use crate::observers::StopAfter;
 use crate::ranks::run_ranks;
 
@@ -11,18 +14,27 @@ use crate::ranks::run_ranks;
 const SETTINGS: ViewFactorSettings =
     ViewFactorSettings { accuracy: Some(Accuracy { error: 5e-3, relative: 0.05 }), lines: u64::MAX, seed: 4 };
 
-/// Without any crew.
+fn task(grouping: &Grouping) -> ViewFactorTask<'_> {
+    ViewFactorTask { model: &ROOM.model, grouping, settings: SETTINGS }
+}
+
+/// Without an executor.
 fn by_hand(grouping: &Grouping) -> ViewFactors {
-    let mut stage = ViewFactorLines::new(&ROOM.model, grouping, SETTINGS).unwrap();
+    let mut stage = ViewFactorLines::begin(task(grouping), (), &OneWorker).unwrap();
+    let mut totals = StageTotals::default();
     let mut rounds = 0;
     loop {
-        stage.trace(stage.lines(), &mut Books::default());
+        stage.trace(0, &mut AnyOrder, stage.round(), &mut totals);
         rounds += 1;
-        if !stage.advance() {
+        if !stage.advance(&OneWorker) {
             assert!(rounds > 3);
-            return stage.finish();
+            return stage.finish(totals).unwrap();
         }
     }
+}
+
+fn count(grouping: &Grouping, executor: &mut Executor<'_>) -> Result<ViewFactors, RunError> {
+    executor.run::<ViewFactorLines<'_>>(task(grouping), Start::Fresh(())).map(|run| run.outcome)
 }
 
 #[test]
@@ -35,9 +47,7 @@ fn any_number_of_workers_counts_the_same() {
     }
     for threads in [1, 3] {
         for ranks in [1, 2, 3] {
-            let outcomes = run_ranks(ranks, |comm| {
-                view_factors(&ROOM.model, &grouping, SETTINGS, &mut crew(comm, threads)).unwrap()
-            });
+            let outcomes = run_ranks(ranks, |comm| count(&grouping, &mut executor(comm, threads)).unwrap());
             outcomes.iter().for_each(|factors| assert_eq!(factors, &expected, "{threads}, {ranks}"));
         }
     }
@@ -48,7 +58,7 @@ fn all_ranks_stop_when_one_wants_to() {
     let grouping = Grouping::by_material(&ROOM.model.scene);
     let outcomes = run_ranks(2, |comm| {
         let observer = StopAfter(if comm.rank() == 1 { 2 } else { u32::MAX });
-        view_factors(&ROOM.model, &grouping, SETTINGS, &mut crew(comm, 1).watched_by(observer)).unwrap_err()
+        count(&grouping, &mut executor(comm, 1).watched_by(observer)).unwrap_err()
     });
     for error in outcomes {
         let RunError::Interrupted { done, total } = error else { panic!("{error}") };

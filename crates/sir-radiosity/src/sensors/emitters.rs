@@ -9,20 +9,20 @@ use sir_mesh::PatchId;
 
 use crate::emitter::Emitter;
 use crate::model::Model;
-use crate::sensors::Sensor;
+use crate::sensors::sensor::Sensor;
 use crate::sensors::tree::{Leaf, MOST_GROUPS, Tree};
 use crate::sources;
 
 /// All emitting surfaces of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Emitters {
-    lamps: Vec<Lamp>,
+    patches: Vec<EmittingPatch>,
     /// Groups of them, if there are many.
     tree: Option<Tree>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Lamp {
+struct EmittingPatch {
     triangle: TriangleId,
     /// The patch of it, if its patches differ.
     patch: Option<PatchId>,
@@ -39,9 +39,9 @@ pub(super) struct Choice<'e> {
     emitters: &'e Emitters,
     origin: DVec3,
     normal: DVec3,
-    /// What is told apart: ranges in the order of the tree; without a tree, nothing, since then it is the lamps themselves.
+    /// What is told apart: ranges in the order of the tree; without a tree, nothing, since then it is the patches themselves.
     groups: Vec<Range<u32>>,
-    /// Running sums of the probabilities of groups, or of lamps; empty if the sensor sees no emitter.
+    /// Running sums of the probabilities of groups, or of patches; empty if the sensor sees no emitter.
     ends: Vec<f64>,
 }
 
@@ -61,7 +61,7 @@ pub(super) struct Aim {
 impl Emitters {
     pub(super) fn of(model: &Model) -> Self {
         let Model { scene, mesh, .. } = model;
-        let lamps = sources(scene, mesh).into_iter().filter_map(|source| match source.emitter {
+        let patches = sources(scene, mesh).into_iter().filter_map(|source| match source.emitter {
             Emitter::Surface { triangle, patch, side, corners, normal } => {
                 let exitance = match patch {
                     Some(patch) => model.exitance(triangle, patch, side),
@@ -70,32 +70,32 @@ impl Emitters {
                 // Gaps included: rays that are aimed at them meet something else.
                 let [a, b, c] = corners;
                 let area = 0.5 * (b - a).cross(c - a).length();
-                Some(Lamp { triangle, patch, side, corners, normal, exitance, area })
+                Some(EmittingPatch { triangle, patch, side, corners, normal, exitance, area })
             }
             // Lights without a surface are measured by themselves, and the sky is what no ray meets.
             _ => None,
         });
-        let lamps: Vec<Lamp> = lamps.collect();
-        let tree = (lamps.len() > MOST_GROUPS).then(|| {
-            let leaf = |&Lamp { corners, normal, exitance, area, .. }: &Lamp| Leaf {
+        let patches: Vec<EmittingPatch> = patches.collect();
+        let tree = (patches.len() > MOST_GROUPS).then(|| {
+            let leaf = |&EmittingPatch { corners, normal, exitance, area, .. }: &EmittingPatch| Leaf {
                 corners,
                 normal,
                 power: exitance.element_sum() * area,
                 area,
             };
-            Tree::new(&lamps.iter().map(leaf).collect::<Vec<_>>())
+            Tree::new(&patches.iter().map(leaf).collect::<Vec<_>>())
         });
-        Self { lamps, tree }
+        Self { patches, tree }
     }
 
     /// How often each is to be aimed at from a point that looks in the direction `normal`: in proportion to an estimate of the
     /// irradiance that it brings.
     pub(super) fn from(&self, origin: DVec3, sensor: &Sensor) -> Choice<'_> {
-        let normal = sensor.direction;
-        let of_lamp = |k: usize| weight(&self.lamps[k], origin, normal);
+        let normal = sensor.direction();
+        let of_patch = |k: usize| weight(&self.patches[k], origin, normal);
         let (groups, weights): (Vec<_>, Vec<f64>) = match &self.tree {
-            Some(tree) => tree.cut(origin, normal, of_lamp).into_iter().unzip(),
-            None => (Vec::new(), (0..self.lamps.len()).map(of_lamp).collect()),
+            Some(tree) => tree.cut(origin, normal, of_patch).into_iter().unzip(),
+            None => (Vec::new(), (0..self.patches.len()).map(of_patch).collect()),
         };
         let total: f64 = weights.iter().sum();
         let mut sum = 0.0;
@@ -112,9 +112,9 @@ impl Emitters {
 
 /// Exitance times an estimate of the share of the hemisphere that a source takes: from the geometry at its corners and its middle,
 /// and never more than all. Zero only where the source is behind the sensor, or the sensor behind the source.
-fn weight(lamp: &Lamp, origin: DVec3, normal: DVec3) -> f64 {
-    let [a, b, c] = lamp.corners;
-    let height = (origin - a).dot(lamp.normal);
+fn weight(emitting: &EmittingPatch, origin: DVec3, normal: DVec3) -> f64 {
+    let [a, b, c] = emitting.corners;
+    let height = (origin - a).dot(emitting.normal);
     if height <= 0.0 {
         return 0.0;
     }
@@ -125,8 +125,8 @@ fn weight(lamp: &Lamp, origin: DVec3, normal: DVec3) -> f64 {
         to.dot(normal).max(0.0) * height / (square * square).max(f64::MIN_POSITIVE)
     };
     let geometry = (at(a) + at(b) + at(c) + at((a + b + c) / 3.0)) / 4.0;
-    let factor = (lamp.area * geometry).min(f64::MAX);
-    lamp.exitance.element_sum() * (factor / (PI + factor))
+    let factor = (emitting.area * geometry).min(f64::MAX);
+    emitting.exitance.element_sum() * (factor / (PI + factor))
 }
 
 impl Choice<'_> {
@@ -157,7 +157,7 @@ impl Choice<'_> {
     /// counts `M/π · cos θ` over the sum of both (the balance heuristic of Veach and Guibas 1995), which is never more than `M`:
     /// neither an emitter that nearly touches the sensor nor one that is small and bright makes few rays carry much.
     fn brings(&self, k: usize, direction: DVec3, distance: f64) -> Rgb {
-        let Lamp { exitance, area, normal, .. } = self.emitters.lamps[k];
+        let EmittingPatch { exitance, area, normal, .. } = self.emitters.patches[k];
         let cosine = direction.dot(self.normal);
         let its_cosine = -direction.dot(normal);
         if cosine <= 0.0 || its_cosine <= 0.0 {
@@ -177,8 +177,8 @@ impl Choice<'_> {
         direction: DVec3,
         distance: f64,
     ) -> Rgb {
-        let key = |lamp: &Lamp| (lamp.triangle, lamp.side, lamp.patch);
-        let found = self.emitters.lamps.binary_search_by_key(&(triangle, side, patch), key);
+        let key = |emitting: &EmittingPatch| (emitting.triangle, emitting.side, emitting.patch);
+        let found = self.emitters.patches.binary_search_by_key(&(triangle, side, patch), key);
         found.map_or(Rgb::ZERO, |k| self.brings(k, direction, distance))
     }
 
@@ -193,7 +193,7 @@ impl Choice<'_> {
             (Some(tree), Some(range)) => tree.choose(range, within),
             _ => (group, within),
         };
-        let Lamp { triangle, side, corners, .. } = self.emitters.lamps[k];
+        let EmittingPatch { triangle, side, corners, .. } = self.emitters.patches[k];
         let to = sir_lines::continuous_point_on_triangle([within, v]).point(corners) - self.origin;
         let (distance, direction) = (to.length(), to.try_normalize()?);
         let brings = self.brings(k, direction, distance);

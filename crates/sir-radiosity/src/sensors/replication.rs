@@ -9,7 +9,6 @@ use sir_lines::{EvenPoints, Stream, cosine_direction};
 use sir_mesh::SideId;
 
 use crate::model::Model;
-use crate::sensors::Sensors;
 use crate::sensors::emitters::{Aim, Choice};
 use crate::solution::Solution;
 
@@ -51,7 +50,7 @@ impl Replication {
     pub(super) fn trace(
         &mut self,
         rays: u64,
-        sensors: &Sensors<'_>,
+        (model, solution): (&Model, &Solution),
         (origin, normal): (DVec3, DVec3),
         choice: &Choice<'_>,
         tracer: &mut Tracer<'_>,
@@ -73,7 +72,7 @@ impl Replication {
             let mut hits = vec![None; all.len()];
             tracer.closest_each(&all, |i, hit| hits[i] = hit);
             for (ray, hit) in all[..free].iter().zip(&hits) {
-                self.gather(sensors, choice, ray.line.direction, hit.as_ref(), met);
+                self.gather((model, solution), choice, ray.line.direction, hit.as_ref(), met);
             }
             for (Aim { triangle, side, brings, .. }, hit) in aims.iter().zip(&hits[free..]) {
                 if hit.is_some_and(|hit| (hit.triangle, hit.side) == (*triangle, *side)) {
@@ -86,13 +85,13 @@ impl Replication {
     /// Adds what a ray over the hemisphere brings: the radiosity of what it has met.
     fn gather(
         &mut self,
-        sensors: &Sensors<'_>,
+        (model, solution): (&Model, &Solution),
         choice: &Choice<'_>,
         direction: DVec3,
         hit: Option<&Hit>,
         met: &mut Met,
     ) {
-        let Model { scene, mesh, .. } = sensors.model;
+        let Model { scene, mesh, .. } = model;
         let Some(hit) = hit else {
             self.direct += scene.sky().map_or(Rgb::ZERO, |sky| PI * sky.radiance(direction));
             return;
@@ -100,9 +99,9 @@ impl Replication {
         let Some(side) = mesh.side_at(hit.triangle, hit.point, hit.side) else { return };
         let patch = mesh.is_varied(hit.triangle).then(|| mesh.patch_at(hit.triangle, hit.point));
         self.direct += choice.met(hit.triangle, patch, hit.side, direction, hit.t);
-        let reflectance = sensors.model.reflectance(hit.triangle, side);
+        let reflectance = model.reflectance(hit.triangle, side);
         if reflectance != Rgb::ZERO {
-            self.reflected += reflectance * sensors.solution.irradiance[side.index()];
+            self.reflected += reflectance * solution.irradiance[side.index()];
             met.0.push((side, hit.triangle));
         }
     }

@@ -15,7 +15,7 @@
 
 use thiserror::Error;
 
-use crate::view_factors::{Receiver, ViewFactors};
+use crate::view_factors::table::{Receiver, ViewFactors};
 
 /// Most steps of Newton's method; a few are enough where there is a solution.
 const STEPS: usize = 50;
@@ -44,6 +44,17 @@ pub struct Closed {
     /// Exchange areas, then what is blocked and escapes, of each group; and their variances.
     exchange: Vec<f64>,
     variance: Vec<f64>,
+}
+
+impl ViewFactors {
+    /// Returns factors that obey reciprocity and add up to 1, and are as close as they can be to those that were counted.
+    ///
+    /// # Errors
+    ///
+    /// If there are none, or too few lines to find them.
+    pub fn closed(&self) -> Result<Closed, ClosureError> {
+        close(self)
+    }
 }
 
 impl Closed {

@@ -5,17 +5,17 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use sir_accel::Ray;
 use sir_geom::{Line, Side, TriangleId};
-use sir_lines::{Allocation, Stage, Streams, cosine_direction};
+use sir_lines::{Allocation, Stage as Purpose, Streams, cosine_direction};
 
-use crate::balance::Books;
 use crate::emitter::point_on_surface;
 use crate::error::SolveError;
-use crate::grouping::Grouping;
-use crate::grouping::active_area;
+use crate::grouping::{Grouping, active_area};
 use crate::model::Model;
-use crate::state::Visitor;
-use crate::view_factors::ViewFactors;
+use crate::stage::{AnyOrder, Stage, Workers};
+use crate::totals::StageTotals;
 use crate::view_factors::effort::{Next, ViewFactorSettings};
+use crate::view_factors::table::ViewFactors;
+use crate::visitor::Visitor;
 
 /// Most groups: the tables grow with their square.
 pub const MAX_GROUPS: usize = 4096;
@@ -31,7 +31,20 @@ struct Sender {
     ends: Vec<f64>,
 }
 
-/// A stage of lines that count view factors, in rounds. Any number of workers may trace the lines of a round.
+/// What view factors are wanted of.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewFactorTask<'m> {
+    /// The scene and its patches.
+    pub model: &'m Model,
+    /// The groups of surfaces.
+    pub grouping: &'m Grouping,
+    /// Accuracy, lines and seed.
+    pub settings: ViewFactorSettings,
+}
+
+/// Local lines that count view factors, in rounds.
+///
+/// It cannot begin with more than [`MAX_GROUPS`] groups, nor with too few lines for them.
 #[derive(Debug)]
 pub struct ViewFactorLines<'m> {
     model: &'m Model,
@@ -49,16 +62,45 @@ pub struct ViewFactorLines<'m> {
 }
 
 impl<'m> ViewFactorLines<'m> {
-    /// The first round.
-    ///
-    /// # Errors
-    ///
-    /// If there are more than [`MAX_GROUPS`] groups, or too few lines for them.
-    pub fn new(
-        model: &'m Model,
-        grouping: &'m Grouping,
-        settings: ViewFactorSettings,
-    ) -> Result<Self, SolveError> {
+    /// Lines of all rounds before this one.
+    fn done(&self) -> u64 {
+        self.lines.iter().sum()
+    }
+
+    /// Decides how many lines the next round has, and of which groups.
+    fn plan_round(&mut self) {
+        self.next = self.settings.next(&self.lines, &self.counts);
+        self.allocation = Allocation::new(&self.next.weights, self.next.end - self.done(), 0.5);
+    }
+
+    /// Returns a ray that leaves a group.
+    fn ray(&self, group: usize, index: u64) -> Ray {
+        let Sender { triangles, ends } = &self.senders[group];
+        let scene = &self.model.scene;
+        let mut stream = self.streams.line(index);
+        let last = triangles.len() - 1;
+        let place = stream.unit() * ends[last];
+        let triangle = triangles[ends.partition_point(|&end| end <= place).min(last)];
+        let back = scene.is_active(triangle, Side::Back) && stream.unit() < 0.5;
+        let normal = if back { -scene.normal(triangle) } else { scene.normal(triangle) };
+        let origin = point_on_surface(scene, triangle, scene.corners(triangle), &mut stream);
+        let line = Line { origin, direction: cosine_direction(normal, stream.point()) };
+        Ray::leaving(line, triangle)
+    }
+}
+
+impl<'m> Stage for ViewFactorLines<'m> {
+    type Settings = ViewFactorTask<'m>;
+    type Input = ();
+    type Outcome = ViewFactors;
+    type Chain = AnyOrder;
+
+    fn identity(settings: &Self::Settings) -> Vec<u64> {
+        vec![5, settings.model.mesh.side_count() as u64, settings.settings.seed]
+    }
+
+    fn begin(settings: Self::Settings, (): (), _workers: &dyn Workers) -> Result<Self, SolveError> {
+        let ViewFactorTask { model, grouping, settings } = settings;
         let groups = grouping.names().len();
         if groups > MAX_GROUPS {
             return Err(SolveError::TooManyGroups { groups, most: MAX_GROUPS });
@@ -80,7 +122,7 @@ impl<'m> ViewFactorLines<'m> {
             model,
             grouping,
             settings,
-            streams: Streams::new(settings.seed, Stage::VIEW_FACTORS),
+            streams: Streams::new(settings.seed, Purpose::VIEW_FACTORS),
             senders,
             lines,
             round: counts.iter().map(|_| AtomicU64::new(0)).collect(),
@@ -90,40 +132,30 @@ impl<'m> ViewFactorLines<'m> {
         })
     }
 
-    /// Lines of all rounds before this one.
-    fn done(&self) -> u64 {
-        self.lines.iter().sum()
+    fn restore(
+        settings: Self::Settings,
+        workers: &dyn Workers,
+        visitor: &mut dyn Visitor,
+    ) -> Result<Self, SolveError> {
+        let mut stage = Self::begin(settings, (), workers)?;
+        stage.visit(visitor);
+        stage.plan_round();
+        Ok(stage)
     }
 
-    /// The lines of this round.
-    #[must_use]
-    pub fn lines(&self) -> Range<u64> {
+    fn round(&self) -> Range<u64> {
         self.done()..self.next.end
     }
 
-    /// How many lines will be needed in all, as far as can be told.
-    #[must_use]
-    pub fn expected(&self) -> u64 {
+    fn expected(&self) -> u64 {
         self.next.expected
     }
 
-    /// A ray that leaves a group.
-    fn ray(&self, group: usize, index: u64) -> Ray {
-        let Sender { triangles, ends } = &self.senders[group];
-        let scene = &self.model.scene;
-        let mut stream = self.streams.line(index);
-        let last = triangles.len() - 1;
-        let place = stream.unit() * ends[last];
-        let triangle = triangles[ends.partition_point(|&end| end <= place).min(last)];
-        let back = scene.is_active(triangle, Side::Back) && stream.unit() < 0.5;
-        let normal = if back { -scene.normal(triangle) } else { scene.normal(triangle) };
-        let origin = point_on_surface(scene, triangle, scene.corners(triangle), &mut stream);
-        let line = Line { origin, direction: cosine_direction(normal, stream.point()) };
-        Ray::leaving(line, triangle)
+    fn chain(&self, _number: u64) -> AnyOrder {
+        AnyOrder
     }
 
-    /// Traces some lines of this round. Each line should be traced once, by whomever.
-    pub fn trace(&self, lines: Range<u64>, books: &mut Books) {
+    fn trace(&self, _worker: usize, _chain: &mut AnyOrder, lines: Range<u64>, totals: &mut StageTotals) {
         let groups = self.senders.len();
         let (blocked, escaped, columns) = (groups, groups + 1, groups + 2);
         let scene = &self.model.scene;
@@ -152,7 +184,7 @@ impl<'m> ViewFactorLines<'m> {
                     None => escaped,
                 };
             });
-            books.counts.lines += rays.len() as u64;
+            totals.counts.lines += rays.len() as u64;
             // Lines of a group follow each other. Threads meet at a number of the tally seldom, not for every line.
             let mut receivers = &receivers[..rays.len()];
             for run in senders.chunk_by(|a, b| a == b) {
@@ -169,15 +201,13 @@ impl<'m> ViewFactorLines<'m> {
         }
     }
 
-    /// Shows what this round has counted to a visitor.
-    pub fn visit_round(&mut self, visitor: &mut dyn Visitor) {
+    fn visit_round(&mut self, visitor: &mut dyn Visitor) {
         let mut words: Vec<i64> = self.round.iter_mut().map(|count| *count.get_mut() as i64).collect();
         visitor.sum(&mut words);
         self.round.iter_mut().zip(words).for_each(|(count, word)| *count.get_mut() = word as u64);
     }
 
-    /// Shows the state of the stage to a visitor.
-    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
+    fn visit(&mut self, visitor: &mut dyn Visitor) {
         for numbers in [&mut self.lines, &mut self.counts] {
             let mut words: Vec<i64> = numbers.iter().map(|&n| n as i64).collect();
             visitor.same(&mut words);
@@ -186,25 +216,22 @@ impl<'m> ViewFactorLines<'m> {
         self.visit_round(visitor);
     }
 
-    /// Closes a round, of which all lines are traced and added up; whether there is another one.
-    pub fn advance(&mut self) -> bool {
+    fn advance(&mut self, _workers: &dyn Workers) -> bool {
         for (sum, count) in self.counts.iter_mut().zip(&mut self.round) {
             *sum += std::mem::take(count.get_mut());
         }
         (0..self.lines.len()).for_each(|i| self.lines[i] += self.allocation.count(i));
-        self.next = self.settings.next(&self.lines, &self.counts);
-        self.allocation = Allocation::new(&self.next.weights, self.next.end - self.done(), 0.5);
+        self.plan_round();
         !self.next.finished
     }
 
-    /// The factors, as all rounds before this one have counted them.
-    #[must_use]
-    pub fn finish(self) -> ViewFactors {
-        ViewFactors {
+    /// Returns the factors as all rounds have counted them.
+    fn finish(self, _totals: StageTotals) -> Result<ViewFactors, SolveError> {
+        Ok(ViewFactors {
             names: self.grouping.names().to_vec(),
             areas: self.grouping.areas(&self.model.scene, &self.model.mesh),
             lines: self.lines,
             counts: self.counts,
-        }
+        })
     }
 }

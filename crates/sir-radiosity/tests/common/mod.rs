@@ -11,7 +11,8 @@ use sir_geom::{Material, MaterialId, Rgb, Scene, SceneBuilder, Side};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_radiosity::{
-    Batches, Books, FirstShot, Model, Multipath, MultipathSettings, SecondShot, Shot, Totals, Transported,
+    AnyOrder, BatchSettings, Batches, FirstShot, Job, Model, Multipath, MultipathSettings, SecondShot, Shot,
+    ShotSettings, Stage, StageTotals, Transported, Workers, run_stage,
 };
 
 /// The exact answers: see `tests/reference/README.md`.
@@ -80,20 +81,32 @@ pub(crate) fn grey(m: f64, rho: f64) -> Material {
     Material::diffuse("", Rgb::splat(rho)).emitting(Rgb::splat(m))
 }
 
+/// A first shot, traced as two workers share it.
 pub(crate) fn shoot(model: &Model, lines: u64, seed: u64) -> Shot {
-    let shot = FirstShot::new(model, lines, seed).unwrap();
-    let (tally, mut books) = (shot.tally(2), Books::default());
-    shot.trace(0, 0..lines / 2, &tally, &mut books);
-    shot.trace(1, lines / 2..lines, &tally, &mut books);
-    shot.finish(tally, books).unwrap()
+    let mut stage = FirstShot::begin(ShotSettings::new(model, lines, seed), (), &TwoWorkers).unwrap();
+    let mut totals = StageTotals::default();
+    stage.trace(0, &mut AnyOrder, 0..lines / 2, &mut totals);
+    stage.trace(1, &mut AnyOrder, lines / 2..lines, &mut totals);
+    assert!(!stage.advance(&TwoWorkers));
+    stage.finish(totals).unwrap()
+}
+
+/// Tallies are made for two workers; jobs are done one after the other.
+struct TwoWorkers;
+
+impl Workers for TwoWorkers {
+    fn count(&self) -> usize {
+        2
+    }
+
+    fn run(&self, jobs: Vec<Job<'_>>) {
+        jobs.into_iter().rev().for_each(|job| job());
+    }
 }
 
 /// A second shot after a first one.
 pub(crate) fn shoot_again(model: &Model, shot: &Shot, lines: u64, seed: u64) -> Shot {
-    let stage = SecondShot::new(model, shot, lines, seed);
-    let (tally, mut books) = (stage.lines().tally(1), Books::default());
-    stage.lines().trace(0, 0..stage.lines().lines(), &tally, &mut books);
-    stage.finish(shot.clone(), tally, books).unwrap()
+    run_stage::<SecondShot<'_>>(ShotSettings::new(model, lines, seed), shot.clone()).unwrap()
 }
 
 /// Transports the light of a first shot; takes the number of lines and the seed.
@@ -109,17 +122,7 @@ pub(crate) fn batches(model: &Model, shot: Shot, lines: u64, seed: u64) -> Trans
 
 /// Frozen batches with lines of a given domain.
 pub(crate) fn batches_in(domain: Domain, model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
-    let mut transport = Batches::new(model, shot, lines, domain, seed, 1);
-    let mut books = Books::default();
-    loop {
-        transport.parts(3).for_each(|mut part| part.open());
-        transport.trace(0, transport.lines(), &mut books);
-        let mut totals = Totals::default();
-        transport.parts(2).for_each(|mut part| totals += part.close());
-        if !transport.advance(totals) {
-            return transport.finish(books).unwrap();
-        }
-    }
+    run_stage::<Batches<'_>>(BatchSettings::new(model, domain, lines, seed), shot).unwrap()
 }
 
 /// Multipath in one replica.
@@ -130,19 +133,13 @@ pub(crate) fn multipath(model: &Model, shot: Shot, lines: u64, seed: u64) -> Tra
 /// Multipath in one replica with lines of a given domain.
 pub(crate) fn multipath_in(domain: Domain, model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
     // A long tail: what is left unshot must be far below standard errors of some 0.01 %.
-    let settings = MultipathSettings { tail: 3 * (lines / 10), ..MultipathSettings::new(lines, domain) };
-    replicas(model, shot, settings, seed)
+    let settings = MultipathSettings::new(model, domain, lines, seed);
+    replicas(shot, MultipathSettings { tail: 3 * (lines / 10), ..settings })
 }
 
 /// Multipath in any number of replicas.
-pub(crate) fn replicas(model: &Model, shot: Shot, settings: MultipathSettings, seed: u64) -> Transported {
-    let count = settings.replicas;
-    let transport = Multipath::new(model, shot, settings, seed, 1);
-    let mut books = Books::default();
-    for number in 0..count {
-        transport.trace(0, &mut transport.replica(number), u64::MAX, &mut books);
-    }
-    transport.finish(books).unwrap()
+pub(crate) fn replicas(shot: Shot, settings: MultipathSettings<'_>) -> Transported {
+    run_stage::<Multipath<'_>>(settings, shot).unwrap()
 }
 
 /// All domains around the scene of a model.

@@ -1,4 +1,4 @@
-//! The ledger of a stage: what every side receives and gives, written by all workers at once.
+//! The tallies of a stage: what every side receives and gives, written by all workers at once.
 
 use std::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 use std::sync::atomic::{AtomicI64, AtomicU32};
@@ -7,7 +7,7 @@ use sir_mesh::SideId;
 
 use crate::power::Quanta;
 use crate::received::Received;
-use crate::state::Visitor;
+use crate::visitor::Visitor;
 
 /// What one side receives and gives: one cache line, so that a line of light touches one place per side.
 ///
@@ -34,7 +34,7 @@ const LOCKED: u32 = 1 << 31;
 /// Writing needs no more than `&self`. Where that is affordable there are several copies of all
 /// records, because two cores that write to the same cache line wait for each other; only sums over the copies count.
 #[derive(Debug)]
-pub(crate) struct Ledger {
+pub(crate) struct PatchTallies {
     /// All sides in the first copy, then all in the second, and so on.
     records: Vec<Record>,
     sides: usize,
@@ -46,7 +46,7 @@ pub(crate) struct Ledger {
 /// Size of all copies together up to which every worker gets one of its own \[bytes\]: about what caches hold.
 const AFFORDABLE: usize = 16 << 20;
 
-/// Which counters of a [`Ledger`] a visitor goes through.
+/// Which counters of a [`PatchTallies`] a visitor goes through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Counters {
     /// All of them.
@@ -60,8 +60,8 @@ pub(crate) enum Counters {
 /// Sides whose counters are handed over at a time: 16,384 sides in at most 0.9 MB.
 const CHUNK: usize = 1 << 14;
 
-impl Ledger {
-    /// An empty ledger for some workers, of at least `least` copies however large it is, if there are as many workers.
+impl PatchTallies {
+    /// An empty tallies for some workers, of at least `least` copies however large it is, if there are as many workers.
     pub(crate) fn new(sides: usize, workers: usize, least: usize, unit: SquareUnit) -> Self {
         let affordable = workers * sides * size_of::<Record>() <= AFFORDABLE;
         let copies = if affordable { workers.max(1) } else { workers.clamp(1, least) };
@@ -75,9 +75,9 @@ impl Ledger {
     }
 
     /// The copy that a worker writes to.
-    pub(crate) fn page(&self, worker: usize) -> Page<'_> {
+    pub(crate) fn of_worker(&self, worker: usize) -> WorkerTallies<'_> {
         let copy = worker % (self.records.len() / self.sides);
-        Page {
+        WorkerTallies {
             records: &self.records[copy * self.sides..][..self.sides],
             unit: self.unit,
             shared: self.shared,
@@ -192,15 +192,15 @@ impl Ledger {
     }
 }
 
-/// One copy of a ledger.
+/// One copy of a tallies.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Page<'a> {
+pub(crate) struct WorkerTallies<'a> {
     records: &'a [Record],
     unit: SquareUnit,
     shared: bool,
 }
 
-impl Page<'_> {
+impl WorkerTallies<'_> {
     /// Says that a side will soon be needed.
     #[inline]
     pub(crate) fn prefetch(self, side: SideId) {
@@ -313,6 +313,13 @@ impl SquareUnit {
             let power = power.0[band] as f64;
             (power * power * self.density[band] + 0.5).min(self.most) as i64
         })
+    }
+
+    /// Returns the unit that was shown to the visitor who saved it.
+    pub(crate) fn restore(visitor: &mut dyn Visitor) -> Self {
+        let mut unit = Self::of([1.0; 3], 0.0);
+        unit.visit(visitor);
+        unit
     }
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {

@@ -1,7 +1,5 @@
 //! The state of a stage as a sequence of numbers.
 
-use crate::power::Quanta;
-
 /// Goes through the state of a stage.
 ///
 /// A stage shows all the numbers that it needs to go on, always in the same order and number. What the visitor makes of
@@ -52,12 +50,7 @@ pub(crate) fn visit_slice<T, const N: usize>(
     }
 }
 
-/// Shows power that all workers have alike to a visitor.
-pub(crate) fn visit_quanta(quanta: &mut [Quanta], visitor: &mut dyn Visitor) {
-    visit_slice(quanta, visitor, |quanta| quanta.0, Quanta);
-}
-
-/// As [`visit_quanta`], for numbers in single precision.
+/// Shows numbers in single precision, three by three.
 pub(crate) fn visit_floats(floats: &mut [[f32; 3]], visitor: &mut dyn Visitor) {
     visit_slice(floats, visitor, |floats| floats.map(to_word), |words| words.map(from_word));
 }

@@ -3,7 +3,7 @@
 use std::ops::AddAssign;
 
 use crate::power::Quanta;
-use crate::state::Visitor;
+use crate::visitor::Visitor;
 
 /// Energy balance of a stage. It closes exactly: `emitted = absorbed + blocked + escaped + unshot`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub struct Counts {
 
 /// What one worker writes down: its part of the balance and of the counts. Those of all workers add up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Books {
+pub struct StageTotals {
     /// Where the power went.
     pub balance: Balance,
     /// What the lines met.
@@ -62,7 +62,7 @@ impl AddAssign for Counts {
     }
 }
 
-impl AddAssign for Books {
+impl AddAssign for StageTotals {
     fn add_assign(&mut self, other: Self) {
         let (mine, theirs) = (&mut self.balance, other.balance);
         mine.emitted += theirs.emitted;
@@ -74,8 +74,8 @@ impl AddAssign for Books {
     }
 }
 
-impl Books {
-    /// Shows the books to a visitor.
+impl StageTotals {
+    /// Shows the totals to a visitor.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
         let Self { balance: b, counts: c } = self;
         for quanta in [&mut b.emitted, &mut b.absorbed, &mut b.blocked, &mut b.escaped, &mut b.unshot] {

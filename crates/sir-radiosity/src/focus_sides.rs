@@ -10,48 +10,48 @@ use crate::model::Model;
 ///
 /// Whatever line crosses such a patch meets the focus, so all that cross it count alike.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Inside(Option<Vec<bool>>);
+pub struct FocusSides(Option<Vec<bool>>);
 
-impl Inside {
+impl FocusSides {
     /// The sides of a model in a focus.
     #[must_use]
     pub fn of(model: &Model, focus: Option<&Focus>) -> Self {
         let Some(focus) = focus else { return Self(None) };
         let bounds = focus.bounds();
-        let mut inside = vec![true; model.mesh.side_count()];
+        let mut in_focus = vec![true; model.mesh.side_count()];
         // A face that is one patch has several triangles.
         for triangle in model.scene.triangle_ids() {
             let corners = model.scene.corners(triangle);
             let whole = corners.iter().all(|&corner| bounds.contains(corner));
             for patch in model.mesh.patches_of(triangle).map(PatchId) {
-                let patch_inside = whole || {
+                let patch_in_focus = whole || {
                     let patch = model.mesh.patch_corners(triangle, patch);
                     patch.iter().all(|corner| bounds.contains(corner.point(corners)))
                 };
                 for side in [Side::Front, Side::Back] {
                     if let Some(id) = model.mesh.side_of(triangle, patch, side) {
-                        inside[id.index()] &= patch_inside;
+                        in_focus[id.index()] &= patch_in_focus;
                     }
                 }
             }
         }
-        Self(Some(inside))
+        Self(Some(in_focus))
     }
 
-    /// Whether a side is one of them.
+    /// True if a side is one of them.
     #[inline]
     #[must_use]
-    pub fn has(&self, side: SideId) -> bool {
-        self.0.as_ref().is_none_or(|inside| inside[side.index()])
+    pub fn contains(&self, side: SideId) -> bool {
+        self.0.as_ref().is_none_or(|in_focus| in_focus[side.index()])
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.0.as_ref().is_some_and(|inside| !inside.contains(&true))
+        self.0.as_ref().is_some_and(|in_focus| !in_focus.contains(&true))
     }
 
-    /// Whether it is all, because there is no focus.
+    /// True if no focus is set.
     #[must_use]
     pub fn is_all(&self) -> bool {
         self.0.is_none()

@@ -1,0 +1,148 @@
+//! The driver: runs any stage with an executor, from its beginning or from a checkpoint.
+
+use sir_radiosity::{SolveError, Stage, StageTotals};
+
+use crate::checkpoint::Saved;
+use crate::error::{CheckpointError, RunError};
+use crate::executor::Executor;
+use crate::remaining::Remaining;
+use crate::slices::Slices;
+use crate::time::StageTime;
+
+/// What a stage starts from.
+#[derive(Debug)]
+pub enum Start<I> {
+    /// Its input: the outcome of the stage before it, or `()`.
+    Fresh(I),
+    /// A checkpoint of the same stage, which holds all that it needs.
+    Resumed(Saved),
+}
+
+/// The outcome of a stage and how long it took.
+#[derive(Clone, Debug)]
+pub struct StageRun<T> {
+    /// What the stage made: the same on all ranks.
+    pub outcome: T,
+    /// Wall-clock time.
+    pub time: StageTime,
+    /// Number of batches or replicas in which the lines were traced; 1 if what a line carries does not depend on other lines.
+    pub batches: u64,
+}
+
+/// A stage under way on this rank.
+struct State<S: Stage> {
+    stage: S,
+    remaining: Remaining<S::Chain>,
+    /// What this rank has counted.
+    totals: StageTotals,
+}
+
+impl Executor<'_> {
+    /// Runs a stage. The outcome is the same on all ranks, and for any number of ranks and threads.
+    ///
+    /// # Errors
+    ///
+    /// If the stage cannot begin, a tally overflowed, the observer wants to stop, or a checkpoint cannot be saved or restored.
+    pub fn run<S: Stage>(
+        &mut self,
+        settings: S::Settings,
+        start: Start<S::Input>,
+    ) -> Result<StageRun<S::Outcome>, RunError> {
+        let slices = &mut Slices::begin(self, &S::identity(&settings));
+        let mut state = match start {
+            Start::Fresh(input) => State::<S>::begin(settings, input, slices)?,
+            Start::Resumed(saved) => State::restore(settings, saved, slices)?,
+        };
+        loop {
+            state.trace_round(slices)?;
+            if !state.next_round(slices) {
+                return state.finish(slices);
+            }
+        }
+    }
+}
+
+impl<S: Stage> State<S> {
+    fn begin(settings: S::Settings, input: S::Input, slices: &Slices<'_, '_>) -> Result<Self, SolveError> {
+        let stage = S::begin(settings, input, &slices.threads())?;
+        let remaining = Remaining::of(&stage, slices.comm());
+        Ok(Self { stage, remaining, totals: StageTotals::default() })
+    }
+
+    fn restore(settings: S::Settings, saved: Saved, slices: &mut Slices<'_, '_>) -> Result<Self, RunError> {
+        let (threads, comm) = (slices.threads(), slices.comm());
+        let mut settings = Some(settings);
+        let mut restored = None;
+        slices.restore(saved, &mut |visitor| {
+            let Some(settings) = settings.take() else { return };
+            let mut totals = StageTotals::default();
+            totals.visit(visitor);
+            restored = Some(S::restore(settings, &threads, visitor).map(|stage| {
+                let mut remaining = Remaining::of(&stage, comm);
+                remaining.restore(&stage, visitor);
+                Self { stage, remaining, totals }
+            }));
+        })?;
+        // A checkpoint that is accepted was shown.
+        restored.ok_or(RunError::Checkpoint(CheckpointError::Elsewhere { rank: 0 }))?.map_err(RunError::from)
+    }
+
+    /// Returns how many lines are done and how many there will be, if so many units of this round are left.
+    fn progress(&self, left: u64) -> (u64, u64) {
+        let weight = self.stage.lines_per_unit();
+        let done = self.stage.round().end - left;
+        (done.saturating_mul(weight), self.stage.expected().saturating_mul(weight))
+    }
+
+    /// Traces the units of a round that are left.
+    fn trace_round(&mut self, slices: &mut Slices<'_, '_>) -> Result<(), RunError> {
+        let mut left = self.remaining.left(slices);
+        while left > 0 {
+            let control = slices.agree();
+            if control.save {
+                self.save(slices)?;
+            }
+            if control.stop {
+                let (done, total) = self.progress(left);
+                return Err(RunError::Interrupted { done, total });
+            }
+            self.remaining.trace(&self.stage, (control.lines, left), slices, &mut self.totals);
+            left = self.remaining.left(slices);
+            let (done, total) = self.progress(left);
+            slices.progress(done, total);
+        }
+        if self.stage.round().end >= self.stage.expected() && slices.is_late() {
+            self.save(slices)?;
+        }
+        Ok(())
+    }
+
+    /// Adds up what all ranks have traced, and goes on to the next round. Returns false if there is none.
+    fn next_round(&mut self, slices: &mut Slices<'_, '_>) -> bool {
+        slices.add_up(|visitor| self.stage.visit_round(visitor));
+        let another = self.stage.advance(&slices.threads());
+        self.remaining = Remaining::of(&self.stage, slices.comm());
+        another
+    }
+
+    fn save(&mut self, slices: &mut Slices<'_, '_>) -> Result<(), CheckpointError> {
+        let table = self.remaining.table(slices);
+        let Self { stage, remaining, totals } = self;
+        let mut totals = *totals;
+        slices.save(&mut |visitor| {
+            totals.visit(visitor);
+            stage.visit(visitor);
+            remaining.save(stage, &table, visitor);
+        })
+    }
+
+    fn finish(mut self, slices: &mut Slices<'_, '_>) -> Result<StageRun<S::Outcome>, RunError> {
+        slices.add_up(|visitor| {
+            self.totals.visit(visitor);
+            self.stage.visit_end(visitor);
+        });
+        let batches = self.stage.batches();
+        let outcome = self.stage.finish(self.totals)?;
+        Ok(StageRun { outcome, time: slices.time(), batches })
+    }
+}

@@ -1,0 +1,102 @@
+//! Threads of this process.
+
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::thread;
+
+use sir_radiosity::{Job, StageTotals, Workers};
+
+/// Most lines that a thread takes at a time: some milliseconds of work.
+pub(crate) const BLOCK: u64 = 1 << 10;
+
+/// Fewest lines that a thread takes at a time.
+const SMALLEST_BLOCK: u64 = 16;
+
+/// A number of threads, started for each piece of work.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Threads(pub(crate) NonZeroUsize);
+
+impl Workers for Threads {
+    fn count(&self) -> usize {
+        self.0.get()
+    }
+
+    fn run(&self, jobs: Vec<Job<'_>>) {
+        each(jobs, |job| job());
+    }
+}
+
+/// Applies a function to every item, with a thread each; the calling thread takes the first. Returns the results in order.
+pub(crate) fn each<I: Send, T: Send>(
+    items: impl IntoIterator<Item = I>,
+    function: impl Fn(I) -> T + Sync,
+) -> Vec<T> {
+    let function = &function;
+    let mut items = items.into_iter();
+    let Some(mine) = items.next() else { return Vec::new() };
+    thread::scope(|scope| {
+        let others: Vec<_> = items.map(|item| scope.spawn(move || function(item))).collect();
+        let mut results = vec![function(mine)];
+        results.extend(others.into_iter().map(join));
+        results
+    })
+}
+
+/// Waits for a thread; if it panicked, so does this one.
+fn join<T>(handle: thread::ScopedJoinHandle<'_, T>) -> T {
+    handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+/// Traces units of so many lines on several threads, which take blocks of them from a common counter. Returns the sum of their totals.
+pub(crate) fn trace_blocks(
+    threads: usize,
+    units: Range<u64>,
+    lines_per_unit: u64,
+    trace: impl Fn(usize, Range<u64>, &mut StageTotals) + Sync,
+) -> StageTotals {
+    let length = units.end - units.start;
+    // Towards the end of few units no thread should wait for long.
+    let smallest = SMALLEST_BLOCK.div_ceil(lines_per_unit);
+    let block = (BLOCK / lines_per_unit).min(length / (8 * threads as u64)).max(smallest);
+    let next = AtomicU64::new(units.start);
+    let work = |thread: usize| {
+        let mut totals = StageTotals::default();
+        loop {
+            let start = next.fetch_add(block, Relaxed);
+            if start >= units.end {
+                return totals;
+            }
+            trace(thread, start..units.end.min(start + block), &mut totals);
+        }
+    };
+    let helpers = (threads as u64 - 1).min(length / block);
+    let mut totals = StageTotals::default();
+    each(0..=helpers as usize, work).into_iter().for_each(|part| totals += part);
+    totals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    #[test]
+    fn every_unit_is_traced_once_by_any_number_of_threads() {
+        for threads in [1, 2, 3, 7] {
+            for (units, lines) in [(0..0, 1), (5..6, 1), (100..1_000, 1), (7..123_456, 1), (3..40, 4096)] {
+                let seen = Mutex::new(Vec::new());
+                let trace = |thread, block: Range<u64>, totals: &mut StageTotals| {
+                    assert!(thread < threads);
+                    totals.counts.lines += block.end - block.start;
+                    seen.lock().unwrap().extend(block);
+                };
+                let totals = trace_blocks(threads, units.clone(), lines, trace);
+                assert_eq!(totals.counts.lines, units.end - units.start);
+                let mut seen = seen.into_inner().unwrap();
+                seen.sort_unstable();
+                assert!(seen.into_iter().eq(units));
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Sides between two batches.
+
+use std::ops::Range;
+
+use sir_geom::TriangleId;
+use sir_lines::GlobalLines;
+use sir_mesh::SideId;
+
+use crate::batches::schedule::Schedule;
+use crate::batches::side_state::SideState;
+use crate::batches::sums::BatchSums;
+use crate::focus_sides::FocusSides;
+use crate::model::Model;
+use crate::tallies::PatchTallies;
+
+/// Some consecutive sides between two batches. All parts together have all sides, and may be worked on at the same time.
+#[derive(Debug)]
+pub(super) struct SideRange<'a> {
+    pub(super) model: &'a Model,
+    pub(super) domain: &'a GlobalLines,
+    pub(super) focus_sides: &'a FocusSides,
+    pub(super) tallies: &'a PatchTallies,
+    pub(super) schedule: Schedule,
+    pub(super) first: u32,
+    pub(super) states: &'a mut [SideState],
+}
+
+impl<'a> SideRange<'a> {
+    /// Sets what these sides send with each line of the batch that begins.
+    pub(super) fn open(&mut self) {
+        let batch = self.schedule.batch();
+        let forecast = self.domain.forecast(batch.end - batch.start);
+        let heavy = f64::from(self.domain.weight());
+        let withheld = self.schedule.withheld();
+        let ceased = self.schedule.sources_just_ceased();
+        for (triangle, sides) in self.sides() {
+            for i in sides {
+                let weight = if self.focus_sides.contains(SideId(i)) { 1.0 } else { heavy };
+                let expected = forecast.crossings(self.model.area(triangle, SideId(i))) / weight;
+                let lines = weight * (expected + 1.0 + expected.sqrt() * expected.min(1.0));
+                let k = (i - self.first) as usize;
+                let state = &mut self.states[k];
+                if ceased {
+                    state.noted = state.brought.0.map(|q| q as f32);
+                }
+                let kept = |band: usize| withheld * f64::from(state.noted[band]);
+                let share = |band: usize| (state.unshot.0[band] as f64 - kept(band)) / lines;
+                self.tallies.set_share(SideId(i), [0, 1, 2].map(share));
+            }
+        }
+    }
+
+    /// StageBatchSums what the lines of the batch that ends have brought to the sides of this part, and taken from them.
+    pub(super) fn close(&mut self) -> BatchSums {
+        let mut sums = BatchSums::default();
+        for (triangle, sides) in self.sides() {
+            for i in sides {
+                let side = SideId(i);
+                let reflectance = self.model.reflectance(triangle, side);
+                let (power, crossings) = self.tallies.take(side);
+                let sent = self.tallies.share(side).times(i64::from(crossings));
+                let reflected = power.scaled(reflectance);
+                let state = &mut self.states[(i - self.first) as usize];
+                state.brought += power;
+                state.unshot += reflected - sent;
+                state.crossings += u64::from(crossings);
+                let in_focus = self.focus_sides.contains(side);
+                sums.unshot.add(state.unshot, in_focus);
+                sums.sent.add(sent, in_focus);
+                sums.reflected.add(reflected, in_focus);
+                sums.absorbed += power - reflected;
+            }
+        }
+        sums
+    }
+
+    /// The sides of this part: triangles, and consecutive sides of each.
+    fn sides(&self) -> impl Iterator<Item = (TriangleId, Range<u32>)> + use<'a> {
+        self.model.mesh.sides_within(self.first..self.first + self.states.len() as u32)
+    }
+}

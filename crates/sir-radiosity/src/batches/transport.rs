@@ -1,0 +1,301 @@
+//! The transport: batches of global lines, one after the other.
+
+use std::ops::Range;
+
+use sir_lines::{GlobalLines, Stage as Purpose, Streams};
+
+use crate::batches::estimator::Counted;
+use crate::batches::schedule::Schedule;
+use crate::batches::side_range::SideRange;
+use crate::batches::side_state::SideState;
+use crate::batches::sums::{BatchSums, FocusSums};
+use crate::error::SolveError;
+use crate::focus_sides::FocusSides;
+use crate::global;
+use crate::model::Model;
+use crate::power::PowerUnit;
+use crate::received::Received;
+use crate::segments::{End, Segment};
+use crate::shot::Shot;
+use crate::solution::Solution;
+use crate::stage::{AnyOrder, Stage, Workers, map_parts};
+use crate::tallies::{Counters, PatchTallies, SquareUnit, WorkerTallies};
+use crate::totals::{Balance, StageTotals};
+use crate::transported::Transported;
+use crate::visitor::Visitor;
+
+/// Settings of a transport in batches.
+#[derive(Clone, Debug)]
+pub struct BatchSettings<'m> {
+    /// The scene and its patches.
+    pub model: &'m Model,
+    /// What lines are drawn through: a domain, and a focus if there is one.
+    pub domain: GlobalLines,
+    /// Number of lines.
+    pub lines: u64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
+impl<'m> BatchSettings<'m> {
+    /// Returns the settings for this number of lines through a domain.
+    pub fn new(model: &'m Model, domain: impl Into<GlobalLines>, lines: u64, seed: u64) -> Self {
+        Self { model, domain: domain.into(), lines, seed }
+    }
+}
+
+/// A transport of power along global lines in batches.
+#[derive(Debug)]
+pub struct Batches<'m> {
+    model: &'m Model,
+    domain: GlobalLines,
+    /// Where the sequence of lines through the focus begins.
+    offset: u64,
+    focus_sides: FocusSides,
+    streams: Streams,
+    /// What the lines of this batch bring, and the share of its power that each side sends with a line.
+    tallies: PatchTallies,
+    /// The direct light.
+    direct: Received,
+    states: Vec<SideState>,
+    unit: PowerUnit,
+    schedule: Schedule,
+}
+
+/// How large patches are, for the number of lines that cross a typical one.
+struct PatchSizes {
+    /// Sum of the areas of sides in the focus; of all sides, if there is none in it.
+    area: f64,
+    /// Sum of the squares of these areas.
+    square: f64,
+}
+
+impl PatchSizes {
+    fn of(model: &Model, focus_sides: &FocusSides) -> Self {
+        let mut sizes = Self { area: 0.0, square: 0.0 };
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            if focus_sides.contains(side) || focus_sides.is_empty() {
+                let area = model.area(triangle, side);
+                sizes.area += area;
+                sizes.square += area * area;
+            }
+        });
+        sizes
+    }
+
+    /// Returns how many lines cross a typical patch once: typical of where the area is.
+    fn lines_for_one_crossing(&self, domain: &GlobalLines, lines: u64) -> f64 {
+        domain.forecast(lines).surface * self.area / (2.0 * self.square)
+    }
+}
+
+impl<'m> Batches<'m> {
+    /// Returns the transport before its first batch; `source` is the power that sides reflect of the direct light, and
+    /// `guess` that over what was sent in the first shot.
+    fn new(
+        settings: BatchSettings<'m>,
+        focus_sides: FocusSides,
+        direct: Received,
+        unit: PowerUnit,
+        tallies: PatchTallies,
+        (source, guess): (FocusSums, f64),
+    ) -> Self {
+        let BatchSettings { model, domain, lines, seed } = settings;
+        let once = PatchSizes::of(model, &focus_sides).lines_for_one_crossing(&domain, lines);
+        let schedule = Schedule::new(lines, once, &domain, source, guess);
+        let purpose = Purpose::GLOBAL;
+        let offset = Streams::new(seed, Purpose::ALLOCATION).line(purpose.0 - Purpose::FIRST_SHOT.0).unit();
+        let offset = (offset * 2f64.powi(64)) as u64;
+        let streams = Streams::new(seed, purpose);
+        let states = vec![SideState::default(); model.mesh.side_count()];
+        Self { model, domain, offset, focus_sides, streams, tallies, direct, states, unit, schedule }
+    }
+
+    /// Cuts the sides into at most `count` ranges.
+    fn ranges(&mut self, count: usize) -> impl Iterator<Item = SideRange<'_>> {
+        let Self { model, ref domain, ref focus_sides, ref tallies, ref mut states, schedule, .. } = *self;
+        let size = states.len().div_ceil(count.max(1)).max(1);
+        states.chunks_mut(size).enumerate().map(move |(i, states)| {
+            let first = (i * size) as u32;
+            SideRange { model, domain, focus_sides, tallies, schedule, first, states }
+        })
+    }
+
+    /// Sets what all sides send with a line of the batch that begins.
+    fn open(&mut self, workers: &dyn Workers) {
+        map_parts(workers, self.ranges(workers.count()), |mut sides| sides.open());
+    }
+}
+
+impl<'m> Stage for Batches<'m> {
+    type Settings = BatchSettings<'m>;
+    type Input = Shot;
+    type Outcome = Transported;
+    type Chain = AnyOrder;
+
+    fn identity(settings: &Self::Settings) -> Vec<u64> {
+        let BatchSettings { model, domain, lines, seed } = settings;
+        let mut words =
+            vec![2, model.mesh.side_count() as u64, *lines, *seed, global::domain_identity(domain.domain())];
+        words.extend(domain.focus().iter().flat_map(|focus| focus.identity()));
+        words
+    }
+
+    fn begin(settings: Self::Settings, shot: Shot, workers: &dyn Workers) -> Result<Self, SolveError> {
+        let BatchSettings { model, ref domain, lines, .. } = settings;
+        let focus_sides = FocusSides::of(model, domain.focus());
+        let unshot = shot.unshot(model);
+        let Shot { received: direct, unit, balance, .. } = shot;
+        let forecast = domain.forecast(lines);
+        let mut source = FocusSums::default();
+        let (mut most, mut brightest) = (0.0, [0.0; 3]);
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let reflectance = model.reflectance(triangle, side);
+            let unshot = unshot[side.index()];
+            let in_focus = focus_sides.contains(side);
+            source.add(unshot, in_focus);
+            let crossings = forecast.crossings(model.area(triangle, side));
+            let weight = if in_focus { 1.0 } else { f64::from(domain.weight()) };
+            // Lines are fewer than their weights, and cross it once.
+            most = f64::max(most, if in_focus { crossings } else { crossings.min(lines as f64) });
+            for band in 0..3 {
+                // All light that a side reflects, if what it sees is as bright, over all its crossings.
+                let share = weight * (unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings);
+                // Not a number, and not counted, for a patch that is all gap.
+                brightest[band] = f64::max(brightest[band], share);
+            }
+        });
+        let unit_of_squares = SquareUnit::new(brightest, most);
+        let tallies = PatchTallies::new(model.mesh.side_count(), workers.count(), 1, unit_of_squares);
+        let guess = balance.unshot.total() / balance.emitted.total().max(1.0);
+        let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (source, guess));
+        for (state, unshot) in stage.states.iter_mut().zip(unshot) {
+            (state.unshot, state.noted) = (unshot, unshot.0.map(|q| q as f32));
+        }
+        stage.open(workers);
+        Ok(stage)
+    }
+
+    fn restore(
+        settings: Self::Settings,
+        workers: &dyn Workers,
+        visitor: &mut dyn Visitor,
+    ) -> Result<Self, SolveError> {
+        let model = settings.model;
+        let focus_sides = FocusSides::of(model, settings.domain.focus());
+        let sides = model.mesh.side_count();
+        let unit = PowerUnit::restore(visitor);
+        let unit_of_squares = SquareUnit::restore(visitor);
+        let tallies = PatchTallies::new(sides, workers.count(), 1, unit_of_squares);
+        let direct = Received::nothing(sides);
+        let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (FocusSums::default(), 0.0));
+        stage.visit_after_units(visitor);
+        Ok(stage)
+    }
+
+    fn round(&self) -> Range<u64> {
+        self.schedule.batch()
+    }
+
+    fn expected(&self) -> u64 {
+        self.schedule.lines()
+    }
+
+    fn chain(&self, _number: u64) -> AnyOrder {
+        AnyOrder
+    }
+
+    fn trace(&self, worker: usize, _chain: &mut AnyOrder, lines: Range<u64>, totals: &mut StageTotals) {
+        let StageTotals { balance, counts } = totals;
+        let tallies = self.tallies.of_worker(worker);
+        let soon = |side| tallies.prefetch(side);
+        let draw = |index| self.domain.line(index, self.offset, self.streams.line(index).point());
+        if self.domain.focus().is_none() {
+            // The weight is known, and costs nothing.
+            global::trace(self.model, draw, lines, counts, soon, |_, _, segment| {
+                exchange(tallies, balance, segment, 1);
+            });
+        } else {
+            global::trace(self.model, draw, lines, counts, soon, |_, weight, segment| {
+                exchange(tallies, balance, segment, weight);
+            });
+        }
+    }
+
+    fn visit_round(&mut self, visitor: &mut dyn Visitor) {
+        self.tallies.visit(Counters::Batch, visitor);
+    }
+
+    fn advance(&mut self, workers: &dyn Workers) -> bool {
+        let mut sums = BatchSums::default();
+        map_parts(workers, self.ranges(workers.count()), |mut sides| sides.close())
+            .into_iter()
+            .for_each(|part| sums += part);
+        let another = self.schedule.advance(sums);
+        if another {
+            self.open(workers);
+        }
+        another
+    }
+
+    fn visit_end(&mut self, visitor: &mut dyn Visitor) {
+        self.tallies.visit(Counters::Squares, visitor);
+    }
+
+    fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.unit.visit(visitor);
+        self.tallies.visit_unit(visitor);
+        self.visit_after_units(visitor);
+    }
+
+    fn batches(&self) -> u64 {
+        self.schedule.number() + 1
+    }
+
+    fn finish(self, totals: StageTotals) -> Result<Transported, SolveError> {
+        let Self { model, domain, focus_sides, mut direct, tallies, states, unit, schedule, .. } = self;
+        let StageTotals { balance: Balance { blocked, escaped, .. }, counts } = totals;
+        let BatchSums { unshot, absorbed, .. } = schedule.sums();
+        let balance = Balance { emitted: schedule.source(), absorbed, blocked, escaped, unshot: unshot.all };
+        if !balance.closes() {
+            return Err(SolveError::Unbalanced { stage: "multipath" });
+        }
+        let counted = Counted {
+            model,
+            domain: &domain,
+            focus_sides: &focus_sides,
+            tallies: &tallies,
+            states: &states,
+            schedule: &schedule,
+        };
+        let extrapolated = counted.add_to(&mut direct);
+        let solution = Solution::new(model, &direct, unit);
+        Ok(Transported { solution, received: direct, unit, balance, counts, extrapolated })
+    }
+}
+
+impl Batches<'_> {
+    /// Shows the state, except the units that are needed before.
+    fn visit_after_units(&mut self, visitor: &mut dyn Visitor) {
+        self.schedule.visit(!self.focus_sides.is_all(), visitor);
+        self.tallies.visit(Counters::All, visitor);
+        self.tallies.visit_shares(visitor);
+        self.direct.visit(visitor);
+        SideState::visit(&mut self.states, visitor);
+    }
+}
+
+/// Passes power along a segment of a line of some weight.
+#[inline]
+fn exchange(tallies: WorkerTallies<'_>, balance: &mut Balance, segment: Segment, weight: u32) {
+    match (segment.from, segment.to) {
+        (End::Side(i, _), End::Side(j, _)) => tallies.exchange(i, j, weight),
+        (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
+            balance.escaped += tallies.leave(i, weight);
+        }
+        (End::Side(i, _), End::Inactive) | (End::Inactive, End::Side(i, _)) => {
+            balance.blocked += tallies.leave(i, weight);
+        }
+        _ => {}
+    }
+}

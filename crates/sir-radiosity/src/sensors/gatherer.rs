@@ -1,0 +1,103 @@
+//! Final gathering at a sensor.
+
+use glam::DVec3;
+use sir_accel::{Ray, Tracer};
+use sir_geom::{Line, Rgb};
+use sir_lines::{Stage as Purpose, Streams};
+
+use crate::model::Model;
+use crate::sensors::emitters::Emitters;
+use crate::sensors::measurement::Measurement;
+use crate::sensors::replication::{Met, Replication};
+use crate::sensors::sensor::{REPLICATIONS, Sensor, SensorSettings};
+use crate::solution::Solution;
+
+/// How far above its position a sensor looks from, in radii of the scene's bounding sphere, so that the surface on which it lies is
+/// below it whatever was rounded in the file of the scene: 0.1 mm in a room of 10 m.
+pub const SENSOR_OFFSET: f64 = 1e-5;
+
+/// Rays of all replications before the error is looked at for the first time.
+const FIRST: u64 = 2048;
+
+/// Measures the light of a solution at points, by final gathering.
+#[derive(Clone, Debug)]
+pub struct Gatherer<'s> {
+    model: &'s Model,
+    solution: &'s Solution,
+    settings: SensorSettings,
+    emitters: Emitters,
+    streams: Streams,
+    /// Distance at which rays start above a sensor.
+    offset: f64,
+}
+
+impl<'s> Gatherer<'s> {
+    /// Prepares to measure the light of a solution: `solution` has the irradiance of the patches, whose reflected light is gathered.
+    #[must_use]
+    pub fn new(model: &'s Model, solution: &'s Solution, settings: SensorSettings, seed: u64) -> Self {
+        Self {
+            model,
+            solution,
+            settings,
+            emitters: Emitters::of(model),
+            streams: Streams::new(seed, Purpose::SENSORS),
+            offset: SENSOR_OFFSET * model.scene.bounding_sphere().radius,
+        }
+    }
+
+    /// Measures at a sensor: a function of it, of the seed and of `number`, which should differ from sensor to sensor (below 2⁴⁵).
+    ///
+    /// Backs of one-sided surfaces are black.
+    #[must_use]
+    pub fn measure(&self, number: u64, sensor: &Sensor) -> Measurement {
+        let origin = sensor.position() + self.offset * sensor.direction();
+        let mut tracer = self.model.accel.tracer();
+        let lights = self.lights(sensor, origin, &mut tracer);
+        let choice = self.emitters.from(origin, sensor);
+        let stream = |k| self.streams.line(number * REPLICATIONS + k);
+        let mut replications: Vec<_> = (0..REPLICATIONS).map(|k| Replication::new(&mut stream(k))).collect();
+        let mut met = Met::default();
+        let most = self.settings.rays.div_ceil(REPLICATIONS).max(1);
+        let mut rays = if self.settings.error > 0.0 { most.min(FIRST / REPLICATIONS) } else { most };
+        loop {
+            for replication in &mut replications {
+                replication.trace(
+                    rays,
+                    (self.model, self.solution),
+                    (origin, sensor.direction()),
+                    &choice,
+                    &mut tracer,
+                    &mut met,
+                );
+            }
+            let mut measurement = Measurement::of(&replications, lights);
+            let enough = measurement.sampling_error() <= self.settings.error * measurement.luminance();
+            if rays == most || enough {
+                measurement.inherit(&met.errors(self.model, self.solution), rays * REPLICATIONS);
+                return measurement;
+            }
+            rays = most.min(2 * rays);
+        }
+    }
+
+    /// The irradiance by lights without a surface.
+    fn lights(&self, sensor: &Sensor, origin: DVec3, tracer: &mut Tracer<'_>) -> Rgb {
+        let (mut rays, mut brings) = (Vec::new(), Vec::new());
+        for light in self.model.scene.lights() {
+            // What arrives at the sensor itself; only the shadow ray starts above it.
+            let Some(arrival) = light.kind.arrival(sensor.position()) else { continue };
+            let cosine = arrival.towards.dot(sensor.direction());
+            if cosine <= 0.0 {
+                continue;
+            }
+            let ray = Ray::new(Line { origin, direction: arrival.towards });
+            // A light that lies on a surface is in front of it, as sensors are.
+            rays.push(ray.within(0.0..arrival.distance - self.offset));
+            brings.push(cosine * arrival.irradiance);
+        }
+        let mut seen = vec![false; rays.len()];
+        tracer.occluded_each(&rays, |i, is_occluded| seen[i] = !is_occluded);
+        // Rays are done in any order, but floats have to be added up in always the same.
+        brings.iter().zip(seen).filter(|(_, seen)| *seen).fold(Rgb::ZERO, |sum, (brought, _)| sum + *brought)
+    }
+}
