@@ -10,7 +10,8 @@ use sir::parallel::Solver;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = Path::new("scenes/reading-room/reading-room.glb");
     let scene = load(path, &LoadOptions::default())?.scene;
-    let solved = Solver::new(scene).patches(100_000).first_shot(2_000_000).multipath(4_000_000).seed(1).solve()?;
+    let solved =
+        Solver::new(scene).patches(100_000).first_shot(2_000_000).multipath(4_000_000).seed(1).solve()?;
     let model = &solved.model;
 
     // Mean irradiance of the upward faces of each material at desk height.

@@ -19,8 +19,8 @@ use sir::geom::Scene;
 use sir::lines::{Domain, Stage as Purpose, Streams, cosine_direction, point_on_triangle};
 use sir::mesh::Subdivision;
 use sir::radiosity::{
-    AnyOrder, BatchSettings, Batches, FirstShot, Model, OneWorker, Segments, ShotSettings, Stage, StageTotals,
-    run_stage,
+    AnyOrder, BatchSettings, Batches, FirstShot, Model, OneWorker, Segments, ShotSettings, Stage,
+    StageTotals, run_stage,
 };
 
 use embree::{Embree, Peer, Quality, RayHit};

@@ -53,26 +53,7 @@ impl<'m> Stage for SecondShot<'m> {
         let focus = lines.focus.as_ref();
         let share = focus.map_or(1.0, |focus| FocusedSources::new(model, Some(focus)).inner_share());
         let bright = brightest(model, &unshot, &FocusSides::of(model, focus), total * share);
-        let (mut sources, mut sides) = (Vec::new(), Vec::new());
-        for triangle in model.scene.triangle_ids() {
-            let (corners, front) = (model.scene.corners(triangle), model.scene.normal(triangle));
-            let patches = model.mesh.patches_of(triangle);
-            // A face that is one patch has several triangles.
-            let part = model.scene.area(triangle) / (patches.len() as f64 * model.mesh.patch_area(triangle));
-            for patch in patches.map(PatchId) {
-                for (side, normal) in [(Side::Front, front), (Side::Back, -front)] {
-                    let Some(id) = model.mesh.side_of(triangle, patch, side) else { continue };
-                    if bright[id.index()] {
-                        let corners = model.mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
-                        let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
-                        let emitter =
-                            Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
-                        sources.push(Source { emitter, power });
-                        sides.push(id);
-                    }
-                }
-            }
-        }
+        let (sources, sides) = sources_of(model, &shot, &unshot, &bright);
         let count = if sources.is_empty() { 0 } else { lines.count };
         let sources = FocusedSources::plain(sources);
         let lines = ShotLines::new(model, sources, shot.unit, count, seed, Purpose::SECOND_SHOT);
@@ -125,6 +106,30 @@ impl<'m> Stage for SecondShot<'m> {
         }
         Ok(Shot { sent: all, ..both })
     }
+}
+
+/// Returns the patches of the bright sides as sources of what they have still to send, with the side of each.
+fn sources_of(model: &Model, shot: &Shot, unshot: &[Quanta], bright: &[bool]) -> (Vec<Source>, Vec<SideId>) {
+    let (mut sources, mut sides) = (Vec::new(), Vec::new());
+    for triangle in model.scene.triangle_ids() {
+        let (corners, front) = (model.scene.corners(triangle), model.scene.normal(triangle));
+        let patches = model.mesh.patches_of(triangle);
+        // A face that is one patch has several triangles.
+        let part = model.scene.area(triangle) / (patches.len() as f64 * model.mesh.patch_area(triangle));
+        for patch in patches.map(PatchId) {
+            for (side, normal) in [(Side::Front, front), (Side::Back, -front)] {
+                let Some(id) = model.mesh.side_of(triangle, patch, side) else { continue };
+                if bright[id.index()] {
+                    let corners = model.mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
+                    let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
+                    let emitter = Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
+                    sources.push(Source { emitter, power });
+                    sides.push(id);
+                }
+            }
+        }
+    }
+    (sources, sides)
 }
 
 /// Returns, per side, whether it is one of the brightest in the focus that hold `total` together, or of all that hold something.

@@ -97,7 +97,7 @@ impl<'m> ShotLines<'m> {
         totals: &mut StageTotals,
     ) {
         let Model { mesh, accel, .. } = self.model;
-        let page = tallies.of_worker(worker);
+        let tallies = tallies.of_worker(worker);
         let mut tracer = accel.tracer();
         let (mut rays, mut powers) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
         let (mut met, mut gifts) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
@@ -137,9 +137,9 @@ impl<'m> ShotLines<'m> {
             // Records are far apart in memory, which is asked for some time before.
             for (i, &(side, power)) in gifts.iter().enumerate() {
                 if let Some(&(ahead, _)) = gifts.get(i + AHEAD) {
-                    page.prefetch(ahead);
+                    tallies.prefetch(ahead);
                 }
-                page.give(side, power);
+                tallies.give(side, power);
             }
         }
     }

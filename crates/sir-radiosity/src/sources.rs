@@ -98,7 +98,7 @@ pub(crate) struct FocusedSources {
     /// All sources; with a focus, light from outside is cut into what passes through it and what does not.
     pub(crate) sources: Vec<Source>,
     /// Which of them are in the focus.
-    inside: Vec<bool>,
+    in_focus: Vec<bool>,
     /// How many times as many lines those in the focus have for the same power: at least 1.
     pub(crate) density: f64,
 }
@@ -112,33 +112,33 @@ impl FocusedSources {
         let Some(focus) = focus else { return Self::plain(all) };
         let (mut cut, mut inside) = (Vec::with_capacity(all.len() + 8), Vec::new());
         for source in &all {
-            for (part, is_inside) in split(scene, *source, focus) {
+            for (part, in_focus) in split(scene, *source, focus) {
                 cut.push(part);
-                inside.push(is_inside);
+                inside.push(in_focus);
             }
         }
         let mut powers = [0.0; 2];
-        for (source, &is_inside) in cut.iter().zip(&inside) {
-            powers[usize::from(is_inside)] += source.power.element_sum();
+        for (source, &in_focus) in cut.iter().zip(&inside) {
+            powers[usize::from(in_focus)] += source.power.element_sum();
         }
         let [outer, inner] = powers;
         let wanted = if inner > 0.0 { focus.share() / (1.0 - focus.share()) * (outer / inner) } else { 1.0 };
         if wanted <= 1.0 {
             return Self::plain(all);
         }
-        Self { sources: cut, inside, density: wanted.min(f64::from(DENSEST)) }
+        Self { sources: cut, in_focus: inside, density: wanted.min(f64::from(DENSEST)) }
     }
 
     /// Sources whose lines are all alike.
     pub(crate) fn plain(sources: Vec<Source>) -> Self {
-        Self { inside: vec![false; sources.len()], sources, density: 1.0 }
+        Self { in_focus: vec![false; sources.len()], sources, density: 1.0 }
     }
 
     /// For how much power each source has lines as if all were alike \[W\].
     pub(crate) fn weights(&self) -> Vec<f64> {
         let powers = self.sources.iter().map(|source| source.power.element_sum());
         powers
-            .zip(&self.inside)
+            .zip(&self.in_focus)
             .map(|(power, &inside)| if inside { power * self.density } else { power })
             .collect()
     }
