@@ -58,7 +58,7 @@ fn quiet_and_json_are_for_programs() {
     assert_eq!(code, 0, "{stderr}");
     assert!(stderr.lines().all(|line| line.starts_with("warning: ")), "{stderr}");
     let report: serde_json::Value = serde_json::from_str(&stdout).unwrap();
-    assert_eq!((&report["version"], &report["seed"]), (&2.into(), &9.into()));
+    assert_eq!((&report["version"], &report["seed"]), (&3.into(), &9.into()));
     assert_eq!(fs::read_to_string(folder.path().join("o/result.json")).unwrap(), stdout);
 
     let (code, stdout, _) = sir(folder.path(), &["compare", "o", "o/patches.csv", "--json"]);

@@ -133,11 +133,11 @@ fn assert_balanced(report: &Report) {
     for k in 0..3 {
         assert!((first.emitted[k] / report.scene.power[k] - 1.0).abs() < 1e-9);
         let (ratio, left) = (second.emitted[k] / first.unshot[k], second.unshot[k] / second.emitted[k]);
-        let made_up = stages[1].made_up[k] / second.emitted[k];
-        if made_up > 0.0 {
+        let extrapolated = stages[1].extrapolated[k] / second.emitted[k];
+        if extrapolated > 0.0 {
             assert!((ratio - 1.0).abs() < 1e-12, "batches sent {ratio} of what was left to them");
             // Each unit of power that is unshot would have been received at least once.
-            assert!(left < 0.05 && made_up >= left, "{left} unshot, {made_up} made up");
+            assert!(left < 0.05 && extrapolated >= left, "{left} unshot, {extrapolated} made up");
         } else {
             assert!((ratio - 1.0).abs() < 0.05, "multipath sent {ratio} of what was left to it");
             assert!(left < 1e-3, "the tail sends on what is left, but for {left}");

@@ -31,7 +31,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser as _;
-use sir_parallel::{Alone, Communicator, connect};
+use sir_parallel::{Communicator, SingleProcess, connect};
 use sir_pipeline::check::estimate;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::run::{resume_together, run_together};
@@ -64,7 +64,7 @@ fn execute(command: Command) -> Result<String, ExitCode> {
             let comm = connect().map_err(|error| show(&error.into()))?;
             work(command, &*comm, stop).map_err(|error| show(&error))
         }
-        alone => work(alone, &Alone, Arc::default()).map_err(|error| show(&error)),
+        alone => work(alone, &SingleProcess, Arc::default()).map_err(|error| show(&error)),
     }
 }
 

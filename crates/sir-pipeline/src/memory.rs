@@ -61,14 +61,14 @@ fn left_in_group(group: &Path) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sir_parallel::Alone;
+    use sir_parallel::SingleProcess;
 
     #[test]
     fn the_peak_is_read_from_the_status() {
         let status = "Name:\tsir\nVmHWM:\t    2048 kB\nVmRSS:\t 1 kB\n";
         assert_eq!(kilobytes(status, "VmHWM:"), Some(2 << 20));
         assert_eq!(kilobytes("Name:\tsir\n", "VmHWM:"), None);
-        assert_eq!(largest_peak(&Alone).is_some(), cfg!(target_os = "linux"));
+        assert_eq!(largest_peak(&SingleProcess).is_some(), cfg!(target_os = "linux"));
     }
     #[test]
     fn more_than_there_is_is_refused() {

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use sir_parallel::Alone;
+use sir_parallel::SingleProcess;
 use sir_pipeline::Error;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::run::{RunOptions, resume_together, run_pipeline as run};
@@ -146,6 +146,6 @@ fn a_file_that_cannot_be_written_leaves_a_run_that_can_go_on() {
     let left: Vec<_> = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left.len(), 2, "no half of a file is left: {left:?}");
     fs::remove_dir_all(out.join("a.csv")).unwrap();
-    resume_together(&out, &options, &Alone).unwrap();
+    resume_together(&out, &options, &SingleProcess).unwrap();
     assert!(out.join("a.csv").is_file() && out.join("result.json").is_file());
 }

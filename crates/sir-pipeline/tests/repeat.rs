@@ -14,14 +14,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::time::Duration;
 
-use sir_parallel::{Alone, Communicator};
+use sir_parallel::{Communicator, SingleProcess};
 use sir_pipeline::Error;
 use sir_pipeline::NoProgress;
 use sir_pipeline::check::estimate;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::report::{ErrorsFrom, ErrorsReport, Report, StageReport, Time};
 use sir_pipeline::run::{RunOptions, resume_together, run_pipeline as run, run_together};
-use sir_radiosity::ENOUGH;
+use sir_radiosity::MIN_REPEATS;
 
 const SHOTS: &str = "FirstShot(lines: 6_000), SecondShot(lines: 2_000)";
 const BATCHES: &str = "Multipath(lines: 8_000)";
@@ -139,14 +139,14 @@ fn a_target_is_met_and_its_number_of_repeats_gives_the_same_bits() {
 fn errors_of_few_repeats_are_those_that_they_state() {
     let text = |times: u64| format!("Repeat(times: {times}, stages: [FirstShot(lines: 5_000)])");
     let light = |times| repeated(&Case::new(&text(times)).run().1).light.clone().unwrap();
-    let [one, few, many] = [1, ENOUGH - 1, ENOUGH].map(light);
-    assert_eq!(few.errors, ErrorsReport { from: ErrorsFrom::Lines, samples: 5_000 * (ENOUGH - 1) });
-    assert_eq!(many.errors, ErrorsReport { from: ErrorsFrom::Spread, samples: ENOUGH });
+    let [one, few, many] = [1, MIN_REPEATS - 1, MIN_REPEATS].map(light);
+    assert_eq!(few.errors, ErrorsReport { from: ErrorsFrom::Lines, samples: 5_000 * (MIN_REPEATS - 1) });
+    assert_eq!(many.errors, ErrorsReport { from: ErrorsFrom::Spread, samples: MIN_REPEATS });
     // Both fall with the root of the number. The spread of eight over 200 patches is known to some 2 %.
     for k in 0..3 {
         let of =
             |light: &sir_pipeline::report::LightReport, n: u64| light.relative_error[k] * (n as f64).sqrt();
-        let [one, few, many] = [of(&one, 1), of(&few, ENOUGH - 1), of(&many, ENOUGH)];
+        let [one, few, many] = [of(&one, 1), of(&few, MIN_REPEATS - 1), of(&many, MIN_REPEATS)];
         assert!((few / one - 1.0).abs() < 0.03 && (many / one - 1.0).abs() < 0.1, "{one} {few} {many}");
     }
 }
@@ -199,7 +199,7 @@ impl Communicator for StopAfter {
     }
 
     fn sum(&self, words: &mut [i64]) {
-        Alone.sum(words);
+        SingleProcess.sum(words);
         if self.sums.fetch_sub(1, Relaxed) == 1 {
             self.stop.store(true, Relaxed);
         }

@@ -29,7 +29,7 @@ use sir_geom::{Built, LoadOptions, load};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_pipeline::plan::Pipeline;
-use sir_radiosity::{Books, FirstShot, Model};
+use sir_radiosity::{FirstShot, Model, ShotSettings, run_stage};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -187,12 +187,8 @@ fn light(built: Option<Built>) {
     };
     let Ok(model) = Model::new(scene, Subdivision::Patches(50)) else { return };
     drop(Domain::hull(model.scene.vertices()));
-    if let Ok(first_shot) = FirstShot::new(&model, 200, 1) {
-        let (tally, mut books) = (first_shot.tally(1), Books::default());
-        first_shot.trace(0, 0..200, &tally, &mut books);
-        // Too much power is an error as any other.
-        let _ = first_shot.finish(tally, books);
-    }
+    // Too much power is an error as any other.
+    let _ = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, 200, 1), ());
 }
 
 fn chain(error: &dyn Error) -> String {

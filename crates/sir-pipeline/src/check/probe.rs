@@ -4,7 +4,10 @@ use std::time::{Duration, Instant};
 
 use sir_lines::LocalLines;
 use sir_parallel::cores;
-use sir_radiosity::{Batches, Books, FirstShot, SecondShot, SolveError};
+use sir_radiosity::{
+    AnyOrder, BatchSettings, Batches, FirstShot, OneWorker, SecondShot, ShotSettings, SolveError, Stage,
+    StageTotals,
+};
 
 use crate::plan::pipeline::{Action, Pipeline};
 use crate::prepare::prepared::Prepared;
@@ -36,33 +39,39 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
         let name = stage.action.name();
         match stage.action {
             Action::FirstShot { lines } => {
-                let first_shot = FirstShot::new(model, LocalLines { count: lines, focus }, seed)?;
-                let (tally, mut books) = (first_shot.tally(1), Books::default());
-                let rate = rate(lines, |block| first_shot.trace(0, block, &tally, &mut books));
-                shot = Some(first_shot.finish(tally, books)?);
+                let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
+                let stage = FirstShot::begin(settings, (), &OneWorker)?;
+                let (rate, totals) = try_stage(&stage, lines);
+                shot = Some(stage.finish(totals)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::SecondShot { lines } => {
                 let Some(shot) = &shot else { continue };
-                let second_shot = SecondShot::new(model, shot, LocalLines { count: lines, focus }, seed);
-                let local = second_shot.lines();
-                let (tally, mut books) = (local.tally(1), Books::default());
-                let rate = rate(local.lines(), |block| local.trace(0, block, &tally, &mut books));
+                let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
+                let stage = SecondShot::begin(settings, shot.clone(), &OneWorker)?;
+                let (rate, _) = try_stage(&stage, stage.round().end);
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::Multipath { lines, body, .. } => {
                 let Some(shot) = shot.take() else { continue };
                 // Both transports trace the same lines at about the same rate.
-                let through = body.lines_around(&model.scene, focus);
-                let transport = Batches::new(model, shot, lines, through, seed, 1);
-                let mut books = Books::default();
-                let rate = rate(lines, |block| transport.trace(0, block, &mut books));
+                let domain = body.lines_around(&model.scene, focus);
+                let settings = BatchSettings { model, domain, lines, seed };
+                let stage = Batches::begin(settings, shot, &OneWorker)?;
+                let (rate, _) = try_stage(&stage, lines);
                 estimates.push(StageEstimate { name, lines, rate });
             }
             _ => {}
         }
     }
     Ok(estimates)
+}
+
+/// Tries lines of a stage: returns lines per second, and what was counted.
+fn try_stage<S: Stage<Chain = AnyOrder>>(stage: &S, lines: u64) -> (f64, StageTotals) {
+    let mut totals = StageTotals::default();
+    let rate = rate(lines, |block| stage.trace(0, &mut AnyOrder, block, &mut totals));
+    (rate, totals)
 }
 
 /// Lines per second of a short try, if all cores do the same.

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use sir_accel::{Ray, Tracer};
 use sir_geom::{Line, Scene};
-use sir_radiosity::{LIFT, Model, Sensor};
+use sir_radiosity::{Model, SENSOR_OFFSET, Sensor};
 
 use crate::plan::sensors::{Grid, Place, Plane};
 
@@ -115,7 +115,7 @@ fn extent(scene: &Scene, axis: DVec3) -> [f64; 2] {
 fn is_inside(sensor: &Sensor, model: &Model, tracer: &mut Tracer<'_>) -> bool {
     let up = sensor.direction();
     // As sensors are lifted: one that lies on a desk is above it.
-    let origin = sensor.position() + LIFT * model.scene.bounding_sphere().radius * up;
+    let origin = sensor.position() + SENSOR_OFFSET * model.scene.bounding_sphere().radius * up;
     let mut sees = |direction| {
         let hit = tracer.closest(&Ray::from(Line { origin, direction }));
         hit.map(|hit| model.scene.is_active(hit.triangle, hit.side))

@@ -7,7 +7,7 @@ use glam::DVec3;
 use sir_geom::{LoadOptions, Scene};
 use sir_lines::Focus;
 use sir_mesh::Subdivision;
-use sir_radiosity::{Inside, Model, ModelError, SolveError, Source, emits, sources};
+use sir_radiosity::{FocusSides, Model, ModelError, SolveError, Source, emits, sources};
 use sir_view::guess_up;
 
 use crate::error::Error;
@@ -34,7 +34,7 @@ pub struct Prepared {
     /// What matters, if not everything does.
     pub focus: Option<Focus>,
     /// The sides in it.
-    pub inside: Inside,
+    pub inside: FocusSides,
     /// Where the sensors of each stage `Sensors` are, by the number of the stage.
     pub layouts: BTreeMap<usize, Layout>,
     /// Seconds to read the scene.
@@ -91,7 +91,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 return Err(SolveError::NoLight.into());
             }
             let up = up(pipeline.scene_path(), &model.scene);
-            let inside = Inside::of(&model, focus.as_ref());
+            let inside = FocusSides::of(&model, focus.as_ref());
             if inside.is_empty() {
                 return Err(pipeline.diagnostics(nothing_inside(pipeline, &model.scene)).into());
             }

@@ -1,7 +1,7 @@
 //! How good the light so far is.
 
 use sir_geom::Rgb;
-use sir_radiosity::{Inside, Model, Solution};
+use sir_radiosity::{FocusSides, Model, Solution};
 
 use crate::report::result::{ErrorsReport, LightReport};
 
@@ -9,7 +9,7 @@ impl LightReport {
     /// `tally_hash` is that of the power of which the solution was made.
     pub(crate) fn new(
         model: &Model,
-        inside: &Inside,
+        inside: &FocusSides,
         solution: &Solution,
         errors: ErrorsReport,
         tally_hash: String,
@@ -19,10 +19,10 @@ impl LightReport {
 }
 
 /// See [`LightReport::relative_error`].
-pub(crate) fn relative_error(model: &Model, inside: &Inside, solution: &Solution) -> [f64; 3] {
+pub(crate) fn relative_error(model: &Model, inside: &FocusSides, solution: &Solution) -> [f64; 3] {
     let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
     model.mesh.for_each_side(|triangle, _, _, side| {
-        if !inside.has(side) {
+        if !inside.contains(side) {
             return;
         }
         let a = model.area(triangle, side);

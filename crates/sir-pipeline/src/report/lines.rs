@@ -12,7 +12,7 @@ pub(crate) struct Facts {
     pub(crate) balance: Balance,
     pub(crate) counts: Counts,
     pub(crate) batches: u64,
-    pub(crate) made_up: Quanta,
+    pub(crate) extrapolated: Quanta,
     pub(crate) domain: Option<DomainReport>,
 }
 
@@ -27,7 +27,7 @@ impl DomainReport {
 impl LinesReport {
     /// `unit` is that of the power.
     pub(crate) fn new(facts: Facts, unit: PowerUnit) -> Self {
-        let Facts { balance, counts, batches, made_up, domain } = facts;
+        let Facts { balance, counts, batches, extrapolated, domain } = facts;
         let watts = |quanta: Quanta| unit.watts(quanta).to_array();
         Self {
             lines: counts.lines,
@@ -43,7 +43,7 @@ impl LinesReport {
                 escaped: watts(balance.escaped),
                 unshot: watts(balance.unshot),
             },
-            made_up: watts(made_up),
+            extrapolated: watts(extrapolated),
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::report::sensors::SensorsReport;
 use crate::units::Units;
 
 /// Version of the layout of `result.json`.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Name of the report in a run directory.
 pub const FILE_NAME: &str = "result.json";
@@ -110,7 +110,7 @@ pub struct LinesReport {
     /// Where the power went.
     pub balance: BalanceReport,
     /// Power that was added to what surfaces received to make up for the unshot \[W\], per band.
-    pub made_up: [f64; 3],
+    pub extrapolated: [f64; 3],
 }
 
 /// All light so far.
@@ -168,7 +168,7 @@ pub struct BalanceReport {
     /// Left the scene, or came from outside and never met it.
     pub escaped: [f64; 3],
     /// Reflected, but not sent out again. After the first shot it is what multipath distributes; after multipath
-    /// it is missing from the result, unless something was `made_up` for it.
+    /// it is missing from the result, unless something was `extrapolated` for it.
     pub unshot: [f64; 3],
 }
 

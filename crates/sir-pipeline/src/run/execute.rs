@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sir_geom::Rgb;
-use sir_parallel::{Alone, Checkpoints, Communicator, RunError, Saved};
+use sir_parallel::{Checkpoints, Communicator, RunError, Saved, SingleProcess};
 use sir_radiosity::Model;
 use sir_view::ViewError;
 
@@ -80,7 +80,7 @@ pub struct RunResult {
 ///
 /// If the pipeline has mistakes, the scene cannot be read, the light cannot be computed, or a file cannot be written.
 pub fn run(path: &Path, options: &RunOptions) -> Result<RunResult, Error> {
-    run_together(Pipeline::read(path), options, &Alone)
+    run_together(Pipeline::read(path), options, &SingleProcess)
 }
 
 /// As [`run`], with a pipeline that has been read.
@@ -89,7 +89,7 @@ pub fn run(path: &Path, options: &RunOptions) -> Result<RunResult, Error> {
 ///
 /// As [`run`].
 pub fn run_pipeline(pipeline: &Pipeline, options: &RunOptions) -> Result<RunResult, Error> {
-    run_together(Ok(pipeline.clone()), options, &Alone)
+    run_together(Ok(pipeline.clone()), options, &SingleProcess)
 }
 
 /// As [`run`], by several ranks that have all read the pipeline. The first one writes; all return the same report.
@@ -154,7 +154,7 @@ pub fn run_together(
 ///
 /// As [`resume_together`].
 pub fn resume(directory: &Path, options: &RunOptions) -> Result<RunResult, Error> {
-    resume_together(directory, options, &Alone)
+    resume_together(directory, options, &SingleProcess)
 }
 
 /// As [`resume`], by several ranks. Of the options, those that say where to write, and the

@@ -1,9 +1,10 @@
 //! The light of a run, and the stages of lines that add to it.
 
 use sir_lines::{Focus, GlobalLines, LocalLines};
-use sir_parallel::{Crew, RunError, Saved, StageRun, StageTime};
+use sir_parallel::{Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
-    Inside, Model, MultipathSettings, PowerUnit, Quanta, Received, Shot, Solution, Transported,
+    BatchSettings, Batches, FirstShot, FocusSides, Model, Multipath, MultipathSettings, PowerUnit, Quanta,
+    Received, SecondShot, Shot, ShotSettings, Solution, Transported,
 };
 
 use crate::plan::pipeline::Action;
@@ -17,9 +18,9 @@ pub(crate) struct Lighting<'m> {
     model: &'m Model,
     light: Light,
     focus: Option<Focus>,
-    inside: &'m Inside,
-    /// What global lines were last drawn through.
-    through: Option<(Body, GlobalLines)>,
+    inside: &'m FocusSides,
+    /// The global lines of the last stage that had some.
+    global: Option<(Body, GlobalLines)>,
 }
 
 /// All light so far.
@@ -44,7 +45,7 @@ impl<'m> Lighting<'m> {
     /// Darkness.
     pub(crate) fn new(prepared: &'m Prepared) -> Self {
         let Prepared { model, focus, inside, .. } = prepared;
-        Self { model, light: Light::None, focus: *focus, inside, through: None }
+        Self { model, light: Light::None, focus: *focus, inside, global: None }
     }
 
     /// Runs a stage, or goes on with one that was saved. `None` if it is not a stage of lines.
@@ -52,44 +53,36 @@ impl<'m> Lighting<'m> {
         &mut self,
         action: &Action,
         seed: u64,
-        crew: &mut Crew<'_>,
+        executor: &mut Executor<'_>,
         saved: Option<Saved>,
     ) -> Result<Option<Done>, RunError> {
-        let (model, focus) = (self.model, self.focus);
+        let model = self.model;
+        let shot = |lines| ShotSettings::new(model, LocalLines { count: lines, focus: self.focus }, seed);
         let done = match *action {
             Action::FirstShot { lines } => {
+                let start = saved.map_or(Start::Fresh(()), Start::Resumed);
                 self.light = Light::None;
-                self.shot(sir_parallel::first_shot(
-                    model,
-                    LocalLines { count: lines, focus },
-                    seed,
-                    crew,
-                    saved,
-                )?)
+                self.shot(executor.run::<FirstShot<'_>>(shot(lines), start)?)
             }
             Action::SecondShot { lines } => {
-                let shot = self.take_shot();
-                self.shot(sir_parallel::second_shot(
-                    model,
-                    shot,
-                    LocalLines { count: lines, focus },
-                    seed,
-                    crew,
-                    saved,
-                )?)
+                let settings = shot(lines);
+                let Some(start) = self.start(saved) else { return Ok(None) };
+                self.shot(executor.run::<SecondShot<'_>>(settings, start)?)
             }
             Action::Multipath { lines, transport, body } => {
-                let (shot, through) = (self.take_shot(), self.through(body));
-                let report = DomainReport::of(&through);
+                let Some(start) = self.start(saved) else { return Ok(None) };
+                let domain = self.global_lines(body);
+                let report = DomainReport::of(&domain);
                 let run = match transport {
                     Transport::Batches => {
-                        sir_parallel::batches(model, shot, lines, through, seed, crew, saved)?
+                        let settings = BatchSettings { model, domain, lines, seed };
+                        executor.run::<Batches<'_>>(settings, start)?
                     }
                     Transport::Replicas { replicas, tail } => {
                         // A pipeline with a focus has none of these.
-                        let domain = through.domain().clone();
-                        let settings = MultipathSettings { lines, tail, replicas, domain };
-                        sir_parallel::multipath(model, shot, settings, seed, crew, saved)?
+                        let domain = domain.domain().clone();
+                        let settings = MultipathSettings { model, domain, lines, tail, replicas, seed };
+                        executor.run::<Multipath<'_>>(settings, start)?
                     }
                 };
                 self.transport(run, report)
@@ -99,34 +92,36 @@ impl<'m> Lighting<'m> {
         Ok(Some(done))
     }
 
-    /// What the shots leave to the next stage. The decoder lets it follow nothing else; if they are not in memory, the state of
-    /// that stage was saved, and has them.
-    fn take_shot(&mut self) -> Shot {
-        match std::mem::replace(&mut self.light, Light::None) {
-            Light::Direct(shot) => shot,
-            _ => Shot::nothing(self.model),
+    /// Returns what a stage after a shot starts from: the state that was saved, or the light of the shots so far. `None` if there is
+    /// neither, which the order of stages forbids.
+    fn start(&mut self, saved: Option<Saved>) -> Option<Start<Shot>> {
+        match (saved, std::mem::replace(&mut self.light, Light::None)) {
+            (Some(saved), _) => Some(Start::Resumed(saved)),
+            (None, Light::Direct(shot)) => Some(Start::Fresh(shot)),
+            (None, _) => None,
         }
     }
 
-    fn through(&mut self, body: Body) -> GlobalLines {
-        let known = self.through.take().filter(|(of, _)| *of == body);
+    /// Returns the lines through a domain, which takes time to make for a large scene.
+    fn global_lines(&mut self, body: Body) -> GlobalLines {
+        let known = self.global.take().filter(|(of, _)| *of == body);
         let lines = || (body, body.lines_around(&self.model.scene, self.focus));
-        let (_, through) = self.through.insert(known.unwrap_or_else(lines));
-        through.clone()
+        let (_, lines) = self.global.insert(known.unwrap_or_else(lines));
+        lines.clone()
     }
 
     fn shot(&mut self, run: StageRun<Shot>) -> Done {
         let StageRun { outcome, time, batches } = run;
         let Shot { balance, counts, unit, .. } = outcome;
-        let facts = Facts { balance, counts, batches, made_up: Quanta::ZERO, domain: None };
+        let facts = Facts { balance, counts, batches, extrapolated: Quanta::ZERO, domain: None };
         self.light = Light::Direct(outcome);
         Done { facts, unit, time }
     }
 
     fn transport(&mut self, run: StageRun<Transported>, domain: DomainReport) -> Done {
         let StageRun { outcome, time, batches } = run;
-        let Transported { balance, counts, made_up, unit, .. } = outcome;
-        let facts = Facts { balance, counts, batches, made_up, domain: Some(domain) };
+        let Transported { balance, counts, extrapolated, unit, .. } = outcome;
+        let facts = Facts { balance, counts, batches, extrapolated, domain: Some(domain) };
         self.light = Light::All(outcome);
         Done { facts, unit, time }
     }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use sir_lines::seed_of_repeat;
 use sir_parallel::{Checkpoints, Communicator, Saved, StageTime};
-use sir_radiosity::{Inside, Model, PowerUnit, RepeatedBooks, Repeats, Solution, Visitor};
+use sir_radiosity::{FocusSides, Model, PowerUnit, RepeatedTotals, Repeats, Solution, Visitor};
 
 use crate::error::Error;
 use crate::format::duration;
@@ -44,12 +44,12 @@ impl Run<'_> {
             for (part, stage) in settings.stages.iter().enumerate().skip(first) {
                 self.begin(number, (repeat, part), checkpoints);
                 let title = format!("{}: {}", repeats.title(), stage.action.name());
-                let mut crew = self.crew(checkpoints);
-                crew.observer =
+                let mut executor = self.executor(checkpoints);
+                executor.observer =
                     Box::new(self.progress.part(&title, stage.action.lines(), &self.options.stop));
-                crew.earlier = Some(Box::new(|visitor| repeats.visit(visitor)));
-                let done = lighting.run(&stage.action, seed, &mut crew, saved.take());
-                drop(crew);
+                executor.prior = Some(Box::new(|visitor| repeats.visit(visitor)));
+                let done = lighting.run(&stage.action, seed, &mut executor, saved.take());
+                drop(executor);
                 if let Some(done) = agree(self.comm, done.map_err(Error::from))? {
                     repeats.book(part, done);
                 }
@@ -82,7 +82,7 @@ impl Run<'_> {
 struct Repeating<'a> {
     settings: &'a Repeat,
     sums: Repeats,
-    parts: Vec<Part>,
+    parts: Vec<StageSums>,
     /// The size of a quantum, once a stage has run.
     unit: Option<PowerUnit>,
     /// The relative error of the mean in the worst band, if that is the target.
@@ -94,8 +94,8 @@ struct Repeating<'a> {
 
 /// One stage in all repeats so far.
 #[derive(Clone, Default)]
-struct Part {
-    books: RepeatedBooks,
+struct StageSums {
+    totals: RepeatedTotals,
     batches: u64,
     time: StageTime,
     domain: Option<DomainReport>,
@@ -106,7 +106,7 @@ impl<'a> Repeating<'a> {
         Self {
             settings,
             sums: Repeats::new(model.mesh.side_count()),
-            parts: vec![Part::default(); settings.stages.len()],
+            parts: vec![StageSums::default(); settings.stages.len()],
             unit: None,
             error: None,
             spent: Duration::ZERO,
@@ -120,18 +120,12 @@ impl<'a> Repeating<'a> {
         visitor.same(&mut time);
         (self.spent, self.since) = (Duration::from_micros(time[0] as u64), Instant::now());
         self.sums.visit(visitor);
-        for Part { books, batches, time, .. } in &mut self.parts {
-            books.visit(visitor);
-            let StageTime { total, tracing, communication } = time;
-            let times = [total, tracing, communication];
-            let mut words = [*batches as i64, 0, 0, 0];
-            words[1..].iter_mut().zip(&times).for_each(|(word, time)| *word = time.as_micros() as i64);
-            visitor.same(&mut words);
-            *batches = words[0] as u64;
-            times
-                .into_iter()
-                .zip(&words[1..])
-                .for_each(|(time, &word)| *time = Duration::from_micros(word as u64));
+        for StageSums { totals, batches, time, .. } in &mut self.parts {
+            totals.visit(visitor);
+            let mut word = [*batches as i64];
+            visitor.same(&mut word);
+            *batches = word[0] as u64;
+            time.visit(visitor);
         }
     }
 
@@ -142,19 +136,17 @@ impl<'a> Repeating<'a> {
 
     /// Notes what a stage of a repeat has done.
     fn book(&mut self, part: usize, done: Done) {
-        let Done { facts: Facts { balance, counts, batches, made_up, domain }, unit, time } = done;
+        let Done { facts: Facts { balance, counts, batches, extrapolated, domain }, unit, time } = done;
         self.unit = Some(unit);
         let part = &mut self.parts[part];
-        part.books.add(&balance, counts, made_up);
+        part.totals.add(&balance, counts, extrapolated);
         part.batches += batches;
-        part.time.total += time.total;
-        part.time.tracing += time.tracing;
-        part.time.communication += time.communication;
+        part.time += time;
         part.domain = domain;
     }
 
     /// Whether there is to be another repeat. The first rank decides, because clocks differ.
-    fn go_on(&mut self, model: &Model, inside: &Inside, comm: &dyn Communicator) -> bool {
+    fn go_on(&mut self, model: &Model, inside: &FocusSides, comm: &dyn Communicator) -> bool {
         if let Until::RelativeError(_) = self.settings.until {
             let (_, solution) = self.mean(model);
             self.error = Some(relative_error(model, inside, &solution).into_iter().fold(0.0, f64::max));
@@ -209,22 +201,22 @@ impl<'a> Repeating<'a> {
     }
 
     /// What to report, and the mean.
-    fn finish(self, model: &Model, inside: &Inside) -> (StageReport, Solution) {
+    fn finish(self, model: &Model, inside: &FocusSides) -> (StageReport, Solution) {
         let (hash, solution) = self.mean(model);
         let (count, total) = (self.sums.count(), self.elapsed());
         let Self { settings, sums, parts, unit, .. } = self;
         let unit = unit.unwrap_or_else(|| PowerUnit::for_total(1.0, 0.0));
-        let lines = parts.iter().map(|part| part.books.counts().lines).sum();
+        let lines = parts.iter().map(|part| part.totals.counts().lines).sum();
         let (from, samples) =
             if sums.have_spread() { (ErrorsFrom::Spread, count) } else { (ErrorsFrom::Lines, lines) };
         let mut time = StageTime { total, ..StageTime::default() };
         let mut report = StageReport::of("Repeat", Time::of(0.0));
-        for (stage, Part { books, batches, time: spent, domain }) in settings.stages.iter().zip(parts) {
+        for (stage, StageSums { totals, batches, time: spent, domain }) in settings.stages.iter().zip(parts) {
             time.tracing += spent.tracing;
             time.communication += spent.communication;
-            let (balance, counts, made_up) =
-                (books.mean_balance(count), books.counts(), books.mean_made_up(count));
-            let facts = Facts { balance, counts, batches, made_up, domain };
+            let (balance, counts, extrapolated) =
+                (totals.mean_balance(count), totals.counts(), totals.mean_extrapolated(count));
+            let facts = Facts { balance, counts, batches, extrapolated, domain };
             let mut part = StageReport::of(stage.action.name(), Time::of_lines(spent, counts.lines));
             part.lines = Some(LinesReport::new(facts, unit));
             report.stages.push(part);

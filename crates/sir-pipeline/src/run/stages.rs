@@ -2,8 +2,8 @@
 
 use std::sync::atomic::Ordering::Relaxed;
 
-use sir_parallel::{Checkpoints, Crew, RunError, Saved, cores};
-use sir_radiosity::Solution;
+use sir_parallel::{Checkpoints, Executor, RunError, Saved, Start, cores};
+use sir_radiosity::{SensorStage, SensorTask, Solution};
 
 use crate::error::Error;
 use crate::plan::output::Output;
@@ -73,10 +73,10 @@ impl Run<'_> {
     ) -> Result<(StageReport, Option<Solution>), Error> {
         let (name, action) = (stage.action.name(), &stage.action);
         self.begin(number, (0, 0), checkpoints);
-        let mut crew = self.crew(checkpoints);
-        crew.observer = Box::new(self.progress.stage(name, action.lines(), &self.options.stop));
-        let done = lighting.run(action, self.head.report.seed, &mut crew, saved);
-        drop(crew);
+        let mut executor = self.executor(checkpoints);
+        executor.observer = Box::new(self.progress.stage(name, action.lines(), &self.options.stop));
+        let done = lighting.run(action, self.head.report.seed, &mut executor, saved);
+        drop(executor);
         let mut report = StageReport::of(name, Time::of(0.0));
         let Some(done) = agree(self.comm, done.map_err(Error::from))? else { return Ok((report, None)) };
         let lines = LinesReport::new(done.facts, done.unit);
@@ -99,23 +99,23 @@ impl Run<'_> {
     }
 
     /// The workers of this run, who save their state.
-    pub(crate) fn crew<'c>(&self, checkpoints: &'c mut Checkpoints) -> Crew<'c>
+    pub(crate) fn executor<'c>(&self, checkpoints: &'c mut Checkpoints) -> Executor<'c>
     where
         Self: 'c,
     {
-        let mut crew = self.workers();
-        crew.checkpoints = Some(checkpoints);
-        crew
+        let mut executor = self.workers();
+        executor.checkpoints = Some(checkpoints);
+        executor
     }
 
     /// The workers of this run.
-    fn workers<'c>(&self) -> Crew<'c>
+    fn workers<'c>(&self) -> Executor<'c>
     where
         Self: 'c,
     {
-        let mut crew = Crew::of(self.options.threads.unwrap_or_else(cores));
-        crew.comm = self.comm;
-        crew
+        let mut executor = Executor::new(self.options.threads.unwrap_or_else(cores));
+        executor.comm = self.comm;
+        executor
     }
 
     /// Measures at sensors, and writes what they have measured.
@@ -127,14 +127,16 @@ impl Run<'_> {
     ) -> Result<StageReport, Error> {
         let mut report = StageReport::of("Sensors", Time::of(0.0));
         let Some(layout) = self.prepared.layouts.get(&number) else { return Ok(report) };
-        let mut crew = self.workers();
+        let mut executor = self.workers();
         let total = sensors.settings.rays * layout.sensors.len() as u64;
-        crew.observer = Box::new(self.progress.stage("Sensors", total, &self.options.stop));
+        executor.observer = Box::new(self.progress.stage("Sensors", total, &self.options.stop));
         // Each stage has its own random numbers.
         let seed = self.head.report.seed.wrapping_add((number as u64) << 48);
         let model = &self.prepared.model;
-        let done = sir_parallel::measure(model, solution, &layout.sensors, sensors.settings, seed, &mut crew);
-        drop(crew);
+        let settings = sensors.settings;
+        let task = SensorTask { model, solution, sensors: &layout.sensors, settings, seed };
+        let done = executor.run::<SensorStage<'_>>(task, Start::Fresh(()));
+        drop(executor);
         let done = agree(self.comm, done.map_err(|error| self.interrupted_measuring(error)))?;
         let measured = SensorsReport::new(&sensors.name, &done.outcome);
         report.time = Time::of_lines(done.time, measured.rays);
@@ -190,15 +192,15 @@ pub(crate) fn unshot_warning(action: &Action, lines: &LinesReport) -> Vec<String
         shares.fold(0.0, f64::max)
     };
     let unshot = share(&balance.unshot);
-    let made_up =
-        balance.unshot.iter().zip(&lines.made_up).all(|(unshot, more)| *unshot <= 0.0 || *more > 0.0);
+    let extrapolated =
+        balance.unshot.iter().zip(&lines.extrapolated).all(|(unshot, more)| *unshot <= 0.0 || *more > 0.0);
     match transport {
-        Transport::Batches if made_up && unshot > 0.1 => vec![format!(
+        Transport::Batches if extrapolated && unshot > 0.1 => vec![format!(
             "{:.0} % of the light that surfaces reflect was not sent on; it was made up for as if it spread like the \
              light before it; give `Multipath` more lines, or make fewer patches",
             100.0 * unshot
         )],
-        Transport::Batches if made_up || unshot <= 1e-3 => Vec::new(),
+        Transport::Batches if extrapolated || unshot <= 1e-3 => Vec::new(),
         Transport::Replicas { .. } if unshot <= 1e-3 => Vec::new(),
         _ => {
             let help = match transport {

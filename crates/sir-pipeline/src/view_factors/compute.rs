@@ -7,8 +7,8 @@ use std::sync::atomic::AtomicBool;
 
 use sir_geom::{LoadOptions, Scene};
 use sir_mesh::Subdivision;
-use sir_parallel::{Communicator, Crew, cores};
-use sir_radiosity::{Grouping, Model};
+use sir_parallel::{Communicator, Executor, Start, cores};
+use sir_radiosity::{Grouping, Model, ViewFactorLines, ViewFactorTask};
 
 use crate::error::Error;
 use crate::fingerprint;
@@ -52,8 +52,10 @@ pub fn view_factors(
     progress.note(&format!("ViewFactors: {} groups, {target}", grouping.names().len()));
     let factors = {
         let observer = progress.watch("ViewFactors", settings.lines, stop);
-        let crew = Crew { comm, ..Crew::of(options.threads.unwrap_or_else(cores)) };
-        sir_parallel::view_factors(&model, &grouping, settings, &mut crew.watched_by(observer))?
+        let threads = options.threads.unwrap_or_else(cores);
+        let mut executor = Executor { comm, ..Executor::new(threads) }.watched_by(observer);
+        let task = ViewFactorTask { model: &model, grouping: &grouping, settings };
+        executor.run::<ViewFactorLines<'_>>(task, Start::Fresh(()))?.outcome
     };
     let report = agree(
         comm,
