@@ -4,8 +4,10 @@ use std::num::NonZeroUsize;
 
 use sir_geom::{Rgb, Scene, Side, TriangleId};
 use sir_lines::{Domain, LocalLines};
-use sir_mesh::{MeshError, PatchId, SideId, Subdivision};
-use sir_radiosity::{BatchSettings, Batches, FirstShot, Model, Received, SecondShot, ShotSettings, Solution};
+use sir_mesh::{PatchId, SideId, Subdivision};
+use sir_radiosity::{
+    BatchSettings, Batches, FirstShot, Model, ModelError, Received, SecondShot, ShotSettings, Solution,
+};
 use thiserror::Error;
 
 use crate::driver::Start;
@@ -49,9 +51,9 @@ pub struct Solver {
 /// Why the light was not computed.
 #[derive(Debug, Error)]
 pub enum SolverError {
-    /// The scene cannot be cut into patches.
+    /// The scene cannot be prepared.
     #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Model(#[from] ModelError),
     /// A stage failed.
     #[error(transparent)]
     Run(#[from] RunError),
