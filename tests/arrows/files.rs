@@ -8,7 +8,7 @@ use crate::modules::{Sources, read_sources, targets};
 use crate::names::arrows;
 
 /// Crates that still have circles.
-const NOT_YET: &[&str] = &["sir-accel", "sir-geom", "sir-mesh", "sir-radiosity"];
+const NOT_YET: &[&str] = &["sir-geom", "sir-mesh", "sir-radiosity"];
 
 /// What to do about a circle.
 const REMEDY: &str = "Name items by the module that defines them (crate::tree::Tree, not crate::Tree); \

@@ -84,7 +84,7 @@ impl Target {
             };
             let name = module.ident.to_string();
             let counts = counts && !module.attrs.iter().any(is_for_tests);
-            let path = [path, &[name.clone()]].concat();
+            let path = [path, std::slice::from_ref(&name)].concat();
             let inner = format!("{folder}{name}/");
             match module.content {
                 Some((_, items)) => self.add_items(sources, file, &inner, &path, items, counts),
