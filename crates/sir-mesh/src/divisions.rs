@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sir_geom::{BoundingBox, Scene, TriangleId};
 
-use crate::patches::MeshError;
+use crate::error::MeshError;
 
 /// The largest number of parts of an edge: `n²` must fit 32 bits.
 pub(crate) const MAX_DIVISIONS: u32 = 65_535;

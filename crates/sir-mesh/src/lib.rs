@@ -39,8 +39,13 @@
 
 mod barycentric;
 mod divisions;
-mod paint;
-mod patches;
+mod error;
+mod index;
+mod mesh;
+mod numbering;
+mod properties;
 
 pub use divisions::Subdivision;
-pub use patches::{MeshError, PatchId, PatchMesh, SideId};
+pub use error::MeshError;
+pub use index::{PatchId, SideId};
+pub use mesh::PatchMesh;

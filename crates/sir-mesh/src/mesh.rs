@@ -1,78 +1,21 @@
 //! The patches of a scene.
 
-use std::collections::HashMap;
 use std::ops::Range;
 
-use sir_geom::{Barycentric, BoundingBox, FaceId, Rgb, Scene, Side, Sides, TriangleId, typed_index};
-use thiserror::Error;
+use sir_geom::{Barycentric, BoundingBox, Rgb, Scene, Side, TriangleId};
 
 use crate::barycentric;
 use crate::divisions::Subdivision;
-use crate::paint::Paint;
-
-typed_index!(
-    /// A patch of a [`PatchMesh`].
-    PatchId
-);
-typed_index!(
-    /// One active side of a patch: the thing that holds power.
-    SideId
-);
-
-/// Why patches cannot be made.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum MeshError {
-    /// A limit that must be positive is not.
-    #[error("the largest {what} of a patch is {value}, but it must be a positive number")]
-    NotPositive {
-        /// `area` or `edge`.
-        what: &'static str,
-        /// The limit asked for.
-        value: f64,
-    },
-    /// More patches than 32-bit numbers can count.
-    #[error("so fine a subdivision makes more than {} patches or sides", u32::MAX)]
-    TooMany,
-}
-
-/// What is needed to find a side of a triangle: no more than that, so that it stays in the caches.
-#[derive(Clone, Copy, Debug)]
-struct Cut {
-    first_side: u32,
-    /// Parts of an edge, `n`, below 2¹⁶; the triangle has `n²` patches.
-    divisions: u16,
-    /// Sides per patch, 1 or 2.
-    sides: u16,
-}
-
-impl Cut {
-    fn divisions(self) -> u32 {
-        u32::from(self.divisions)
-    }
-
-    fn sides(self) -> u32 {
-        u32::from(self.sides)
-    }
-}
-
-/// The patches of one triangle.
-#[derive(Clone, Copy, Debug)]
-struct Patches {
-    first: u32,
-    /// Area of each patch.
-    area: f64,
-}
+use crate::error::MeshError;
+use crate::index::{PatchId, SideId};
+use crate::numbering::{Numbering, Patches};
+use crate::properties::Properties;
 
 /// All patches of a scene. Uses 28 bytes per *triangle*, and nothing per patch but where it has a texture.
 #[derive(Clone, Debug)]
 pub struct PatchMesh {
-    cuts: Vec<Cut>,
-    patches_of: Vec<Patches>,
-    /// One triangle of every patch, in the order of their numbers: of a merged face the first.
-    owners: Vec<TriangleId>,
-    patches: u32,
-    sides: u32,
-    paint: Paint,
+    numbering: Numbering,
+    properties: Properties,
 }
 
 impl PatchMesh {
@@ -96,101 +39,48 @@ impl PatchMesh {
         subdivision: Subdivision,
         bounds: Option<BoundingBox>,
     ) -> Result<Self, MeshError> {
-        let divisions = subdivision.divisions(scene, bounds)?;
-        let mut mesh = Self {
-            cuts: Vec::with_capacity(divisions.len()),
-            patches_of: Vec::with_capacity(divisions.len()),
-            owners: scene.triangle_ids().collect(),
-            patches: 0,
-            sides: 0,
-            paint: Paint::default(),
-        };
-        for (t, &n) in scene.triangle_ids().zip(&divisions) {
-            let per_triangle = n.checked_mul(n).ok_or(MeshError::TooMany)?;
-            let divisions = u16::try_from(n).map_err(|_| MeshError::TooMany)?;
-            let sides = match scene.material(t).sides {
-                Sides::Front => 1,
-                Sides::Both => 2,
-            };
-            mesh.cuts.push(Cut { first_side: mesh.sides, divisions, sides });
-            mesh.patches_of
-                .push(Patches { first: mesh.patches, area: scene.area(t) / f64::from(per_triangle) });
-            let more = |count: u32, by: u32| count.checked_add(by).ok_or(MeshError::TooMany);
-            mesh.patches = more(mesh.patches, per_triangle)?;
-            mesh.sides =
-                more(mesh.sides, per_triangle.checked_mul(u32::from(sides)).ok_or(MeshError::TooMany)?)?;
-        }
-        if subdivision == Subdivision::PerFace {
-            mesh.merge_faces(scene);
-        }
-        mesh.paint = Paint::new(scene, &mesh);
-        Ok(mesh)
-    }
-
-    /// Makes one patch of the (undivided) triangles of each flat polygon.
-    fn merge_faces(&mut self, scene: &Scene) {
-        let mut faces: HashMap<FaceId, Vec<TriangleId>> = HashMap::new();
-        for t in scene.triangle_ids() {
-            faces.entry(scene.triangle(t).face).or_default().push(t);
-        }
-        faces.retain(|_, members| is_flat(scene, members));
-        (self.patches, self.sides) = (0, 0);
-        self.owners.clear();
-        for t in scene.triangle_ids() {
-            if let Some(members) = faces.get(&scene.triangle(t).face) {
-                if t != members[0] {
-                    self.cuts[t.index()] = self.cuts[members[0].index()];
-                    self.patches_of[t.index()] = self.patches_of[members[0].index()];
-                    continue;
-                }
-                self.patches_of[t.index()].area = members.iter().map(|&m| scene.area(m)).sum();
-            }
-            self.owners.push(t);
-            self.patches_of[t.index()].first = self.patches;
-            self.cuts[t.index()].first_side = self.sides;
-            self.patches += 1;
-            self.sides += self.cuts[t.index()].sides();
-        }
+        let numbering = Numbering::new(scene, subdivision, bounds)?;
+        let properties = Properties::new(scene, &numbering);
+        Ok(Self { numbering, properties })
     }
 
     /// Number of patches.
     #[must_use]
     pub fn patch_count(&self) -> usize {
-        self.patches as usize
+        self.numbering.patches as usize
     }
 
     /// Number of active sides, at most twice the number of patches.
     #[must_use]
     pub fn side_count(&self) -> usize {
-        self.sides as usize
+        self.numbering.sides as usize
     }
 
     /// Numbers of the patches of a triangle.
     #[must_use]
     pub fn patches_of(&self, triangle: TriangleId) -> Range<u32> {
-        let (first, n) = (self.patches_of[triangle.index()].first, self.divisions(triangle));
-        first..first + n * n
+        self.numbering.patches_of(triangle)
     }
 
     /// Parts into which each edge of a triangle is cut.
     #[must_use]
     pub fn divisions(&self, triangle: TriangleId) -> u32 {
-        self.cuts[triangle.index()].divisions()
+        self.numbering.divisions(triangle)
     }
 
     /// Area of each patch of a triangle, its gaps included; of a merged face, the area of the whole face.
     #[inline]
     #[must_use]
     pub fn patch_area(&self, triangle: TriangleId) -> f64 {
-        self.patches_of[triangle.index()].area
+        self.numbering.patches_of[triangle.index()].area
     }
 
     /// Area of a patch that stops light: that of the patch without its gaps. It may be zero.
     #[inline]
     #[must_use]
     pub fn covered_area(&self, triangle: TriangleId, patch: PatchId) -> f64 {
-        let Patches { first, area } = self.patches_of[triangle.index()];
-        area * self.paint.coverage(triangle, patch.0 - first)
+        let Patches { first, area } = self.numbering.patches_of[triangle.index()];
+        area * self.properties.coverage(triangle, patch.0 - first)
     }
 
     /// Area of a triangle that stops light.
@@ -212,8 +102,8 @@ impl PatchMesh {
     #[inline]
     #[must_use]
     pub fn reflectance(&self, scene: &Scene, triangle: TriangleId, patch: PatchId) -> Rgb {
-        let within = patch.0 - self.patches_of[triangle.index()].first;
-        let own = self.paint.reflectance(triangle, within);
+        let within = patch.0 - self.numbering.patches_of[triangle.index()].first;
+        let own = self.properties.reflectance(triangle, within);
         own.unwrap_or_else(|| scene.material(triangle).reflectance)
     }
 
@@ -222,8 +112,8 @@ impl PatchMesh {
     #[must_use]
     pub fn exitance(&self, scene: &Scene, triangle: TriangleId, patch: PatchId, side: Side) -> Rgb {
         let of_triangle = scene.exitance(triangle, side);
-        let within = patch.0 - self.patches_of[triangle.index()].first;
-        let own = self.paint.exitance(triangle, within).filter(|_| of_triangle != Rgb::ZERO);
+        let within = patch.0 - self.numbering.patches_of[triangle.index()].first;
+        let own = self.properties.exitance(triangle, within).filter(|_| of_triangle != Rgb::ZERO);
         own.unwrap_or(of_triangle)
     }
 
@@ -231,20 +121,20 @@ impl PatchMesh {
     #[must_use]
     pub fn largest_reflectance(&self, scene: &Scene) -> f64 {
         let plain = scene.materials().iter().map(|m| m.reflectance.max_element());
-        plain.fold(self.paint.brightest(), f64::max)
+        plain.fold(self.properties.max_reflectance(), f64::max)
     }
 
     /// Whether patches of a triangle may differ in reflectance, exitance or covered area.
     #[inline]
     #[must_use]
     pub fn is_varied(&self, triangle: TriangleId) -> bool {
-        self.paint.is_painted(triangle)
+        self.properties.is_varied(triangle)
     }
 
     /// Memory in use for what differs from patch to patch \[bytes\].
     #[must_use]
     pub fn paint_bytes(&self) -> usize {
-        self.paint.bytes()
+        self.properties.bytes()
     }
 
     /// The patch of a triangle in which a point lies.
@@ -252,15 +142,15 @@ impl PatchMesh {
     #[must_use]
     pub fn patch_at(&self, triangle: TriangleId, point: Barycentric) -> PatchId {
         let within = barycentric::locate(self.divisions(triangle), point);
-        PatchId(self.patches_of[triangle.index()].first + within)
+        PatchId(self.numbering.patches_of[triangle.index()].first + within)
     }
 
     /// The given side of a patch of a triangle; `None` if that side does not take part in light transport.
     #[inline]
     #[must_use]
     pub fn side_of(&self, triangle: TriangleId, patch: PatchId, side: Side) -> Option<SideId> {
-        let cut = self.cuts[triangle.index()];
-        let within = (patch.0 - self.patches_of[triangle.index()].first) * cut.sides();
+        let cut = self.numbering.cuts[triangle.index()];
+        let within = (patch.0 - self.numbering.patches_of[triangle.index()].first) * cut.sides();
         match side {
             Side::Front => Some(SideId(cut.first_side + within)),
             Side::Back if cut.sides == 2 => Some(SideId(cut.first_side + within + 1)),
@@ -272,8 +162,8 @@ impl PatchMesh {
     #[inline]
     #[must_use]
     pub fn patch_of_side(&self, triangle: TriangleId, side: SideId) -> PatchId {
-        let cut = self.cuts[triangle.index()];
-        PatchId(self.patches_of[triangle.index()].first + (side.0 - cut.first_side) / cut.sides())
+        let cut = self.numbering.cuts[triangle.index()];
+        PatchId(self.numbering.patches_of[triangle.index()].first + (side.0 - cut.first_side) / cut.sides())
     }
 
     /// The given side of the patch in which a point of a triangle lies.
@@ -291,14 +181,14 @@ impl PatchMesh {
     #[inline]
     #[must_use]
     pub fn place_of(&self, triangle: TriangleId) -> &impl Sized {
-        &self.cuts[triangle.index()]
+        &self.numbering.cuts[triangle.index()]
     }
 
     /// The front and, if it takes part in light transport, the back of the patch in which a point of a triangle lies.
     #[inline]
     #[must_use]
     pub fn sides_at(&self, triangle: TriangleId, point: Barycentric) -> (SideId, Option<SideId>) {
-        let cut = self.cuts[triangle.index()];
+        let cut = self.numbering.cuts[triangle.index()];
         let front = SideId(cut.first_side + barycentric::locate(cut.divisions(), point) * cut.sides());
         (front, (cut.sides == 2).then_some(SideId(front.0 + 1)))
     }
@@ -307,13 +197,12 @@ impl PatchMesh {
     /// of the given triangle.
     #[must_use]
     pub fn patch_corners(&self, triangle: TriangleId, patch: PatchId) -> [Barycentric; 3] {
-        let first = self.patches_of[triangle.index()].first;
-        barycentric::corners(self.divisions(triangle), patch.0 - first)
+        self.numbering.patch_corners(triangle, patch)
     }
 
     /// Calls `visit` once for every active side, in the order of [`SideId`], with one triangle of its patch.
     pub fn for_each_side(&self, mut visit: impl FnMut(TriangleId, PatchId, Side, SideId)) {
-        for &triangle in &self.owners {
+        for &triangle in &self.numbering.owners {
             for patch in self.patches_of(triangle).map(PatchId) {
                 for side in [Side::Front, Side::Back] {
                     if let Some(id) = self.side_of(triangle, patch, side) {
@@ -328,25 +217,15 @@ impl PatchMesh {
     /// its patches, all of the same material and, gaps included, of the same area.
     pub fn sides_within(&self, sides: Range<u32>) -> impl Iterator<Item = (TriangleId, Range<u32>)> {
         let of = |triangle: TriangleId| {
-            let (cut, n) = (self.cuts[triangle.index()], self.divisions(triangle));
+            let (cut, n) = (self.numbering.cuts[triangle.index()], self.divisions(triangle));
             cut.first_side..cut.first_side + n * n * cut.sides()
         };
-        let first = self.owners.partition_point(|&t| of(t).end <= sides.start);
-        self.owners[first..]
+        let first = self.numbering.owners.partition_point(|&t| of(t).end <= sides.start);
+        self.numbering.owners[first..]
             .iter()
             .map(move |&t| (t, of(t).start.max(sides.start)..of(t).end.min(sides.end)))
             .take_while(|(_, range)| !range.is_empty())
     }
-}
-
-/// Whether triangles lie in one plane and face the same way, but for what rounding of their corners does.
-fn is_flat(scene: &Scene, triangles: &[TriangleId]) -> bool {
-    let normal = scene.normal(triangles[0]);
-    let [origin, ..] = scene.corners(triangles[0]);
-    let corners = || triangles.iter().flat_map(|&t| scene.corners(t));
-    let size = corners().map(|c| c.distance(origin)).fold(0.0, f64::max);
-    triangles.iter().all(|&t| scene.normal(t).dot(normal) > 0.0)
-        && corners().all(|c| (c - origin).dot(normal).abs() <= 1e-6 * size)
 }
 
 #[cfg(test)]
@@ -355,7 +234,7 @@ mod tests {
     use glam::DVec3;
     use proptest::prelude::*;
     use sir_geom::shapes::{self, Facing};
-    use sir_geom::{Material, Rgb, SceneBuilder};
+    use sir_geom::{Material, Rgb, SceneBuilder, Sides};
 
     fn room(sides: Sides) -> Scene {
         let mut b = SceneBuilder::new();

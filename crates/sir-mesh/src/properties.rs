@@ -7,12 +7,13 @@ use sir_geom::{
     TextureSums, TriangleId, Wrap,
 };
 
-use crate::patches::{PatchId, PatchMesh};
+use crate::index::PatchId;
+use crate::numbering::Numbering;
 
 /// Properties of the patches of some triangles. Uses 4 bytes per triangle of a scene that has any, and 12 to 28 bytes per
 /// patch of such a triangle.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Paint {
+pub(crate) struct Properties {
     /// Where the patches of each triangle begin in the lists below, or `PLAIN`; empty if all triangles are.
     first: Vec<u32>,
     reflectance: Vec<[f32; 3]>,
@@ -25,7 +26,7 @@ pub(crate) struct Paint {
 /// In place of a number: what a material says holds for the whole triangle.
 const PLAIN: u32 = u32::MAX;
 
-impl Paint {
+impl Properties {
     /// The place in the lists of the `within`-th patch of a triangle.
     #[inline]
     fn place(&self, triangle: TriangleId, within: u32) -> Option<usize> {
@@ -52,12 +53,12 @@ impl Paint {
     }
 
     /// Whether patches of a triangle may differ from each other.
-    pub(crate) fn is_painted(&self, triangle: TriangleId) -> bool {
+    pub(crate) fn is_varied(&self, triangle: TriangleId) -> bool {
         self.place(triangle, 0).is_some()
     }
 
     /// The largest reflectance in any band.
-    pub(crate) fn brightest(&self) -> f64 {
+    pub(crate) fn max_reflectance(&self) -> f64 {
         self.reflectance.iter().flatten().fold(0.0, |most, &band| most.max(f64::from(band)))
     }
 
@@ -69,8 +70,8 @@ impl Paint {
             + size_of_val(&self.coverage[..])
     }
 
-    /// The paint of all patches.
-    pub(crate) fn new(scene: &Scene, mesh: &PatchMesh) -> Self {
+    /// Takes the means over all patches of triangles that vary.
+    pub(crate) fn new(scene: &Scene, numbering: &Numbering) -> Self {
         let varied: Vec<TriangleId> = scene.triangle_ids().filter(|&t| scene.is_varied(t)).collect();
         if varied.is_empty() {
             return Self::default();
@@ -81,7 +82,7 @@ impl Paint {
         let mut totals: Vec<Total> = Vec::new();
         let mut images = Images { scene, sums: HashMap::new() };
         for &t in &varied {
-            let patches = mesh.patches_of(t);
+            let patches = numbering.patches_of(t);
             let start = *firsts.entry(patches.start).or_insert_with(|| {
                 totals.resize(totals.len() + patches.len(), Total::default());
                 totals.len() - patches.len()
@@ -89,7 +90,7 @@ impl Paint {
             first[t.index()] = start as u32;
             let area = scene.area(t) / patches.len() as f64;
             for (total, patch) in totals[start..].iter_mut().zip(patches) {
-                total.add(area, &images.mean(t, mesh.patch_corners(t, PatchId(patch))));
+                total.add(area, &images.mean(t, numbering.patch_corners(t, PatchId(patch))));
             }
         }
         let emits = varied.iter().any(|&t| scene.material(t).exitance_map.is_some());
@@ -199,6 +200,7 @@ impl Images<'_> {
 mod tests {
     use super::*;
     use crate::divisions::Subdivision;
+    use crate::mesh::PatchMesh;
     use glam::{DVec3, Vec2, Vec4};
     use sir_geom::{SceneBuilder, Side, Sides, Texture};
 
@@ -295,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn plain_scenes_have_no_paint() {
+    fn plain_scenes_need_no_memory() {
         let mut b = SceneBuilder::new();
         let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
         let v = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| b.add_vertex(p));
