@@ -1,14 +1,13 @@
 //! Building a scene: the one place where geometry is checked.
 
 use std::collections::HashMap;
-use std::fmt;
 
 use glam::{DVec3, Vec2, Vec4};
-use thiserror::Error;
 
 use crate::appearance::{Appearance, Corners};
 use crate::camera::Camera;
 use crate::color::Rgb;
+use crate::error::SceneError;
 use crate::index::{FaceId, GroupId, MaterialId, VertexId};
 use crate::light::Light;
 use crate::material::{MAX_REFLECTANCE, Material};
@@ -17,130 +16,8 @@ use crate::scene::{Scene, Triangle};
 use crate::sky::Sky;
 use crate::split::{Corner, split};
 use crate::texture::{ColourMap, Texture, TextureId};
+use crate::warning::{Built, Warning};
 use sir_types::{BoundingBox, BoundingSphere};
-
-/// Why a scene cannot be built.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum SceneError {
-    /// There is nothing that light could meet.
-    #[error("{}; add meshes of triangles to the scene", nothing(*dropped))]
-    Empty {
-        /// Degenerate triangles that were dropped.
-        dropped: u64,
-    },
-    /// More vertices or triangles than 32-bit numbers can count.
-    #[error("the scene has more than {} {what}", u32::MAX)]
-    TooLarge {
-        /// `vertices`, `triangles` or `materials`.
-        what: &'static str,
-    },
-    /// A polygon names a vertex or material that was not added.
-    #[error("polygon {face} refers to {what} {index}, but only {count} were added")]
-    OutOfRange {
-        /// Number of the polygon.
-        face: u32,
-        /// `vertex` or `material`.
-        what: &'static str,
-        /// The number that it asks for.
-        index: u32,
-        /// How many there are.
-        count: usize,
-    },
-    /// A material has a negative, infinite or undefined colour.
-    #[error("material {} has the {what} ({:?}, {:?}, {:?}), which must be finite and not negative", quoted(name), value.x, value.y, value.z)]
-    BadMaterial {
-        /// Name of the material.
-        name: String,
-        /// `reflectance`, `exitance` or `opacity`.
-        what: &'static str,
-        /// The value found.
-        value: Rgb,
-    },
-    /// A light has a negative, infinite or undefined number.
-    #[error("light {number} (\"{name}\") has a bad {what}: {rule}")]
-    BadLight {
-        /// Its number, from 0, in the order in which lights were added.
-        number: usize,
-        /// Name of the light.
-        name: String,
-        /// `position`, `direction`, `axis`, `cone`, `intensity` or `irradiance`.
-        what: &'static str,
-        /// What it must be.
-        rule: &'static str,
-    },
-}
-
-/// Something that was changed or left out while a scene was read.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Warning {
-    /// Triangles without an area, or with coordinates that are not finite, were left out.
-    DroppedTriangles {
-        /// How many.
-        count: u64,
-    },
-    /// Polygons whose outlines cross themselves, or have more than 4,096 corners and are not convex, were cut into fans.
-    CrossedPolygons {
-        /// How many.
-        count: u64,
-    },
-    /// A material reflected as much light as it gets, or more: its reflectance was set to [`MAX_REFLECTANCE`].
-    ClampedReflectance {
-        /// Name of the material.
-        material: String,
-        /// The largest band of the reflectance that the file asks for.
-        asked: f64,
-    },
-    /// A part of the file has no meaning here, or is missing, and was passed over.
-    Ignored {
-        /// What it was, and what happens instead.
-        what: String,
-    },
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::DroppedTriangles { count } => {
-                write!(f, "{count} triangles without an area or with infinite coordinates were left out")
-            }
-            Self::CrossedPolygons { count } => {
-                write!(
-                    f,
-                    "{count} polygons cross themselves, or have too many corners for another way, and were cut from their first corner"
-                )
-            }
-            Self::ClampedReflectance { material, asked } => write!(
-                f,
-                "material {} reflects {} of the light it gets; {MAX_REFLECTANCE} is used, \
-                 because a surface must absorb some",
-                quoted(material),
-                if *asked < 1e6 { format!("{asked:.4}") } else { format!("{asked:.1e}") }
-            ),
-            Self::Ignored { what } => f.write_str(what),
-        }
-    }
-}
-
-/// The start of a name from a file in quotes, with escapes for what would play tricks on a terminal.
-fn quoted(name: &str) -> String {
-    format!("{:?}", name.chars().take(80).collect::<String>())
-}
-
-fn nothing(dropped: u64) -> String {
-    match dropped {
-        0 => "it has no triangles".to_owned(),
-        n => format!("none of its {n} triangles has both an area and finite coordinates"),
-    }
-}
-
-/// A new scene and what was changed to make it one.
-#[derive(Clone, Debug)]
-pub struct Built {
-    /// The scene.
-    pub scene: Scene,
-    /// What was changed or left out.
-    pub warnings: Vec<Warning>,
-}
 
 /// Collects vertices, materials and polygons, and checks them.
 #[derive(Clone, Debug, Default)]

@@ -13,6 +13,9 @@
 //!
 //! [`BoundingBox`] and [`BoundingSphere`] enclose what there is.
 //!
+//! The readers are cargo features, `gltf` and `obj`, both on by default. Without them, scenes come from a [`SceneBuilder`], and the
+//! crate needs no decoder of images and no reader of JSON.
+//!
 //! Indices are typed ([`TriangleId`], [`MaterialId`], …): a triangle number cannot be used where a material
 //! number is meant.
 //!
@@ -42,6 +45,7 @@ mod appearance;
 mod builder;
 mod camera;
 mod color;
+mod error;
 mod index;
 mod light;
 mod load;
@@ -51,12 +55,14 @@ mod scene;
 pub mod shapes;
 mod sky;
 mod split;
+mod surface;
 mod texture;
+mod warning;
 
-pub use appearance::Opacities;
-pub use builder::{Built, SceneBuilder, SceneError, Warning};
+pub use builder::SceneBuilder;
 pub use camera::{Camera, Projection};
 pub use color::{Rgb, luminance};
+pub use error::SceneError;
 pub use index::{FaceId, GroupId, MaterialId, VertexId};
 pub use light::{Arrival, Light, LightKind, Spread};
 pub use load::{LoadError, LoadOptions, SidesPolicy, load, load_with};
@@ -64,4 +70,6 @@ pub use material::{MAX_REFLECTANCE, Material, Opacity, Sides};
 pub use scene::{Scene, Triangle};
 pub use sir_types::{Barycentric, BoundingBox, BoundingSphere, Line, Side, TriangleId, typed_index};
 pub use sky::{Sky, SkyModel};
+pub use surface::Opacities;
 pub use texture::{ColourMap, Texture, TextureId, TextureMap, TextureMean, TextureSums, Wrap};
+pub use warning::{Built, Warning};

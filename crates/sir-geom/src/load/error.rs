@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::builder::SceneError;
+use crate::error::SceneError;
 
 /// Why a scene file cannot be read. Every message names the file and says what to do where that is not obvious.
 #[derive(Debug, Error)]
@@ -17,6 +17,14 @@ pub enum LoadError {
         path: PathBuf,
         /// What its name ends in.
         extension: Option<String>,
+    },
+    /// The reader of the format was left out when the program was built.
+    #[error("{}: the reader of this format is switched off; build sir-geom with the cargo feature `{feature}`", path.display())]
+    WithoutReader {
+        /// The scene file.
+        path: PathBuf,
+        /// The cargo feature.
+        feature: &'static str,
     },
     /// The scene file is absent, is not a regular file, or cannot be read.
     #[error("cannot read the scene {}", path.display())]

@@ -5,63 +5,32 @@
 //! wrong with one ends in a [`LoadError`], never in a panic or in memory without bound.
 
 mod error;
+#[cfg(any(feature = "gltf", feature = "obj"))]
 mod files;
+#[cfg(feature = "gltf")]
 mod gltf;
+#[cfg(any(feature = "gltf", feature = "obj"))]
 mod notes;
+#[cfg(feature = "obj")]
 mod obj;
+mod options;
+#[cfg(any(feature = "gltf", feature = "obj"))]
 mod texture;
 
 use std::path::Path;
 
 pub use error::LoadError;
+pub use options::{LoadOptions, SidesPolicy};
 
-use crate::builder::{Built, SceneBuilder};
-use crate::material::{Material, Sides};
-use notes::Notes;
-
-/// The most vertices or triangles of a glTF scene. Without a limit, a small file with many instances of its
-/// meshes could fill any memory.
-const MAX_ELEMENTS: usize = 1 << 26;
-
-/// Reflectance in place of one that a file does not give.
-const DEFAULT_REFLECTANCE: f64 = 0.5;
-
-/// How to read a scene file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct LoadOptions {
-    /// Which sides of surfaces take part in light transport.
-    pub sides: SidesPolicy,
-}
-
-/// What decides which sides of a surface reflect.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum SidesPolicy {
-    /// The file: `doubleSided` in glTF, where both sides also emit. OBJ files have no such notion: both sides
-    /// reflect, and the front emits.
-    #[default]
-    AsAuthored,
-    /// Both sides of every surface reflect. Which sides emit is left to the file.
-    Both,
-    /// Only the fronts reflect and emit.
-    Front,
-}
-
-impl SidesPolicy {
-    /// The material as this policy has it.
-    fn apply(self, mut material: Material) -> Material {
-        match self {
-            Self::AsAuthored => {}
-            Self::Both => material.sides = Sides::Both,
-            Self::Front => {
-                material.sides = Sides::Front;
-                material.back_emits = false;
-            }
-        }
-        material
-    }
-}
+use crate::builder::SceneBuilder;
+#[cfg(any(feature = "gltf", feature = "obj"))]
+use crate::load::notes::{Notes, shorten};
+use crate::warning::Built;
 
 /// Reads a scene file; the extension of its name (`gltf`, `glb` or `obj`, in any case) tells the format.
+///
+/// Each format has a cargo feature, `gltf` and `obj`; both are on by default. With neither, this crate needs no decoder of images
+/// and no reader of JSON.
 ///
 /// Textures are kept as they are, up to 2²⁸ texels in all; triangles without coordinates have their mean linear colours. Only materials that a triangle uses are taken in. What the
 /// file has beyond a scene is passed over with one warning per kind.
@@ -83,7 +52,7 @@ impl SidesPolicy {
 ///
 /// # Errors
 ///
-/// If the file or one that its geometry needs cannot be read, breaks its format, or holds no triangle. Missing
+/// If the reader of the format is switched off, or the file or one that its geometry needs cannot be read, breaks its format, or holds no triangle. Missing
 /// material libraries and textures are warnings.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Built, LoadError> {
     load_with(path, options, |_| {})
@@ -94,23 +63,65 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Built, LoadError> {
 /// # Errors
 ///
 /// As [`load`].
+#[cfg_attr(
+    not(any(feature = "gltf", feature = "obj")),
+    expect(unused_variables, reason = "without a reader, there is nothing to do with options")
+)]
 pub fn load_with(
     path: &Path,
     options: &LoadOptions,
     add: impl FnOnce(&mut SceneBuilder),
 ) -> Result<Built, LoadError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
     match extension.as_deref() {
-        Some("gltf" | "glb") => gltf::read(path, *options, &mut builder, &mut notes)?,
-        Some("obj") => obj::read(path, *options, &mut builder, &mut notes)?,
-        _ => return Err(LoadError::UnknownFormat { path: path.to_owned(), extension }),
+        #[cfg(feature = "gltf")]
+        Some("gltf" | "glb") => read(path, options, gltf::read, add),
+        #[cfg(feature = "obj")]
+        Some("obj") => read(path, options, obj::read, add),
+        #[cfg(not(feature = "gltf"))]
+        Some("gltf" | "glb") => Err(LoadError::WithoutReader { path: path.to_owned(), feature: "gltf" }),
+        #[cfg(not(feature = "obj"))]
+        Some("obj") => Err(LoadError::WithoutReader { path: path.to_owned(), feature: "obj" }),
+        _ => Err(LoadError::UnknownFormat { path: path.to_owned(), extension }),
     }
+}
+
+/// Lets a reader fill a builder, and builds the scene.
+#[cfg(any(feature = "gltf", feature = "obj"))]
+fn read(
+    path: &Path,
+    options: &LoadOptions,
+    reader: impl FnOnce(&Path, LoadOptions, &mut SceneBuilder, &mut Notes) -> Result<(), LoadError>,
+    add: impl FnOnce(&mut SceneBuilder),
+) -> Result<Built, LoadError> {
+    let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
+    reader(path, *options, &mut builder, &mut notes)?;
     let skipped = notes.skipped();
     notes.warn(&mut builder);
     add(&mut builder);
     let mut built =
         builder.build().map_err(|source| LoadError::Scene { path: path.to_owned(), skipped, source })?;
-    notes::shorten(&mut built.warnings);
+    shorten(&mut built.warnings);
     Ok(built)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reader_that_is_switched_off_is_named() {
+        for (name, feature, is_on) in [
+            ("absent.gltf", "gltf", cfg!(feature = "gltf")),
+            ("absent.GLB", "gltf", cfg!(feature = "gltf")),
+            ("absent.obj", "obj", cfg!(feature = "obj")),
+        ] {
+            let error = load(Path::new(name), &LoadOptions::default()).unwrap_err();
+            assert!(error.to_string().contains(name));
+            match error {
+                LoadError::WithoutReader { feature: named, .. } => assert!(!is_on && named == feature),
+                other => assert!(is_on && matches!(other, LoadError::Read { .. }), "{other}"),
+            }
+        }
+    }
 }

@@ -2,8 +2,9 @@
 
 use std::collections::HashSet;
 
-use crate::builder::{SceneBuilder, Warning};
+use crate::builder::SceneBuilder;
 use crate::load::files::shortened;
+use crate::warning::Warning;
 
 /// How many names a line gives before it only counts.
 const NAMES: usize = 5;

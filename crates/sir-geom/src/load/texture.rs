@@ -45,6 +45,7 @@ pub(super) struct Image {
 }
 
 impl Image {
+    #[cfg(feature = "obj")]
     /// Whether it is less than opaque anywhere.
     pub(super) fn has_alpha(&self) -> bool {
         self.alpha < 1.0
@@ -164,6 +165,7 @@ pub(super) struct Placement {
 }
 
 impl Placement {
+    #[cfg(feature = "gltf")]
     /// The coordinates as they are.
     pub(super) const PLAIN: Self = Self { x_axis: DVec2::X, y_axis: DVec2::Y, offset: DVec2::ZERO };
 

@@ -1,7 +1,7 @@
 //! Smaller images of textures, for views from afar.
 
 use crate::color::Rgb;
-use crate::texture::{Texture, srgb_to_linear};
+use crate::texture::image::{Texture, srgb_to_linear};
 
 impl Texture {
     /// The image at half its size, rounded down, but at least one texel wide and high. Each texel has the mean, in linear

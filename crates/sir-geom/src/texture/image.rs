@@ -1,7 +1,4 @@
-//! Textures: images that say how a surface's colours vary on it.
-
-mod halved;
-mod sums;
+//! Images, and how they are laid on a surface.
 
 use std::sync::LazyLock;
 
@@ -9,8 +6,6 @@ use glam::{DVec2, IVec2};
 
 use crate::color::Rgb;
 use sir_types::typed_index;
-
-pub use sums::{TextureMean, TextureSums};
 
 typed_index!(
     /// A texture of a [`Scene`](crate::Scene).
@@ -23,10 +18,10 @@ typed_index!(
 /// square evenly, so that the mean over an area is well defined; only pictures interpolate between texels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
-    width: u32,
-    height: u32,
+    pub(super) width: u32,
+    pub(super) height: u32,
     /// Row by row from the top.
-    texels: Vec<[u8; 4]>,
+    pub(super) texels: Vec<[u8; 4]>,
 }
 
 /// What a texture shows outside of its square.
@@ -133,12 +128,12 @@ impl Texture {
         f64::from(alpha) / 255.0
     }
 
-    fn in_texels(&self, place: DVec2) -> DVec2 {
+    pub(super) fn in_texels(&self, place: DVec2) -> DVec2 {
         place * DVec2::new(f64::from(self.width), f64::from(self.height))
     }
 
     /// The texel in a column and row.
-    fn texel(&self, at: IVec2, wrap: [Wrap; 2]) -> [u8; 4] {
+    pub(super) fn texel(&self, at: IVec2, wrap: [Wrap; 2]) -> [u8; 4] {
         let column = wrap[0].inside(i64::from(at.x), i64::from(self.width));
         let row = wrap[1].inside(i64::from(at.y), i64::from(self.height));
         self.texels[row * self.width as usize + column]
@@ -147,7 +142,7 @@ impl Texture {
 
 impl Wrap {
     /// The column of an image of this width that appears at any column.
-    fn inside(self, column: i64, width: i64) -> usize {
+    pub(super) fn inside(self, column: i64, width: i64) -> usize {
         let inside = match self {
             Self::Repeat => column.rem_euclid(width),
             Self::Mirror => {

@@ -7,7 +7,7 @@
 use glam::{DVec2, DVec4};
 
 use crate::color::Rgb;
-use crate::texture::{Texture, Wrap, srgb_to_linear};
+use crate::texture::image::{Texture, Wrap, srgb_to_linear};
 
 /// Texels of a row between which a sum is stored.
 const BLOCK: usize = 16;

@@ -5,7 +5,7 @@ use ::gltf::json::validation::Checked;
 use ::gltf::json::{Index, buffer};
 
 use crate::load::error::LoadError;
-use crate::load::gltf::{Reader, lookup};
+use crate::load::gltf::reader::{Reader, lookup};
 
 /// The most elements that no buffer view backs, of all accessors together, as often as they are read: zeros cost a file nothing.
 const MAX_UNBACKED: usize = 1 << 16;

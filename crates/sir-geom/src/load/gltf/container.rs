@@ -8,7 +8,7 @@ use ::gltf::json::{Root, Value, deserialize};
 
 use crate::load::error::LoadError;
 use crate::load::files;
-use crate::load::files::Reference;
+use crate::load::gltf::uri::{self, Reference};
 
 /// The most characters of what a parser says, which may quote the file at length.
 const MESSAGE: usize = 160;
@@ -124,7 +124,7 @@ pub(super) fn buffers(
 
 /// What a URI of the file stands for. `element` is the part of the file that has it.
 pub(super) fn resolve(path: &Path, uri: &str, element: impl Fn() -> String) -> Result<Reference, LoadError> {
-    files::resolve(path, uri).map_err(|why| LoadError::Reference {
+    uri::resolve(path, uri).map_err(|why| LoadError::Reference {
         path: path.to_owned(),
         element: element(),
         uri: files::shortened(uri, 60),

@@ -10,8 +10,8 @@ use ::gltf::json::validation::Checked;
 use glam::{DVec4, Vec2, Vec4};
 
 use crate::load::error::LoadError;
-use crate::load::gltf::Reader;
-use crate::load::gltf::material::{Alpha, Known};
+use crate::load::gltf::known::{Alpha, Known};
+use crate::load::gltf::reader::Reader;
 use crate::load::texture::Placement;
 
 /// The most sets of coordinates of a material: it has two textures.

@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 use crate::color::Rgb;
 use crate::light::{Light, LightKind, Spread};
 use crate::load::error::LoadError;
-use crate::load::gltf::{Reader, lookup};
+use crate::load::gltf::reader::{Reader, lookup};
 
 impl Reader<'_> {
     /// Adds the light of a node, if it has one.

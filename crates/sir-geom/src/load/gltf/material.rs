@@ -1,8 +1,6 @@
 //! Materials and their textures.
 
 use std::f64::consts::PI;
-use std::path::PathBuf;
-use std::rc::Rc;
 
 use ::gltf::json::Index;
 use ::gltf::json::material::{AlphaMode, Material as Source};
@@ -11,54 +9,17 @@ use ::gltf::json::validation::Checked;
 use glam::DVec2;
 
 use crate::color::Rgb;
-use crate::index::MaterialId;
 use crate::load::error::LoadError;
 use crate::load::files;
-use crate::load::files::Reference;
-use crate::load::gltf::{Reader, lookup};
+use crate::load::gltf::known::{Alpha, Coordinates, Known, Pixels};
+use crate::load::gltf::reader::{Reader, lookup};
+use crate::load::gltf::uri::{self, Reference};
+use crate::load::notes;
+use crate::load::options::DEFAULT_REFLECTANCE;
 use crate::load::texture;
 use crate::load::texture::{Image, Layer, Placement};
-use crate::load::{DEFAULT_REFLECTANCE, notes};
 use crate::material::{MAX_REFLECTANCE, Material, Opacity, Sides};
 use crate::texture::Wrap;
-
-/// Where the encoded bytes of an image lie. Images may share them, and large ones take time to decode.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Pixels {
-    /// In a buffer view.
-    View(usize),
-    /// In a file.
-    File(PathBuf),
-    /// In the URI of this image, or nowhere.
-    Own(usize),
-}
-
-/// Where the coordinates of a texture come from: the number of an attribute, and what becomes of its numbers.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) struct Coordinates {
-    pub(super) set: u32,
-    pub(super) placement: Placement,
-}
-
-/// What a primitive must know about its material.
-#[derive(Clone)]
-pub(super) struct Known {
-    pub(super) id: MaterialId,
-    /// The sets of coordinates that its textures use.
-    pub(super) sets: Rc<[Coordinates]>,
-    pub(super) alpha: Alpha,
-}
-
-/// What becomes of the alpha of vertex colours.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Alpha {
-    /// It has no meaning.
-    Opaque,
-    /// It should decide where there is a surface, but is not asked.
-    Mask,
-    /// It is a share of the light.
-    Blend,
-}
 
 impl Reader<'_> {
     /// The material at an index of the file, added when it is first used; `None` is the default material, which is white
@@ -189,7 +150,7 @@ impl Reader<'_> {
     fn pixels(&self, index: usize) -> Pixels {
         let image = self.root.images.get(index);
         match image.map(|image| (&image.uri, image.buffer_view)) {
-            Some((Some(uri), _)) if !uri.starts_with("data:") => match files::resolve(self.path, uri) {
+            Some((Some(uri), _)) if !uri.starts_with("data:") => match uri::resolve(self.path, uri) {
                 Ok(Reference::File(path)) => Pixels::File(path),
                 _ => Pixels::Own(index),
             },
@@ -205,7 +166,7 @@ impl Reader<'_> {
             (Pixels::File(path), ..) => {
                 files::read(path).map_err(|source| format!("{}: {source}", path.display()))
             }
-            (_, Some(uri), _) => match files::resolve(self.path, uri)? {
+            (_, Some(uri), _) => match uri::resolve(self.path, uri)? {
                 Reference::Data(bytes) => Ok(bytes),
                 Reference::File(_) => Err("it has no data".to_owned()),
             },

@@ -8,23 +8,27 @@ mod access;
 mod camera;
 mod container;
 mod corners;
+mod known;
 mod light;
 mod material;
 mod primitive;
+mod reader;
+mod uri;
 mod walk;
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::rc::Rc;
 
-use ::gltf::json::{Index, Root, root::Get};
+use ::gltf::json::Root;
 
 use crate::builder::SceneBuilder;
 use crate::load::error::LoadError;
+use crate::load::files;
+use crate::load::gltf::reader::Reader;
 use crate::load::notes::Notes;
-use crate::load::texture::{Image, Images};
-use crate::load::{LoadOptions, files};
+use crate::load::options::LoadOptions;
+use crate::load::texture::Images;
 
 /// Extensions whose meaning is taken in, or does not change a diffuse scene.
 const KNOWN_EXTENSIONS: [&str; 6] = [
@@ -82,46 +86,6 @@ pub(super) fn read(
         unbacked: Cell::new(0),
     };
     reader.scene()
-}
-
-/// A file on its way into a builder.
-struct Reader<'a> {
-    path: &'a Path,
-    root: &'a Root,
-    buffers: Vec<Rc<Vec<u8>>>,
-    options: LoadOptions,
-    builder: &'a mut SceneBuilder,
-    notes: &'a mut Notes,
-    /// Materials met so far by their index in the file; no index stands for the default one, which comes in two colours.
-    materials: BTreeMap<(Option<usize>, bool), material::Known>,
-    /// Images met so far; `None` for one that cannot be read.
-    textures: BTreeMap<material::Pixels, Option<Image>>,
-    images: Images,
-    /// How many were added so far.
-    vertices: usize,
-    /// Coordinates of textures and colours.
-    coordinates: usize,
-    triangles: usize,
-    primitives: usize,
-    /// Elements of accessors without data.
-    unbacked: Cell<usize>,
-}
-
-impl Reader<'_> {
-    fn invalid(&self, what: impl Into<String>) -> LoadError {
-        LoadError::Gltf { path: self.path.to_owned(), what: what.into() }
-    }
-}
-
-/// The element of a file at an index. `what` says who asks for which kind of element.
-fn lookup<'a, T>(path: &Path, root: &'a Root, index: Index<T>, what: &str) -> Result<&'a T, LoadError>
-where
-    Root: Get<T>,
-{
-    root.get(index).ok_or_else(|| LoadError::Gltf {
-        path: path.to_owned(),
-        what: format!("{what} {} does not exist", index.value()),
-    })
 }
 
 fn check_version(path: &Path, root: &Root) -> Result<(), LoadError> {

@@ -10,10 +10,9 @@ use ::gltf::json::validation::Checked;
 use glam::{DAffine3, DVec3, Vec2};
 
 use crate::index::VertexId;
-use crate::load::MAX_ELEMENTS;
 use crate::load::error::LoadError;
-use crate::load::gltf::Reader;
 use crate::load::gltf::corners::{Attributes, MOST_SETS, Values};
+use crate::load::gltf::reader::Reader;
 
 /// What the primitives of one instance of a mesh share, by the number of its accessor.
 #[derive(Default)]
@@ -21,6 +20,10 @@ pub(super) struct Shared {
     vertices: HashMap<usize, Rc<[VertexId]>>,
     pub(super) attributes: Attributes,
 }
+
+/// The most vertices or triangles of a glTF scene. Without a limit, a small file with many instances of its
+/// meshes could fill any memory.
+const MAX_ELEMENTS: usize = 1 << 26;
 
 impl Reader<'_> {
     /// Adds a primitive in world space. `shared` has the vertices that other primitives of this mesh instance

@@ -5,8 +5,9 @@ use ::gltf::json::{Index, Root};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::load::error::LoadError;
+use crate::load::gltf::camera;
 use crate::load::gltf::primitive::Shared;
-use crate::load::gltf::{Reader, camera, lookup};
+use crate::load::gltf::reader::{Reader, lookup};
 
 /// The most mesh primitives once instances are laid out.
 const MAX_PRIMITIVES: usize = 1 << 23;

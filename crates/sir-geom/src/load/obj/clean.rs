@@ -139,6 +139,12 @@ fn without_comment(line: &str) -> &str {
     line[..comment.unwrap_or(line.len())].trim()
 }
 
+/// The number, from 1, and the start of the line that ends at byte `end`.
+pub(super) fn line_at(text: &str, end: usize) -> (usize, String) {
+    let (line, statement) = text[..end].lines().enumerate().last().unwrap_or_default();
+    (line + 1, shortened(statement, 80))
+}
+
 /// Ends lines until the text is at the start of `line`; `lines` counts those that were ended.
 fn pad_to(text: &mut String, lines: &mut usize, line: usize) {
     for _ in *lines + 1..line {

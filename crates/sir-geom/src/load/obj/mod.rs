@@ -3,6 +3,10 @@
 //! `Kd` is the reflectance, times `map_Kd` and the colours of vertices; `Ke`, times `map_Ke`, the radiance that the
 //! front emits: a file has no notion of sides, so both reflect and only the front emits. `d`, or else `1 − Tr`, times
 //! `map_d` is the opacity.
+//!
+//! The crate `tobj` reads vertices, faces and colors from a text that `clean` puts into plain form. A parser of our own in place of both
+//! was written and compared: 602 lines of code instead of 565, without tests and comments, for the same messages. What `tobj` does is
+//! little, but so is what it costs; it stays.
 
 mod clean;
 mod corners;
@@ -17,11 +21,13 @@ use crate::builder::SceneBuilder;
 use crate::color::Rgb;
 use crate::index::VertexId;
 use crate::load::error::LoadError;
+use crate::load::files;
 use crate::load::notes::Notes;
+use crate::load::obj::clean::line_at;
+use crate::load::obj::corners::Corners;
+use crate::load::options::{DEFAULT_REFLECTANCE, LoadOptions};
 use crate::load::texture::Placement;
-use crate::load::{DEFAULT_REFLECTANCE, LoadOptions, files};
 use crate::material::{MAX_REFLECTANCE, Material, Sides};
-use corners::Corners;
 
 /// A statement that makes `tobj` ask for materials, which all are at hand by then.
 const ALL_LIBRARIES: &str = "mtllib *\n";
@@ -68,12 +74,6 @@ fn parse(path: &Path, text: &str, library: &mtl::Library<'_>) -> Result<Vec<tobj
             Err(LoadError::Syntax { path: path.to_owned(), line, what })
         }
     }
-}
-
-/// The number, from 1, and the start of the line that ends at byte `end`.
-fn line_at(text: &str, end: usize) -> (usize, String) {
-    let (line, statement) = text[..end].lines().enumerate().last().unwrap_or_default();
-    (line + 1, files::shortened(statement, 80))
 }
 
 /// Finds the first corner of a face that is none of the vertices: of all, or, if it counts back, of those before it.

@@ -8,11 +8,13 @@ use crate::builder::SceneBuilder;
 use crate::color::Rgb;
 use crate::index::MaterialId;
 use crate::load::error::LoadError;
+use crate::load::files;
 use crate::load::notes::{Notes, quoted};
-use crate::load::obj::{clean, line_at, map};
+use crate::load::obj::clean::{self, line_at};
+use crate::load::obj::map;
+use crate::load::options::{DEFAULT_REFLECTANCE, LoadOptions};
 use crate::load::texture;
 use crate::load::texture::{Image, Images, Layer, Placement};
-use crate::load::{DEFAULT_REFLECTANCE, LoadOptions, files};
 use crate::material::{MAX_REFLECTANCE, Material, Opacity, Sides};
 use crate::texture::Texture;
 
