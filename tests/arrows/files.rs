@@ -7,9 +7,6 @@ use crate::circles::{circles, describe};
 use crate::modules::{Sources, read_sources, targets};
 use crate::names::arrows;
 
-/// Crates that still have circles.
-const NOT_YET: &[&str] = &["sir-geom", "sir-mesh", "sir-radiosity"];
-
 /// What to do about a circle.
 const REMEDY: &str = "Name items by the module that defines them (crate::tree::Tree, not crate::Tree); \
     move what both files need into a file that needs neither; leave only docs, `mod` and `pub use` in a lib.rs or mod.rs \
@@ -48,24 +45,10 @@ fn files_have_no_circles() {
     let packages = packages();
     assert!(packages.len() > 10, "{packages:?}");
     let mut found = Vec::new();
-    for (name, folder) in packages {
-        if !NOT_YET.contains(&name.as_str()) {
-            found.extend(problems(&folder, &read_sources(&root().join(&folder))));
-        }
+    for (_, folder) in packages {
+        found.extend(problems(&folder, &read_sources(&root().join(&folder))));
     }
     assert!(found.is_empty(), "{} circles between files:\n{}\n{REMEDY}", found.len(), found.join("\n"));
-}
-
-#[test]
-fn crates_without_circles_are_off_the_list() {
-    for listed in NOT_YET {
-        let packages = packages();
-        let package = packages.iter().find(|(name, _)| name == listed);
-        let (_, folder) =
-            package.unwrap_or_else(|| panic!("{listed} is in NOT_YET, but there is no such crate"));
-        let found = problems(folder, &read_sources(&root().join(folder)));
-        assert!(!found.is_empty(), "{listed} has no circles any more; take it off NOT_YET");
-    }
 }
 
 #[test]
