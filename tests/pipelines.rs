@@ -285,7 +285,7 @@ fn stages(report: &Report) -> String {
     for (name, l) in lines_stages(report) {
         let b = &l.balance;
         let through =
-            l.domain.as_ref().map_or(String::new(), |d| format!(" ({}, {:.6} m²)", d.body, d.surface));
+            l.domain.as_ref().map_or(String::new(), |d| format!(" ({}, {:.6} m²)", d.kind, d.surface));
         writeln!(
             text,
             "{name}: {} lines{through}, {} crossings, {} odd, empty {:.6}",

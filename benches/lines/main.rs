@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use sir::accel::{Accel, Ray};
 use sir::geom::Scene;
-use sir::lines::{Domain, Stage as Purpose, Streams, cosine_direction, point_on_triangle};
+use sir::lines::{Domain, Purpose, Streams, cosine_direction, point_on_triangle};
 use sir::mesh::Subdivision;
 use sir::radiosity::{
     AnyOrder, BatchSettings, Batches, FirstShot, Model, OneWorker, Segments, ShotSettings, Stage,

@@ -7,7 +7,7 @@ use common::{KINDS, arrange, difficult_line, furnished_room, furnished_room_of};
 use glam::{DVec3, Vec2};
 use sir_accel::Ray;
 use sir_geom::{Line, Material, MaterialId, Opacity, Rgb, Scene, SceneBuilder, Texture, TextureMap, Wrap};
-use sir_lines::{Stage, Streams};
+use sir_lines::{Purpose, Streams};
 
 /// Unit squares `[0, 1]² × z` with coordinates equal to `x` and `y`.
 fn squares(heights: &[f64], material: impl FnOnce(&mut SceneBuilder) -> MaterialId) -> Scene {
@@ -41,7 +41,7 @@ fn even(opacity: f64) -> impl FnOnce(&mut SceneBuilder) -> MaterialId {
 
 /// A slanted line through a point of the unit square at height 0.
 fn line_through(x: f64, y: f64, i: u64) -> Line {
-    let mut s = Streams::new(5, Stage::PROBE).line(i);
+    let mut s = Streams::new(5, Purpose::PROBE).line(i);
     let direction = DVec3::new(s.unit() - 0.5, s.unit() - 0.5, -1.0).normalize();
     Line { origin: DVec3::new(x, y, 0.0) - 2.0 * direction, direction }
 }
@@ -80,7 +80,7 @@ fn opacity_is_the_share_of_lines_that_are_stopped() {
     let scene = squares(&[0.0, -0.001], even(0.3));
     let accel = arrange(&scene);
     let mut tracer = accel.tracer();
-    let streams = Streams::new(6, Stage::PROBE);
+    let streams = Streams::new(6, Purpose::PROBE);
     let (mut by_number, mut first_is_upper) = ([0; 3], 0);
     for i in 0..LINES {
         let mut s = streams.line(i);
@@ -100,7 +100,7 @@ fn closest_hits_are_the_first_of_all_hits() {
     let scene = furnished_room_of(Opacity { factor: 0.4, ..Opacity::default() });
     let accel = arrange(&scene);
     let (mut tracer, mut other) = (accel.tracer(), accel.tracer());
-    let streams = Streams::new(7, Stage::PROBE);
+    let streams = Streams::new(7, Purpose::PROBE);
     let lines: Vec<Line> = (0..50_000u64)
         .filter_map(|i| difficult_line(&scene, i as usize % KINDS, &mut streams.line(i)))
         .collect();
@@ -134,7 +134,7 @@ fn all_crossings_are_those_of_the_same_scene_without_gaps() {
     assert!(accel.bytes() > opaque.bytes());
     let (mut tracer, mut reference) = (accel.tracer(), opaque.tracer());
     assert!(accel.has_transparency() && !opaque.has_transparency());
-    let streams = Streams::new(8, Stage::PROBE);
+    let streams = Streams::new(8, Purpose::PROBE);
     let lines: Vec<Line> = (0..20_000u64)
         .filter_map(|i| difficult_line(&open, i as usize % KINDS, &mut streams.line(i)))
         .collect();

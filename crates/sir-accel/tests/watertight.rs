@@ -8,7 +8,7 @@ use glam::DVec3;
 use sir_accel::{Hit, Ray};
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Line, Material, Rgb, Scene, SceneBuilder, Side};
-use sir_lines::{Stage, Streams};
+use sir_lines::{Purpose, Streams};
 
 /// A sphere with this many halvings of an icosahedron's edges.
 fn ball(level: u32) -> Scene {
@@ -21,7 +21,7 @@ fn ball(level: u32) -> Scene {
 fn each_line(scene: &Scene, seed: u64, lines: u64, mut check: impl FnMut(&Line, &[Hit])) {
     let accel = arrange(scene);
     let mut tracer = accel.tracer();
-    let streams = Streams::new(seed, Stage::PROBE);
+    let streams = Streams::new(seed, Purpose::PROBE);
     for i in 0..lines {
         let mut s = streams.line(i);
         if let Some(line) = difficult_line(scene, i as usize % KINDS, &mut s) {
@@ -96,7 +96,7 @@ fn the_closest_hit_is_the_first_of_all() {
     let accel = arrange(&scene);
     let mut tracer = accel.tracer();
     let back = 4.0 * scene.bounding_sphere().radius;
-    let streams = Streams::new(5, Stage::PROBE);
+    let streams = Streams::new(5, Purpose::PROBE);
     for i in 0..200_000u64 {
         let Some(line) = difficult_line(&scene, i as usize % KINDS, &mut streams.line(i)) else { continue };
         let from_outside = Line { origin: line.at(-back), ..line };
@@ -111,7 +111,7 @@ fn the_next_surface_is_the_next_of_all() {
     let scene = furnished_room();
     let accel = arrange(&scene);
     let (mut along, mut ahead) = (accel.tracer(), accel.tracer());
-    let streams = Streams::new(6, Stage::PROBE);
+    let streams = Streams::new(6, Purpose::PROBE);
     let (mut compared, mut different) = (0, 0);
     for i in 0..100_000u64 {
         let Some(line) = difficult_line(&scene, 0, &mut streams.line(i)) else { continue };

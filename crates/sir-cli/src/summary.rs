@@ -36,7 +36,7 @@ pub fn summary(result: &RunResult) -> String {
         if let Some(lines) = &stage.lines {
             let rate = stage.time.lines_per_second.unwrap_or_default();
             let through = lines.domain.as_ref().map_or(String::new(), |domain| {
-                format!(" through the {} ({:.6} m²)", domain.body.to_lowercase(), domain.surface)
+                format!(" through the {} ({:.6} m²)", domain.kind.to_lowercase(), domain.surface)
             });
             text += &format!(
                 "{:<10} {} lines{through} in {}, {} lines/s, {:.1} % empty, {:.1} % odd\n",

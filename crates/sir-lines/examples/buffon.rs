@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use rand::{SeedableRng, rngs::SmallRng};
-use sir_lines::{Domain, Stage, Streams, random_point};
+use sir_lines::{Domain, Purpose, Streams, random_point};
 use sir_types::{BoundingSphere, Line};
 
 /// True if a line crosses the unit square in the plane z = 0.
@@ -28,7 +28,7 @@ fn radical_inverse(base: u64, mut number: u64) -> f64 {
 
 fn main() {
     let domain = Domain::Sphere(BoundingSphere { centre: DVec3::ZERO, radius: 1.0 });
-    let streams = Streams::new(1, Stage::GLOBAL);
+    let streams = Streams::new(1, Purpose::GLOBAL);
     println!("    lines       generator         streams          Halton");
     for lines in [10_000, 100_000, 1_000_000, 10_000_000] {
         let mut generator = SmallRng::seed_from_u64(1);

@@ -52,7 +52,7 @@ impl AliasTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::{Stage, Streams};
+    use crate::stream::{Purpose, Streams};
     use proptest::prelude::*;
 
     proptest! {
@@ -78,7 +78,7 @@ mod tests {
     fn choices_are_in_proportion_to_weights() {
         let weights = [3.0, 0.5, 1.0, 1e-12, 5.5];
         let table = AliasTable::new(&weights);
-        let streams = Streams::new(2, Stage::GLOBAL);
+        let streams = Streams::new(2, Purpose::GLOBAL);
         let n = 100_000;
         let mut counted = [0.0; 5];
         for i in 0..n {

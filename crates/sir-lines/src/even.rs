@@ -34,7 +34,7 @@ impl EvenPoints {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::{Stage, Streams};
+    use crate::stream::{Purpose, Streams};
 
     /// Means of a smooth and of a broken function: right on average, with much smaller errors than by independent points.
     #[test]
@@ -42,7 +42,7 @@ mod tests {
         type Function = fn([f64; 2]) -> f64;
         let functions: [(Function, f64, f64); 2] =
             [(|[x, y]| x * y, 0.25, 7.0 / 144.0), (|[x, y]| f64::from(u8::from(x + y < 0.7)), 0.245, 0.185)];
-        let streams = Streams::new(3, Stage::SENSORS);
+        let streams = Streams::new(3, Purpose::SENSORS);
         let (repeats, n) = (400, 1000);
         for (function, exact, variance) in functions {
             let errors: Vec<f64> = (0..repeats)

@@ -13,7 +13,7 @@ use crate::domain::Domain;
 use crate::forecast::Forecast;
 
 /// How many times as dense lines may be in a focus as elsewhere: power is counted in whole numbers, which have to do for both.
-pub const DENSEST: u32 = 4096;
+pub const MAX_FOCUS_DENSITY: u32 = 4096;
 
 /// How far outside of a focus surfaces still belong to it, in radii of the scene: those in its faces should.
 const MARGIN: f64 = 1e-6;
@@ -109,7 +109,7 @@ impl GlobalLines {
         let through = Domain::Box(focus.bounds);
         let [inner, outer] = [through.surface(), domain.surface()];
         let wanted = 1.0 + focus.share / (1.0 - focus.share) * (outer / inner);
-        let weight = wanted.round().min(f64::from(DENSEST)) as u32;
+        let weight = wanted.round().min(f64::from(MAX_FOCUS_DENSITY)) as u32;
         if weight <= 1 {
             return domain.into();
         }
@@ -196,7 +196,7 @@ mod tests {
     use sir_geom::{Material, Rgb, SceneBuilder};
 
     use super::*;
-    use crate::stream::{Stage, Streams};
+    use crate::stream::{Purpose, Streams};
 
     /// A box of 20 × 2 × 20 m, and a focus in a corner of it that reaches beyond the scene.
     fn corner(share: f64) -> GlobalLines {
@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn weights_make_up_for_the_density() {
         const LINES: u64 = 400_000;
-        let streams = Streams::new(4, Stage::GLOBAL);
+        let streams = Streams::new(4, Purpose::GLOBAL);
         for share in [0.5, 0.9] {
             let lines = corner(share);
             assert!(lines.weight() > 10 && (lines.share() - share).abs() < 0.05, "{}", lines.share());

@@ -83,7 +83,7 @@ pub use allocation::Allocation;
 pub use domain::Domain;
 pub use even::EvenPoints;
 pub use facets::Facets;
-pub use focus::{DENSEST, Focus, GlobalLines, LocalLines};
+pub use focus::{Focus, GlobalLines, LocalLines, MAX_FOCUS_DENSITY};
 pub use forecast::Forecast;
 pub use hull::ConvexHull;
 pub use local::{
@@ -91,4 +91,4 @@ pub use local::{
 };
 pub use parallel::ParallelLines;
 pub use point::random_point;
-pub use stream::{Stage, Stream, Streams, seed_of_repeat};
+pub use stream::{Purpose, Stream, Streams, seed_of_repeat};

@@ -69,13 +69,13 @@ pub fn continuous_point_on_triangle([s, t]: [f64; 2]) -> Barycentric {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::{Stage, Streams};
+    use crate::stream::{Purpose, Streams};
 
     #[test]
     fn cosines_have_the_density_of_diffuse_light() {
         let normal = DVec3::new(1.0, 2.0, -2.0) / 3.0;
         let n = 200_000;
-        let streams = Streams::new(5, Stage::FIRST_SHOT);
+        let streams = Streams::new(5, Purpose::FIRST_SHOT);
         let (mut first, mut second) = (0.0, 0.0);
         for i in 0..n {
             let cos = cosine_direction(normal, streams.line(i).point()).dot(normal);
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn spots_have_the_density_of_their_rings() {
         let axis = DVec3::new(2.0, -1.0, 2.0) / 3.0;
-        let streams = Streams::new(8, Stage::FIRST_SHOT);
+        let streams = Streams::new(8, Purpose::FIRST_SHOT);
         for (inner, outer) in [(0.9, 0.5), (1.0, 0.0), (0.2, -1.0)] {
             let n = 100_000;
             let t = |c: f64| (c - outer) / (inner - outer);
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn points_of_a_triangle_are_uniform() {
-        let streams = Streams::new(6, Stage::FIRST_SHOT);
+        let streams = Streams::new(6, Purpose::FIRST_SHOT);
         let n = 100_000;
         let mut sum = [0.0; 3];
         for i in 0..n {

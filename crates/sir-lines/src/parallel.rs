@@ -58,13 +58,13 @@ impl ParallelLines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::{Stage, Streams};
+    use crate::stream::{Purpose, Streams};
 
     /// Any area across the lines gets its share of them: here the shadow of a ball in the box.
     #[test]
     fn lines_are_uniform_across_their_direction() {
         let bounds = BoundingBox { min: DVec3::new(-1.0, -2.0, -3.0), max: DVec3::new(1.0, 2.0, 3.0) };
-        let streams = Streams::new(3, Stage::FIRST_SHOT);
+        let streams = Streams::new(3, Purpose::FIRST_SHOT);
         for direction in [DVec3::new(2.0, -1.0, -2.0) / 3.0, DVec3::new(0.6, 0.8, 0.0), DVec3::Z] {
             let lines = ParallelLines::through(bounds, direction);
             let expected = std::f64::consts::PI / lines.area();

@@ -9,9 +9,9 @@ use crate::point::{random_point, unit};
 
 /// What a family of lines is for. Lines of different stages are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Stage(pub u64);
+pub struct Purpose(pub u64);
 
-impl Stage {
+impl Purpose {
     /// Local lines of the first shot.
     pub const FIRST_SHOT: Self = Self(1);
     /// Decisions of the first shot that are made once, before its lines.
@@ -54,7 +54,7 @@ fn mix(mut z: u64) -> u64 {
 impl Streams {
     /// The streams of a stage of a run with this seed.
     #[must_use]
-    pub fn new(seed: u64, stage: Stage) -> Self {
+    pub fn new(seed: u64, stage: Purpose) -> Self {
         Self { key: mix(mix(seed.wrapping_add(GOLDEN)) ^ mix(stage.0.wrapping_mul(GOLDEN))) }
     }
 
@@ -72,7 +72,7 @@ impl Streams {
 /// each other.
 #[must_use]
 pub fn seed_of_repeat(seed: u64, repeat: u64) -> u64 {
-    if repeat == 0 { seed } else { Streams::new(seed, Stage::REPEAT).line(repeat).0.next_u64() }
+    if repeat == 0 { seed } else { Streams::new(seed, Purpose::REPEAT).line(repeat).0.next_u64() }
 }
 
 /// A sequence of random numbers: a generator of the crate [`rand`].
@@ -121,7 +121,7 @@ mod tests {
     /// These numbers are part of the contract: if they change, no old result can be reproduced.
     #[test]
     fn streams_never_change() {
-        let mut s = Streams::new(1, Stage::GLOBAL).line(0);
+        let mut s = Streams::new(1, Purpose::GLOBAL).line(0);
         let first: Vec<String> = (0..3).map(|_| format!("{:.15}", s.unit())).collect();
         assert_eq!(first, ["0.155747808824734", "0.782331486519907", "0.072572689650649"]);
     }
@@ -129,7 +129,7 @@ mod tests {
     /// A stream is a generator of `rand` and gives the numbers that it gives by itself.
     #[test]
     fn streams_are_generators() {
-        let line = || Streams::new(1, Stage::GLOBAL).line(7);
+        let line = || Streams::new(1, Purpose::GLOBAL).line(7);
         let (mut ours, mut theirs) = (line(), line());
         let numbers: [f64; 20] = ours.point();
         assert_eq!(numbers, std::array::from_fn(|_| theirs.random::<f64>()));
@@ -153,7 +153,7 @@ mod tests {
     fn neighboring_lines_seeds_and_stages_are_uncorrelated() {
         let n = 20_000;
         let centred = |seed, stage, i| Streams::new(seed, stage).line(i).unit() - 0.5;
-        let (global, local) = (Stage::GLOBAL, Stage::FIRST_SHOT);
+        let (global, local) = (Purpose::GLOBAL, Purpose::FIRST_SHOT);
         let lines = |i| centred(1, global, i) * centred(1, global, i + 1);
         let seeds = |i| centred(i, global, 0) * centred(i + 1, global, 0);
         let stages = |i| centred(1, global, i) * centred(1, local, i);

@@ -4,7 +4,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 use sir_geom::{Material, Rgb, Scene, SceneBuilder};
-use sir_lines::{Domain, Stage, Stream, Streams, point_on_triangle};
+use sir_lines::{Domain, Purpose, Stream, Streams, point_on_triangle};
 use sir_types::Line;
 
 const LINES: u64 = 200_000;
@@ -55,7 +55,7 @@ fn domains(scene: &Scene) -> [Domain; 3] {
 }
 
 fn lines(domain: &Domain, stage: u64) -> impl Iterator<Item = Line> {
-    let streams = Streams::new(3, Stage(stage));
+    let streams = Streams::new(3, Purpose(stage));
     (0..LINES).map(move |i| domain.line(streams.line(i).point()))
 }
 
@@ -224,7 +224,7 @@ fn lines_through_a_ball_do_not_know_where_they_come_from() {
 /// forecast add up as χ².
 #[test]
 fn crossings_of_patches_are_those_of_the_forecast() {
-    let streams = Streams::new(9, Stage::PROBE);
+    let streams = Streams::new(9, Purpose::PROBE);
     let patch = |i: u64| -> [DVec3; 3] {
         let s = &mut streams.line(i);
         let inside = |s: &mut Stream| {
@@ -299,7 +299,7 @@ fn a_needle_has_a_box() {
 fn lines_never_change() {
     let mut text = String::new();
     for domain in domains(&tetrahedron()) {
-        let Line { origin, direction } = domain.line(Streams::new(1, Stage::GLOBAL).line(0).point());
+        let Line { origin, direction } = domain.line(Streams::new(1, Purpose::GLOBAL).line(0).point());
         text += &format!("{} {origin:.12} {direction:.12}\n", domain.name());
     }
     assert_eq!(

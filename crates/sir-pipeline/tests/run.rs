@@ -175,7 +175,7 @@ fn the_report_names_the_domain() {
         assert_eq!(lines("FirstShot").domain, None);
         let multipath = lines("Multipath");
         let domain = multipath.domain.unwrap();
-        assert_eq!(domain.body, body);
+        assert_eq!(domain.kind, body);
         assert!((domain.surface / surface - 1.0).abs() < 1e-8, "{domain:?}");
         // Every line that enters the cube meets its walls.
         let empty = 1.0 - 24.0 / surface;

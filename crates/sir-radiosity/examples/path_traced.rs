@@ -13,7 +13,7 @@ use std::path::Path;
 use glam::DVec3;
 use sir_accel::{Hit, Ray, Tracer};
 use sir_geom::{Line, LoadOptions, Rgb, Side, TriangleId, load};
-use sir_lines::{Stage, Stream, Streams, cosine_direction, point_on_triangle};
+use sir_lines::{Purpose, Stream, Streams, cosine_direction, point_on_triangle};
 use sir_mesh::Subdivision;
 use sir_radiosity::{Emitter, Model, Source, sources};
 
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         if !wanted.is_empty() && !wanted.contains(&number) {
             continue;
         }
-        let streams = Streams::new(u64::from(number), Stage::PROBE);
+        let streams = Streams::new(u64::from(number), Purpose::PROBE);
         let (mut sum, mut squares) = (Rgb::ZERO, Rgb::ZERO);
         for first in (0..paths).step_by(WAVE as usize) {
             let lines = (first..paths.min(first + WAVE)).map(|i| streams.line(i)).collect();

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use sir_accel::Ray;
 use sir_geom::Rgb;
-use sir_lines::Stage as Purpose;
+use sir_lines::Purpose;
 
 use crate::error::SolveError;
 use crate::power::PowerUnit;

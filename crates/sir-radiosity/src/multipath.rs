@@ -16,7 +16,7 @@
 use std::ops::Range;
 
 use sir_geom::TriangleId;
-use sir_lines::{Domain, Stage as Purpose, Streams};
+use sir_lines::{Domain, Purpose, Streams};
 use sir_mesh::SideId;
 
 use crate::error::SolveError;

@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use sir_geom::{Rgb, Side};
-use sir_lines::Stage as Purpose;
+use sir_lines::Purpose;
 use sir_mesh::{PatchId, SideId};
 
 use crate::emitter::Emitter;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use sir_accel::Ray;
-use sir_lines::{Allocation, Stage, Streams};
+use sir_lines::{Allocation, Purpose, Streams};
 
 use crate::error::SolveError;
 use crate::global::AHEAD;
@@ -45,14 +45,14 @@ impl<'m> ShotLines<'m> {
         unit: PowerUnit,
         lines: u64,
         seed: u64,
-        purpose: Stage,
+        purpose: Purpose,
     ) -> Self {
         let weights = sources.weights();
         let FocusedSources { sources, density, .. } = sources;
         // A line carries ΣΦ/N in all, in the colour of its source; less where lines are denser, for which there are more.
         let line = weights.iter().sum::<f64>() / lines.max(1) as f64;
         let per_line = sources.iter().zip(&weights).map(|(s, w)| unit.quanta(s.power * (line / w))).collect();
-        let offset = Streams::new(seed, Stage::ALLOCATION).line(purpose.0 - Stage::FIRST_SHOT.0).unit();
+        let offset = Streams::new(seed, Purpose::ALLOCATION).line(purpose.0 - Purpose::FIRST_SHOT.0).unit();
         let allocation = Allocation::new(&weights, lines, offset);
         let streams = Streams::new(seed, purpose);
         Self { model, sources, per_line, density, allocation, streams, unit, lines }

@@ -1,7 +1,7 @@
 //! Light sources: what there is, and how much power it has.
 
 use sir_geom::{LightKind, Rgb, Scene, Side};
-use sir_lines::{DENSEST, Focus, ParallelLines};
+use sir_lines::{Focus, MAX_FOCUS_DENSITY, ParallelLines};
 use sir_mesh::{PatchId, PatchMesh};
 
 use crate::emitter::{Emitter, SkyAperture};
@@ -126,7 +126,7 @@ impl FocusedSources {
         if wanted <= 1.0 {
             return Self::plain(all);
         }
-        Self { sources: cut, in_focus: inside, density: wanted.min(f64::from(DENSEST)) }
+        Self { sources: cut, in_focus: inside, density: wanted.min(f64::from(MAX_FOCUS_DENSITY)) }
     }
 
     /// Sources whose lines are all alike.

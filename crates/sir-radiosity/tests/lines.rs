@@ -7,7 +7,7 @@ use common::{add_polygon, case, domains, grey, per_face, reference};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{SceneBuilder, Sides};
-use sir_lines::{Domain, Stage, Streams};
+use sir_lines::{Domain, Purpose, Streams};
 use sir_mesh::Subdivision;
 use sir_radiosity::{End, Model, Segment, Segments};
 
@@ -16,7 +16,7 @@ use sir_radiosity::{End, Model, Segment, Segments};
 fn facing_counts(model: &Model, domain: &Domain, lines: u64) -> Vec<Vec<u64>> {
     let n = model.mesh.side_count();
     let mut count = vec![vec![0u64; n + 1]; n];
-    let streams = Streams::new(11, Stage::GLOBAL);
+    let streams = Streams::new(11, Purpose::GLOBAL);
     let mut tracer = model.accel.tracer();
     let index = |end: End| match end {
         End::Side(side, _) => Some(side.index()),

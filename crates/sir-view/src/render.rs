@@ -4,7 +4,7 @@ use std::thread;
 
 use sir_accel::{Accel, Hit, Ray, Tracer};
 use sir_geom::{Camera, Line, Rgb, Scene, luminance};
-use sir_lines::{Stage, Streams};
+use sir_lines::{Purpose, Streams};
 
 use crate::camera_rays::CameraRays;
 use crate::display::DisplayMesh;
@@ -82,7 +82,7 @@ impl Shader<'_> {
     fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Pixel {
         let PictureSettings { width, height, grid, .. } = self.settings;
         let index = u64::from(y) * u64::from(width) + u64::from(x);
-        let mut stream = Streams::new(0, Stage::PICTURE).line(index);
+        let mut stream = Streams::new(0, Purpose::PICTURE).line(index);
         let grid = grid.max(1);
         let (mut sum, mut weighted, mut weights, mut met) = (Rgb::ZERO, Rgb::ZERO, 0.0, 0.0);
         let rays: Vec<Line> = (0..grid * grid)

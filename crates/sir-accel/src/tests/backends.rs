@@ -1,7 +1,7 @@
 //! All backends find the same hits, bit for bit.
 
 use sir_geom::{Opacity, Scene};
-use sir_lines::{Stage, Streams};
+use sir_lines::{Purpose, Streams};
 use sir_types::Line;
 
 use crate::ray::{Ray, TRange};
@@ -24,7 +24,7 @@ fn all_backends_find_the_same_hits_bit_for_bit() {
 fn find_the_same_hits(scene: &Scene, times: u64) {
     let accel = arrange(scene);
     let mut tracers = tracers(&accel);
-    let streams = Streams::new(8, Stage::PROBE);
+    let streams = Streams::new(8, Purpose::PROBE);
     for some in 0..times {
         let lines: Vec<Line> = (some * 100_000..(some + 1) * 100_000)
             .filter_map(|i| difficult_line(scene, i as usize % KINDS, &mut streams.line(i)))
@@ -54,7 +54,7 @@ fn all_backends_find_the_same_closest_hits_bit_for_bit() {
 fn find_the_same_closest_hits(scene: &Scene) {
     let accel = arrange(scene);
     let mut tracers = tracers(&accel);
-    let streams = Streams::new(9, Stage::PROBE);
+    let streams = Streams::new(9, Purpose::PROBE);
     let mut rays: Vec<Ray> = Vec::new();
     for i in 0..200_000u64 {
         let Some(line) = difficult_line(scene, i as usize % KINDS, &mut streams.line(i)) else {
@@ -93,7 +93,7 @@ fn parts_of_lines_have_the_hits_of_whole_lines_in_their_range() {
     let scene = transparent_room();
     let accel = arrange(&scene);
     let mut tracers = tracers(&accel);
-    let streams = Streams::new(10, Stage::PROBE);
+    let streams = Streams::new(10, Purpose::PROBE);
     let mut parts: Vec<(Line, TRange)> = Vec::new();
     let mut expected = Vec::new();
     for i in 0..60_000u64 {

@@ -10,7 +10,7 @@ use crate::plan::output::Content;
 use crate::plan::pipeline::{Action, Pipeline};
 use crate::prepare::cameras::chosen_camera;
 use crate::progress::Progress;
-use crate::run::save::{is_calm, settings};
+use crate::run::save::{is_denoised, settings};
 
 /// Bytes per side of what pictures and lit meshes are made from: measured on two million sides, rounded up.
 const DISPLAY_BYTES: usize = 200;
@@ -45,8 +45,8 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     let measured =
         pipeline.outputs().any(|o| o.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
     // Pictures without noise have a mesh of their own; making it takes less than it has itself.
-    let calm = pipeline.outputs().any(is_calm);
-    let displays = usize::from(shown) + usize::from(measured) + usize::from(calm);
+    let denoise = pipeline.outputs().any(is_denoised);
+    let displays = usize::from(shown) + usize::from(measured) + usize::from(denoise);
     let pixels = pipeline.outputs().filter_map(|o| match &o.content {
         Content::Image(image) => {
             let camera = chosen_camera(&image.camera, scene);

@@ -52,7 +52,7 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
                 let (rate, _) = try_stage(&stage, stage.round().end);
                 estimates.push(StageEstimate { name, lines, rate });
             }
-            Action::Multipath { lines, body, .. } => {
+            Action::Multipath { lines, domain, .. } => {
                 let Some(shot) = shot.take() else { continue };
                 // Both transports trace the same lines at about the same rate.
                 let domain = body.lines_around(&model.scene, focus);

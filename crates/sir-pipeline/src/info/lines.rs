@@ -5,7 +5,7 @@
 use serde::Serialize;
 use sir_accel::{Accel, Hit, Ray};
 use sir_geom::{Barycentric, Line, Scene, Side, TriangleId};
-use sir_lines::{Allocation, Domain, Stage, Streams, cosine_direction, point_on_triangle};
+use sir_lines::{Allocation, Domain, Purpose, Streams, cosine_direction, point_on_triangle};
 use sir_radiosity::{Emitter, Source};
 
 /// Lines of each kind.
@@ -95,7 +95,7 @@ fn emitting_side(source: &Source) -> Option<(TriangleId, Side, f64)> {
 }
 
 fn global(scene: &Scene, accel: &Accel) -> Global {
-    let (domain, streams) = (Domain::hull(scene.vertices()), Streams::new(0, Stage::PROBE));
+    let (domain, streams) = (Domain::hull(scene.vertices()), Streams::new(0, Purpose::PROBE));
     let contact = CONTACT * scene.bounding_sphere().radius;
     let (mut met, mut odd, mut stretches, mut mixed, mut crossings, mut coincident) = (0, 0, 0, 0, 0, 0);
     let mut tracer = accel.tracer();
@@ -150,7 +150,7 @@ fn starts(sides: &[(TriangleId, Side, f64)], kind: u64) -> Vec<Start> {
     let weights: Vec<f64> = sides.iter().map(|side| side.2).collect();
     let allocation = Allocation::new(&weights, LINES, 0.5);
     // Other numbers than those of the directions.
-    let streams = Streams::new(kind + 10, Stage::PROBE);
+    let streams = Streams::new(kind + 10, Purpose::PROBE);
     let owners = allocation.owners(0).zip(0..LINES);
     owners
         .map(|(owner, i)| {
@@ -162,7 +162,7 @@ fn starts(sides: &[(TriangleId, Side, f64)], kind: u64) -> Vec<Start> {
 
 /// Traces a diffuse line from each start; returns what they met, and where they met a side that reflects.
 fn local(scene: &Scene, accel: &Accel, starts: &[Start], kind: u64) -> (Fates, Vec<Start>) {
-    let streams = Streams::new(kind, Stage::PROBE);
+    let streams = Streams::new(kind, Purpose::PROBE);
     let [mut front, mut back, mut absorbed, mut escaped] = [0; 4];
     let mut arrived = Vec::with_capacity(starts.len());
     let mut tracer = accel.tracer();

@@ -10,4 +10,4 @@ pub use lights::Lamp;
 pub use output::{CameraChoice, Content, Image, Output};
 pub use pipeline::{Action, Pipeline, Repeat, Stage, Until};
 pub use sensors::{Grid, Place, Plane, Sensors};
-pub use transport::{Body, Transport};
+pub use transport::{DomainKind, Transport};

@@ -39,7 +39,7 @@ pub struct Image {
     /// How bright a PNG picture is made. Default `Auto`.
     pub exposure: Exposure,
     /// Whether noise is taken out of a PNG picture. Default `true`.
-    pub calm: bool,
+    pub denoise: bool,
     /// From where it is taken.
     pub camera: CameraChoice,
 }

@@ -9,7 +9,7 @@ use sir_mesh::Subdivision;
 use crate::plan::lights::Lamp;
 use crate::plan::output::Output;
 use crate::plan::sensors::Sensors;
-use crate::plan::transport::{Body, Transport};
+use crate::plan::transport::{DomainKind, Transport};
 use crate::units::Units;
 
 /// A valid pipeline: its stages are in a possible order, its numbers are in range and its inputs exist.
@@ -79,7 +79,7 @@ pub enum Action {
         /// How they pass on the light.
         transport: Transport,
         /// What they are drawn through.
-        body: Body,
+        domain: DomainKind,
     },
     /// Runs stages of lines again and again, for the mean of independent results.
     Repeat(Repeat),

@@ -21,7 +21,7 @@ pub enum Transport {
 
 /// The convex body around the scene from whose surface global lines are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Body {
+pub enum DomainKind {
     /// The bounding sphere.
     Sphere,
     /// The axis-aligned bounding box.
@@ -31,7 +31,7 @@ pub enum Body {
     Hull,
 }
 
-impl Body {
+impl DomainKind {
     /// The body around a scene.
     #[must_use]
     pub fn around(self, scene: &Scene) -> Domain {

@@ -20,7 +20,7 @@ impl DomainReport {
     pub(crate) fn of(lines: &GlobalLines) -> Self {
         let domain = lines.domain();
         let focus = lines.focus().map(|_| lines.share());
-        Self { body: domain.name().into(), surface: domain.surface(), focus }
+        Self { kind: domain.name().into(), surface: domain.surface(), focus }
     }
 }
 

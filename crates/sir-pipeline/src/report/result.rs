@@ -148,7 +148,7 @@ pub enum ErrorsFrom {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DomainReport {
     /// `Sphere`, `Box` or `Hull`.
-    pub body: String,
+    pub kind: String,
     /// Its surface \[m²\]; of a flat body, both sides.
     pub surface: f64,
     /// Share of the lines that were drawn through the focus, if there is one.

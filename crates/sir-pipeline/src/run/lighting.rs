@@ -8,7 +8,7 @@ use sir_radiosity::{
 };
 
 use crate::plan::pipeline::Action;
-use crate::plan::transport::{Body, Transport};
+use crate::plan::transport::{DomainKind, Transport};
 use crate::prepare::prepared::Prepared;
 use crate::report::lines::Facts;
 use crate::report::result::{DomainReport, ErrorsReport, LightReport};
@@ -20,7 +20,7 @@ pub(crate) struct Lighting<'m> {
     focus: Option<Focus>,
     inside: &'m FocusSides,
     /// The global lines of the last stage that had some.
-    global: Option<(Body, GlobalLines)>,
+    global: Option<(DomainKind, GlobalLines)>,
 }
 
 /// All light so far.
@@ -69,7 +69,7 @@ impl<'m> Lighting<'m> {
                 let Some(start) = self.start(saved) else { return Ok(None) };
                 self.shot(executor.run::<SecondShot<'_>>(settings, start)?)
             }
-            Action::Multipath { lines, transport, body } => {
+            Action::Multipath { lines, transport, domain } => {
                 let Some(start) = self.start(saved) else { return Ok(None) };
                 let domain = self.global_lines(body);
                 let report = DomainReport::of(&domain);
@@ -103,7 +103,7 @@ impl<'m> Lighting<'m> {
     }
 
     /// Returns the lines through a domain, which takes time to make for a large scene.
-    fn global_lines(&mut self, body: Body) -> GlobalLines {
+    fn global_lines(&mut self, domain: DomainKind) -> GlobalLines {
         let known = self.global.take().filter(|(of, _)| *of == body);
         let lines = || (body, body.lines_around(&self.model.scene, self.focus));
         let (_, lines) = self.global.insert(known.unwrap_or_else(lines));

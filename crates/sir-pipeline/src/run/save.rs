@@ -31,11 +31,11 @@ pub(crate) fn save(
     let Model { scene, mesh, accel } = &prepared.model;
     let seen = outputs.iter().any(|o| o.content != Content::Table);
     let display = seen.then(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
-    let calm = match &display {
-        Some(display) if outputs.iter().any(is_calm) => display.calm(&solution.error, threads),
+    let denoise = match &display {
+        Some(display) if outputs.iter().any(is_denoised) => display.denoise(&solution.error, threads),
         _ => Vec::new(),
     };
-    let calm = (!calm.is_empty()).then(|| DisplayMesh::new(scene, mesh, &calm));
+    let denoise = (!denoise.is_empty()).then(|| DisplayMesh::new(scene, mesh, &denoise));
     let errors = outputs
         .iter()
         .any(|o| matches!(o.content, Content::Image(_)) && has_extension(&o.path, "exr"))
@@ -43,7 +43,7 @@ pub(crate) fn save(
     let mut studio = display.as_ref().map(|display| Studio {
         prepared,
         display,
-        calm: calm.as_ref(),
+        denoise: denoise.as_ref(),
         threads,
         last: None,
         default: None,
@@ -56,7 +56,7 @@ pub(crate) fn save(
         }
         let kind = match (&output.content, &mut studio) {
             (Content::Image(image), Some(studio)) => {
-                let Taken { camera, settings, picture, .. } = studio.take(image, is_calm(output))?;
+                let Taken { camera, settings, picture, .. } = studio.take(image, is_denoised(output))?;
                 match &errors {
                     Some(errors) if has_extension(&path, "exr") => {
                         let errors = render(errors, accel, camera, *settings)?;
@@ -94,7 +94,7 @@ struct Studio<'a> {
     prepared: &'a Prepared,
     display: &'a DisplayMesh<'a>,
     /// The same without noise, if a picture is to be without.
-    calm: Option<&'a DisplayMesh<'a>>,
+    denoise: Option<&'a DisplayMesh<'a>>,
     threads: usize,
     last: Option<Taken>,
     default: Option<Camera>,
@@ -104,21 +104,25 @@ struct Studio<'a> {
 struct Taken {
     camera: Camera,
     settings: PictureSettings,
-    is_calm: bool,
+    is_denoised: bool,
     picture: Picture,
 }
 
 impl Studio<'_> {
-    fn take(&mut self, image: &Image, is_calm: bool) -> Result<&Taken, Error> {
+    fn take(&mut self, image: &Image, is_denoised: bool) -> Result<&Taken, Error> {
         let Model { scene, accel, .. } = &self.prepared.model;
         let chosen = chosen_camera(&image.camera, scene);
         let settings = settings(image, chosen.as_ref(), self.threads);
         let camera = chosen.unwrap_or_else(|| self.default_camera());
         let taken = match self.last.take() {
-            Some(last) if (&last.camera, last.settings, last.is_calm) == (&camera, settings, is_calm) => last,
+            Some(last)
+                if (&last.camera, last.settings, last.is_denoised) == (&camera, settings, is_denoised) =>
+            {
+                last
+            }
             _ => {
-                let display = self.calm.filter(|_| is_calm).unwrap_or(self.display);
-                Taken { picture: render(display, accel, &camera, settings)?, camera, settings, is_calm }
+                let display = self.denoise.filter(|_| is_denoised).unwrap_or(self.display);
+                Taken { picture: render(display, accel, &camera, settings)?, camera, settings, is_denoised }
             }
         };
         Ok(self.last.insert(taken))
@@ -144,8 +148,8 @@ pub(crate) fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -
 }
 
 /// Whether an output is a picture without noise. Those for measuring show what was computed.
-pub(crate) fn is_calm(output: &Output) -> bool {
-    matches!(&output.content, Content::Image(image) if image.calm) && !has_extension(&output.path, "exr")
+pub(crate) fn is_denoised(output: &Output) -> bool {
+    matches!(&output.content, Content::Image(image) if image.denoise) && !has_extension(&output.path, "exr")
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

@@ -7,7 +7,7 @@ use sir_mesh::Subdivision;
 
 use crate::format::list;
 use crate::plan::pipeline::{Action, Pipeline, Stage};
-use crate::plan::transport::{Body, Transport};
+use crate::plan::transport::{DomainKind, Transport};
 use crate::text::diagnostic::Diagnostics;
 use crate::text::order::{Named, check_order};
 use crate::text::reader::{ABSURD, Reader};
@@ -259,11 +259,11 @@ impl<'a> Decoder<'a> {
         let lines = self.reader.required(&mut fields, "lines", "1_000_000");
         let body = match fields.take("domain") {
             Some(node) => match self.reader.choice(&node, "domain", &["Hull", "Box", "Sphere"]) {
-                Some("Box") => Body::Box,
-                Some("Sphere") => Body::Sphere,
-                _ => Body::Hull,
+                Some("Box") => DomainKind::Box,
+                Some("Sphere") => DomainKind::Sphere,
+                _ => DomainKind::Hull,
             },
-            None => Body::default(),
+            None => DomainKind::default(),
         };
         let (replicas, tail) = (fields.take("replicas"), fields.take("tail"));
         let in_replicas = match fields.take("transport") {
@@ -289,7 +289,7 @@ impl<'a> Decoder<'a> {
         };
         let (lines, replicas, tail) = (lines?, replicas?, tail?);
         let transport = if in_replicas { Transport::Replicas { replicas, tail } } else { Transport::Batches };
-        Some(Action::Multipath { lines, transport, body })
+        Some(Action::Multipath { lines, transport, domain })
     }
 }
 

@@ -102,7 +102,7 @@ impl<'a> Decoder<'a> {
     }
 
     fn image(&mut self, node: Node<'a>) -> Option<Output> {
-        const FIELDS: [&str; 7] = ["path", "width", "height", "samples", "exposure", "calm", "camera"];
+        const FIELDS: [&str; 7] = ["path", "width", "height", "samples", "exposure", "denoise", "camera"];
         let mut fields = self.reader.fields(node, "Image", &FIELDS);
         let path = self.reader.required(&mut fields, "path", "\"view.png\"");
         let mut whole = |reader: &mut Reader<'a>, name, most, default: Option<u32>| match fields.take(name) {
@@ -131,12 +131,12 @@ impl<'a> Decoder<'a> {
                 None
             }
         };
-        let calm = match fields.take("calm") {
+        let denoise = match fields.take("denoise") {
             None => Some(true),
-            Some(Node { value: Value::Bool(calm), .. }) => Some(calm),
+            Some(Node { value: Value::Bool(denoise), .. }) => Some(denoise),
             Some(node) => {
-                let message = format!("`calm` must be `true` or `false`, but it is {}", node.kind());
-                self.reader.problem(node.text, message, "write `calm: false` to see the noise");
+                let message = format!("`denoise` must be `true` or `false`, but it is {}", node.kind());
+                self.reader.problem(node.text, message, "write `denoise: false` to see the noise");
                 None
             }
         };
@@ -150,7 +150,7 @@ impl<'a> Decoder<'a> {
             height: height?,
             samples: samples??,
             exposure: exposure?,
-            calm: calm?,
+            denoise: denoise?,
             camera: camera?,
         };
         Some(Output { path: path?, content: Content::Image(image) })

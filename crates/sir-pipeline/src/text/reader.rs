@@ -70,7 +70,7 @@ impl<'a> Reader<'a> {
             Value::Fields(given) => {
                 for (key, value) in given {
                     if !allowed.contains(&key) {
-                        let meant = did_you_mean(key, allowed);
+                        let meant = new_name(key, allowed).or_else(|| did_you_mean(key, allowed));
                         excused |= meant.is_some();
                         let help = meant
                             .unwrap_or_else(|| format!("`{owner}` has the fields {}", list(allowed, "and")));
@@ -211,4 +211,13 @@ impl<'a> Reader<'a> {
         }
         chosen
     }
+}
+
+/// Fields that had another name: the old one, and the new one.
+const RENAMED: [(&str, &str); 1] = [("calm", "denoise")];
+
+/// Says what a field is called today, if it once had the name `key`.
+fn new_name(key: &str, allowed: &[&str]) -> Option<String> {
+    let (_, new) = RENAMED.iter().find(|(old, new)| *old == key && allowed.contains(new))?;
+    Some(format!("the field is called `{new}` now"))
 }

@@ -10,7 +10,7 @@ use std::fs;
 
 use sir_pipeline::Units;
 use sir_pipeline::plan::{Action, Pipeline};
-use sir_pipeline::plan::{Body, Transport};
+use sir_pipeline::plan::{DomainKind, Transport};
 use sir_pipeline::text::Diagnostics;
 
 const VALID: &str = r#"// A comment with ( and "
@@ -69,7 +69,7 @@ fn a_valid_pipeline_is_understood() {
             r#"(stages: [Load(path: "room.obj"), FirstShot(lines: 9), Multipath(lines: 100{fields})])"#
         );
         match parse(&text).unwrap().stages[2].action {
-            Action::Multipath { transport, body, .. } => (transport, body),
+            Action::Multipath { transport, domain, .. } => (transport, domain),
             _ => unreachable!("the third stage is Multipath"),
         }
     };
@@ -81,10 +81,10 @@ fn a_valid_pipeline_is_understood() {
     assert_eq!(transport(", replicas: 8"), replicas(8, 10));
     assert_eq!(transport(", tail: 0"), replicas(1, 0));
     for (fields, body) in [
-        ("", Body::Hull),
-        (", domain: Hull", Body::Hull),
-        (", domain: Box", Body::Box),
-        (", domain: Sphere", Body::Sphere),
+        ("", DomainKind::Hull),
+        (", domain: Hull", DomainKind::Hull),
+        (", domain: Box", DomainKind::Box),
+        (", domain: Sphere", DomainKind::Sphere),
     ] {
         assert_eq!(multipath(fields).1, body);
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use sir_lines::{GlobalLines, Stage as Purpose, Streams};
+use sir_lines::{GlobalLines, Purpose, Streams};
 
 use crate::batches::estimator::Counted;
 use crate::batches::schedule::Schedule;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sir_accel::{Ray, Tracer};
 use sir_geom::{Line, Rgb};
-use sir_lines::{Stage as Purpose, Streams};
+use sir_lines::{Purpose, Streams};
 
 use crate::model::Model;
 use crate::sensors::emitters::Emitters;

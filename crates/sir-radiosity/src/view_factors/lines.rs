@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use sir_accel::Ray;
 use sir_geom::{Line, Side, TriangleId};
-use sir_lines::{Allocation, Stage as Purpose, Streams, cosine_direction};
+use sir_lines::{Allocation, Purpose, Streams, cosine_direction};
 
 use crate::emitter::point_on_surface;
 use crate::error::SolveError;

@@ -8,7 +8,7 @@ use crate::experiment::crossings::{count, scaled};
 use crate::experiment::markdown;
 use crate::experiment::markdown::{Grid, percent};
 use crate::experiment::runs::Runs;
-use sir_pipeline::plan::Body;
+use sir_pipeline::plan::DomainKind;
 
 /// Lines through each body, before they are scaled, and how few they may be.
 const LINES: (u64, u64) = (1_000_000, 100_000);
@@ -38,7 +38,7 @@ pub(crate) struct Bodies {
 /// Traces the lines.
 pub(crate) fn find(runs: &Runs, model: &Model, scale: f64) -> Result<Bodies, StudyError> {
     let lines = scaled(LINES.0, scale, LINES.1);
-    let miss = |body: Body| -> Result<Miss, StudyError> {
+    let miss = |domain: DomainKind| -> Result<Miss, StudyError> {
         let domain = body.around(&model.scene);
         let mut empty = 0u64;
         count(runs, model, &domain, 0..lines, |crossings| empty += u64::from(crossings == 0))?;
@@ -49,7 +49,10 @@ pub(crate) fn find(runs: &Runs, model: &Model, scale: f64) -> Result<Bodies, Stu
             empty_share: empty as f64 / lines.max(1) as f64,
         })
     };
-    let bodies = [Body::Sphere, Body::Box, Body::Hull].into_iter().map(miss).collect::<Result<_, _>>()?;
+    let bodies = [DomainKind::Sphere, DomainKind::Box, DomainKind::Hull]
+        .into_iter()
+        .map(miss)
+        .collect::<Result<_, _>>()?;
     let sphere = 4.0 / 3.0 * std::f64::consts::PI * model.scene.bounding_sphere().radius.powi(3);
     let volume = model.scene.bounding_box().size().element_product();
     Ok(Bodies { lines, bodies, sphere_to_box: (volume > 0.0).then(|| sphere / volume) })

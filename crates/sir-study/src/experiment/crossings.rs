@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use sir_lines::{Domain, Stage, Streams};
+use sir_lines::{Domain, Purpose, Streams};
 use sir_radiosity::Model;
 
 use crate::error::StudyError;
@@ -19,7 +19,7 @@ pub(crate) fn count(
     lines: Range<u64>,
     mut visit: impl FnMut(u32),
 ) -> Result<(), StudyError> {
-    let streams = Streams::new(0, Stage::PROBE);
+    let streams = Streams::new(0, Purpose::PROBE);
     let mut tracer = model.accel.tracer();
     let mut first = lines.start;
     while first < lines.end {

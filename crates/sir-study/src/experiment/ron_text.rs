@@ -35,7 +35,7 @@ fn action(action: &Action) -> Option<String> {
         },
         Action::FirstShot { lines } => format!("FirstShot(lines: {lines})"),
         Action::SecondShot { lines } => format!("SecondShot(lines: {lines})"),
-        Action::Multipath { lines, transport, body } => {
+        Action::Multipath { lines, transport, domain } => {
             let transport = match transport {
                 Transport::Batches => "Batches".into(),
                 Transport::Replicas { replicas, tail } => {
@@ -73,7 +73,7 @@ fn output(output: &Output) -> String {
 }
 
 fn image_fields(image: &Image) -> String {
-    let Image { width, height, samples, exposure, calm, camera } = image;
+    let Image { width, height, samples, exposure, denoise, camera } = image;
     let height = height.map_or(String::new(), |height| format!("height: {height}, "));
     let exposure = match exposure {
         Exposure::Auto => "Auto".into(),
@@ -86,7 +86,7 @@ fn image_fields(image: &Image) -> String {
         CameraChoice::Own(camera) => own_camera(camera),
     };
     format!(
-        "width: {width}, {height}samples: {samples}, exposure: {exposure}, calm: {calm}, camera: {camera}"
+        "width: {width}, {height}samples: {samples}, exposure: {exposure}, denoise: {denoise}, camera: {camera}"
     )
 }
 

@@ -65,7 +65,7 @@ pub(crate) fn find(
     scale: f64,
 ) -> Result<Unevenness, StudyError> {
     let share = scaled(LINES.0, scale, LINES.1) / P as u64;
-    let domain = subject.body.around(&model.scene);
+    let domain = subject.domain.around(&model.scene);
     let mut counts = Vec::with_capacity(share as usize * P);
     let mut times = Vec::new();
     // So that the first share does not find cold caches.

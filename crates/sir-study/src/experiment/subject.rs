@@ -11,8 +11,8 @@ use crate::experiment::lines::{Lines, fitted};
 use crate::experiment::ron_text;
 use sir_pipeline::fingerprint::hex;
 use sir_pipeline::plan::{Action, Pipeline, Stage};
-use sir_pipeline::plan::{Body, Transport};
 use sir_pipeline::plan::{Content, Output};
+use sir_pipeline::plan::{DomainKind, Transport};
 use sir_pipeline::run::{absolute, run_name};
 
 /// Name of the tables of derived pipelines, with all light.
@@ -30,7 +30,7 @@ pub(crate) struct Subject {
     /// The same times the scale.
     pub(crate) lines: Lines,
     pub(crate) transport: Transport,
-    pub(crate) body: Body,
+    pub(crate) domain: DomainKind,
     /// SHA-256 of the scene file: another file of this name makes other runs.
     digest: String,
 }
@@ -55,7 +55,7 @@ impl Subject {
             _ => None,
         });
         let multipath = pipeline.flat_stages().find_map(|stage| match stage.action {
-            Action::Multipath { lines, transport, body } => Some((lines, transport, body)),
+            Action::Multipath { lines, transport, domain } => Some((lines, transport, body)),
             _ => None,
         });
         let (Some(local), Some((global, transport, body))) = (local, multipath) else {
@@ -123,9 +123,9 @@ impl Subject {
         if changes.direct {
             actions.push(Action::Save(vec![table(DIRECT)]));
         }
-        let (lines, transport, body) = (changes.lines.global, changes.transport, self.body);
+        let (lines, transport, body) = (changes.lines.global, changes.transport, self.domain);
         actions.extend(second_shot);
-        actions.push(Action::Multipath { lines, transport, body });
+        actions.push(Action::Multipath { lines, transport, domain });
         let pictures = self.pictures().filter(|_| changes.pictures).cloned();
         actions.push(Action::Save(std::iter::once(table(TABLE)).chain(pictures).collect()));
         let stages = actions.into_iter().map(|action| Stage { action, span: 0..0 }).collect();

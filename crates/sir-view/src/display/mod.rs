@@ -1,7 +1,7 @@
 //! The mesh that pictures and models show.
 
 mod build;
-mod calm;
+mod denoise;
 mod levels;
 mod mesh;
 mod outline;

@@ -65,7 +65,7 @@ impl DisplayMesh<'_> {
     ///
     /// If `errors` has not one value for every side of the mesh.
     #[must_use]
-    pub fn calm(&self, errors: &[Rgb], threads: usize) -> Vec<Rgb> {
+    pub fn denoise(&self, errors: &[Rgb], threads: usize) -> Vec<Rgb> {
         assert_eq!(errors.len(), self.irradiance.len(), "one error for every side of the mesh");
         let ring = Ring::new(self, |vertex| vertex);
         let mut areas = vec![0.0; errors.len()];

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use sir_geom::{Material, Rgb, Scene, SceneBuilder, Sides, shapes};
-use sir_lines::{Stage, Streams};
+use sir_lines::{Purpose, Streams};
 use sir_mesh::{PatchMesh, Subdivision};
 use sir_view::DisplayMesh;
 
@@ -28,7 +28,7 @@ fn sheet() -> (Scene, PatchMesh) {
 
 /// Where the middle of each patch is, what irradiance there really is, what was computed, and its standard error.
 fn noisy(scene: &Scene, mesh: &PatchMesh, real: impl Fn(DVec3) -> f64) -> [Vec<f64>; 4] {
-    let streams = Streams::new(7, Stage::PICTURE);
+    let streams = Streams::new(7, Purpose::PICTURE);
     let mut all = [const { Vec::new() }; 4];
     mesh.for_each_side(|t, patch, _, id| {
         let c = mesh.patch_corners(t, patch).map(|b| b.point(scene.corners(t)));
@@ -68,7 +68,7 @@ fn even_light_becomes_even_and_a_slope_stays() {
         let (computed, errors) = (grey(&computed), grey(&errors));
         let display = DisplayMesh::new(&scene, &mesh, &computed);
         let before = deviation(&x, &real, &computed);
-        let after = deviation(&x, &real, &display.calm(&errors, 2));
+        let after = deviation(&x, &real, &display.denoise(&errors, 2));
         assert!(before > 0.9 * NOISE && after < 0.25 * before, "slope {slope}: {before:.4} to {after:.4}");
     }
 }
@@ -78,7 +78,7 @@ fn the_border_of_a_shadow_stays() {
     let (scene, mesh) = sheet();
     let [x, real, computed, errors] = noisy(&scene, &mesh, |p| if p.x < 1.0 { 1.0 } else { 3.0 });
     let (computed, errors) = (grey(&computed), grey(&errors));
-    let shown = DisplayMesh::new(&scene, &mesh, &computed).calm(&errors, 2);
+    let shown = DisplayMesh::new(&scene, &mesh, &computed).denoise(&errors, 2);
     assert!(deviation(&x, &real, &shown) < 0.25 * deviation(&x, &real, &computed));
     let near_border = |x: &f64| (x - 1.0).abs() < 0.1;
     for (x, (real, shown)) in x.iter().zip(real.iter().zip(&shown)).filter(|(x, _)| near_border(x)) {
@@ -92,8 +92,8 @@ fn nothing_moves_beyond_three_standard_errors_on_any_number_of_threads() {
     let [_, _, computed, errors] = noisy(&scene, &mesh, |p| 1.0 + 5.0 * p.x * p.x);
     let (computed, errors) = (grey(&computed), grey(&errors));
     let display = DisplayMesh::new(&scene, &mesh, &computed);
-    let shown = display.calm(&errors, 1);
-    assert_eq!(shown, display.calm(&errors, 3));
+    let shown = display.denoise(&errors, 1);
+    assert_eq!(shown, display.denoise(&errors, 3));
     // The error of a patch is its own or that of light in grains of the mean power around it, whichever is larger.
     for ((shown, computed), error) in shown.iter().zip(&computed).zip(&errors) {
         assert!((shown.x - computed.x).abs() <= 5.0 * error.x, "{} {} {}", shown.x, computed.x, error.x);
@@ -105,7 +105,7 @@ fn what_is_known_exactly_is_shown_as_it_is() {
     let (scene, mesh) = sheet();
     let [_, _, computed, _] = noisy(&scene, &mesh, |p| 1.0 + p.x);
     let computed = grey(&computed);
-    let shown = DisplayMesh::new(&scene, &mesh, &computed).calm(&vec![Rgb::ZERO; computed.len()], 2);
+    let shown = DisplayMesh::new(&scene, &mesh, &computed).denoise(&vec![Rgb::ZERO; computed.len()], 2);
     assert_eq!(shown, computed);
 }
 
@@ -119,7 +119,7 @@ fn a_patch_that_no_line_has_met_takes_the_light_around_it() {
     let values = grey(&counts);
     let own = grey(&counts.iter().map(|n| n.sqrt()).collect::<Vec<_>>());
     assert!(counts.iter().filter(|&&n| n == 0.0).count() > 500 && errors.len() == counts.len());
-    let shown = DisplayMesh::new(&scene, &mesh, &values).calm(&own, 2);
+    let shown = DisplayMesh::new(&scene, &mesh, &values).denoise(&own, 2);
     assert!(shown.iter().all(|e| e.x > 0.5), "{:?}", shown.iter().map(|e| e.x).fold(f64::INFINITY, f64::min));
 }
 
@@ -154,7 +154,7 @@ fn what_is_too_small_to_know_shows_the_light_beyond_its_edges() {
         computed.push(if lit { Rgb::ONE } else { Rgb::ZERO });
         errors.push(if lit { Rgb::splat(0.1) } else { Rgb::ZERO });
     });
-    let shown = DisplayMesh::new(&scene, &mesh, &computed).calm(&errors, 2);
+    let shown = DisplayMesh::new(&scene, &mesh, &computed).denoise(&errors, 2);
     mesh.for_each_side(|t, _, _, id| {
         let e = shown[id.index()].x;
         match t.0 {
@@ -180,6 +180,6 @@ fn bands_without_light_do_no_harm() {
             _ => {}
         }
     }
-    let shown = DisplayMesh::new(&scene, &mesh, &computed).calm(&errors, 2);
+    let shown = DisplayMesh::new(&scene, &mesh, &computed).denoise(&errors, 2);
     assert!(shown.iter().all(|e| e.is_finite()), "{:?}", shown.iter().find(|e| !e.is_finite()));
 }
