@@ -55,7 +55,7 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
             Action::Multipath { lines, domain, .. } => {
                 let Some(shot) = shot.take() else { continue };
                 // Both transports trace the same lines at about the same rate.
-                let domain = body.lines_around(&model.scene, focus);
+                let domain = domain.lines_around(&model.scene, focus);
                 let settings = BatchSettings { model, domain, lines, seed };
                 let stage = Batches::begin(settings, shot, &OneWorker)?;
                 let (rate, _) = try_stage(&stage, lines);

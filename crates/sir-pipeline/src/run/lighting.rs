@@ -71,7 +71,7 @@ impl<'m> Lighting<'m> {
             }
             Action::Multipath { lines, transport, domain } => {
                 let Some(start) = self.start(saved) else { return Ok(None) };
-                let domain = self.global_lines(body);
+                let domain = self.global_lines(domain);
                 let report = DomainReport::of(&domain);
                 let run = match transport {
                     Transport::Batches => {
@@ -104,8 +104,8 @@ impl<'m> Lighting<'m> {
 
     /// Returns the lines through a domain, which takes time to make for a large scene.
     fn global_lines(&mut self, domain: DomainKind) -> GlobalLines {
-        let known = self.global.take().filter(|(of, _)| *of == body);
-        let lines = || (body, body.lines_around(&self.model.scene, self.focus));
+        let known = self.global.take().filter(|(of, _)| *of == domain);
+        let lines = || (domain, domain.lines_around(&self.model.scene, self.focus));
         let (_, lines) = self.global.insert(known.unwrap_or_else(lines));
         lines.clone()
     }

@@ -257,7 +257,7 @@ impl<'a> Decoder<'a> {
         const FIELDS: [&str; 5] = ["lines", "transport", "replicas", "tail", "domain"];
         let mut fields = self.reader.fields(node, "Multipath", &FIELDS);
         let lines = self.reader.required(&mut fields, "lines", "1_000_000");
-        let body = match fields.take("domain") {
+        let domain = match fields.take("domain") {
             Some(node) => match self.reader.choice(&node, "domain", &["Hull", "Box", "Sphere"]) {
                 Some("Box") => DomainKind::Box,
                 Some("Sphere") => DomainKind::Sphere,

@@ -17,7 +17,7 @@ const LINES: (u64, u64) = (1_000_000, 100_000);
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Miss {
     /// `Sphere`, `Box` or `Hull`.
-    pub(crate) body: String,
+    pub(crate) domain: String,
     /// Its surface \[m²\].
     pub(crate) surface: f64,
     /// Share of the lines that meet nothing.
@@ -38,13 +38,13 @@ pub(crate) struct Bodies {
 /// Traces the lines.
 pub(crate) fn find(runs: &Runs, model: &Model, scale: f64) -> Result<Bodies, StudyError> {
     let lines = scaled(LINES.0, scale, LINES.1);
-    let miss = |domain: DomainKind| -> Result<Miss, StudyError> {
-        let domain = body.around(&model.scene);
+    let miss = |kind: DomainKind| -> Result<Miss, StudyError> {
+        let domain = kind.around(&model.scene);
         let mut empty = 0u64;
         count(runs, model, &domain, 0..lines, |crossings| empty += u64::from(crossings == 0))?;
         // A hull that has no volume is a box: the name is that of what was asked for.
         Ok(Miss {
-            body: format!("{body:?}"),
+            domain: format!("{kind:?}"),
             surface: domain.surface(),
             empty_share: empty as f64 / lines.max(1) as f64,
         })
@@ -61,7 +61,7 @@ pub(crate) fn find(runs: &Runs, model: &Model, scale: f64) -> Result<Bodies, Stu
 impl Bodies {
     /// Share of the lines through the sphere that meet nothing.
     pub(crate) fn empty_in_sphere(&self) -> Option<f64> {
-        self.bodies.iter().find(|miss| miss.body == "Sphere").map(|miss| miss.empty_share)
+        self.bodies.iter().find(|miss| miss.domain == "Sphere").map(|miss| miss.empty_share)
     }
 
     /// The section of the report.
@@ -70,9 +70,9 @@ impl Bodies {
         let mut grid = Grid::new(&columns);
         // Lines through a convex body meet a smaller one in it with a probability of the ratio of the surfaces.
         let least = self.bodies.iter().map(|miss| miss.surface).fold(f64::INFINITY, f64::min);
-        for Miss { body, surface, empty_share } in &self.bodies {
+        for Miss { domain, surface, empty_share } in &self.bodies {
             let past = if *surface > 0.0 { 1.0 - least / surface } else { 0.0 };
-            grid.row([body.clone(), format!("{surface:.2}"), percent(past), percent(*empty_share)]);
+            grid.row([domain.clone(), format!("{surface:.2}"), percent(past), percent(*empty_share)]);
         }
         let filled = self.sphere_to_box.map_or_else(String::new, |ratio| {
             format!(

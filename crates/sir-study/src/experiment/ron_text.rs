@@ -42,7 +42,7 @@ fn action(action: &Action) -> Option<String> {
                     format!("Replicas, replicas: {replicas}, tail: {tail}")
                 }
             };
-            format!("Multipath(lines: {lines}, transport: {transport}, domain: {body:?})")
+            format!("Multipath(lines: {lines}, transport: {transport}, domain: {domain:?})")
         }
         Action::Repeat(Repeat { until, at_most, stages }) => {
             let until = match until {

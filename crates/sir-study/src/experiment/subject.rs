@@ -55,10 +55,10 @@ impl Subject {
             _ => None,
         });
         let multipath = pipeline.flat_stages().find_map(|stage| match stage.action {
-            Action::Multipath { lines, transport, domain } => Some((lines, transport, body)),
+            Action::Multipath { lines, transport, domain } => Some((lines, transport, domain)),
             _ => None,
         });
-        let (Some(local), Some((global, transport, body))) = (local, multipath) else {
+        let (Some(local), Some((global, transport, domain))) = (local, multipath) else {
             return Err(ExperimentError::NoMultipath { path: path.to_owned() }.into());
         };
         let scene = pipeline.scene_path();
@@ -72,7 +72,7 @@ impl Subject {
             pipeline,
             asked,
             transport,
-            body,
+            domain,
         })
     }
 
@@ -123,7 +123,7 @@ impl Subject {
         if changes.direct {
             actions.push(Action::Save(vec![table(DIRECT)]));
         }
-        let (lines, transport, body) = (changes.lines.global, changes.transport, self.domain);
+        let (lines, transport, domain) = (changes.lines.global, changes.transport, self.domain);
         actions.extend(second_shot);
         actions.push(Action::Multipath { lines, transport, domain });
         let pictures = self.pictures().filter(|_| changes.pictures).cloned();

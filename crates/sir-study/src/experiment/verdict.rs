@@ -267,7 +267,7 @@ mod tests {
         let bodies = |empty_share, sphere_to_box| Bodies {
             lines: 1,
             bodies: vec![crate::experiment::bodies::Miss {
-                kind: "Sphere".into(),
+                domain: "Sphere".into(),
                 surface: 1.0,
                 empty_share,
             }],
