@@ -63,9 +63,12 @@ impl Grid {
             // From far away: start where the line comes near.
             start = -origin.dot(line.direction) - 1.25 * RADIUS;
             origin += start * line.direction;
+            if !is_near(origin) {
+                return None;
+            }
         }
-        // False for NaN, too. A longer direction would overflow the exact test.
-        if !(is_near(origin) && line.direction.length_squared() <= 2.0) {
+        // A longer direction would overflow the exact test. (False for NaN, too.)
+        if !(line.direction.length_squared() <= 2.0) {
             return None;
         }
         // All six numbers alike, for vector instructions.

@@ -216,7 +216,7 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
         let line = usize::from(of_lines[i]);
         let Some((grid_line, _)) = lines.get(line) else { continue };
         let (start, end, place) = (starts[line] as usize, starts[line + 1] as usize, places[i] as usize);
-        let mine = backend.load_f64(&[t[i]; LEAF_WIDTH]);
+        let mine = backend.splat_f64(t[i]);
         let (mut rank, mut first, mut near) = (0, start, 0);
         while first < end {
             let some = distances[first..].first_chunk().map_or(mine, |some| backend.load_f64(some));
@@ -227,7 +227,7 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
             // Of equal ones, the one found first comes first.
             let (before, not_after) = (some.mask_lt(mine), some.mask_le(mine));
             rank += ((before | (not_after & earlier)) & of_line).count_ones() as usize;
-            near |= not_after & mine.mask_le(some.add(mine.splat(CLOSE))) & of_line & !this;
+            near |= not_after & mine.mask_le(some.add(backend.splat_f64(CLOSE))) & of_line & !this;
             first += LEAF_WIDTH;
         }
         close[line] |= near != 0;

@@ -2,6 +2,7 @@
 #![allow(unsafe_code, reason = "vector instructions; the token proves them, and values hold it")]
 
 use std::arch::x86_64::*;
+use std::hint::black_box;
 
 use crate::simd::avx2::integer::{lane_numbers, sort4, sort8};
 use crate::simd::avx2::single::F32x8;
@@ -38,12 +39,13 @@ impl SimdBackend for Avx512 {
     }
 
     #[inline(always)]
-    fn outline<R>(self, work: impl FnOnce() -> R) -> R {
-        #[inline(never)]
+    fn outline<R, F: FnOnce() -> R>(self, work: F) -> R {
         #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,popcnt")]
-        fn outline<R>(work: impl FnOnce() -> R) -> R {
+        fn outline<R, F: FnOnce() -> R>(work: F) -> R {
             work()
         }
+        // The compiler drops `inline(never)` where there are target features; it cannot inline a pointer that it does not know.
+        let outline: unsafe fn(F) -> R = black_box(outline::<R, F>);
         // SAFETY: the token proves the features.
         unsafe { outline(work) }
     }
@@ -74,6 +76,12 @@ impl SimdBackend for Avx512 {
     fn load_f64(self, numbers: &[f64; LEAF_WIDTH]) -> F64x8 {
         // SAFETY: the token proves AVX-512; the array has 8 numbers.
         F64x8(unsafe { _mm512_loadu_pd(numbers.as_ptr()) }, self)
+    }
+
+    #[inline(always)]
+    fn splat_f64(self, number: f64) -> F64x8 {
+        // SAFETY: the token proves AVX-512.
+        F64x8(unsafe { _mm512_set1_pd(number) }, self)
     }
 
     #[inline(always)]

@@ -21,7 +21,7 @@ pub(crate) trait SimdBackend: Copy {
     fn run<K: Kernel>(self, kernel: K) -> K::Output;
 
     /// Runs a closure in a function of its own, so that its numbers find room in the registers.
-    fn outline<R>(self, work: impl FnOnce() -> R) -> R;
+    fn outline<R, F: FnOnce() -> R>(self, work: F) -> R;
 
     /// Reads a number per lane.
     fn load_node(self, numbers: &[f32; NODE_WIDTH]) -> Self::NodeF32;
@@ -37,6 +37,9 @@ pub(crate) trait SimdBackend: Copy {
 
     /// Reads a number per lane.
     fn load_f64(self, numbers: &[f64; LEAF_WIDTH]) -> Self::PairF64;
+
+    /// The same number in all lanes.
+    fn splat_f64(self, number: f64) -> Self::PairF64;
 
     /// Converts a number per lane.
     fn i32_to_f64(self, numbers: &[i32; LEAF_WIDTH]) -> Self::PairF64;

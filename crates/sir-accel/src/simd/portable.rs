@@ -20,7 +20,7 @@ impl SimdBackend for Portable {
     }
 
     #[inline(always)]
-    fn outline<R>(self, work: impl FnOnce() -> R) -> R {
+    fn outline<R, F: FnOnce() -> R>(self, work: F) -> R {
         work()
     }
 
@@ -47,6 +47,11 @@ impl SimdBackend for Portable {
     #[inline(always)]
     fn load_f64(self, numbers: &[f64; LEAF_WIDTH]) -> [f64; LEAF_WIDTH] {
         *numbers
+    }
+
+    #[inline(always)]
+    fn splat_f64(self, number: f64) -> [f64; LEAF_WIDTH] {
+        [number; LEAF_WIDTH]
     }
 
     #[inline(always)]

@@ -2,6 +2,7 @@
 #![allow(unsafe_code, reason = "vector instructions; the token proves them")]
 
 use std::arch::x86_64::*;
+use std::hint::black_box;
 
 use crate::simd::avx2::double::F64x8;
 use crate::simd::avx2::integer::{compress8, compress16, lane_numbers, sort4, sort8};
@@ -25,12 +26,13 @@ impl SimdBackend for Avx2 {
     }
 
     #[inline(always)]
-    fn outline<R>(self, work: impl FnOnce() -> R) -> R {
-        #[inline(never)]
+    fn outline<R, F: FnOnce() -> R>(self, work: F) -> R {
         #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
-        fn outline<R>(work: impl FnOnce() -> R) -> R {
+        fn outline<R, F: FnOnce() -> R>(work: F) -> R {
             work()
         }
+        // The compiler drops `inline(never)` where there are target features; it cannot inline a pointer that it does not know.
+        let outline: unsafe fn(F) -> R = black_box(outline::<R, F>);
         // SAFETY: the token proves the features.
         unsafe { outline(work) }
     }
@@ -58,6 +60,11 @@ impl SimdBackend for Avx2 {
     #[inline(always)]
     fn load_f64(self, numbers: &[f64; LEAF_WIDTH]) -> F64x8 {
         F64x8::load(self, numbers)
+    }
+
+    #[inline(always)]
+    fn splat_f64(self, number: f64) -> F64x8 {
+        F64x8::splat(self, number)
     }
 
     #[inline(always)]

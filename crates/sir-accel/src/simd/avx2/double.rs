@@ -18,6 +18,14 @@ impl F64x8 {
         unsafe { Self(_mm256_loadu_pd(numbers.as_ptr()), _mm256_loadu_pd(numbers.as_ptr().add(4)), token) }
     }
 
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub(crate) fn splat(token: Avx2, number: f64) -> Self {
+        // SAFETY: the token proves AVX.
+        let all = unsafe { _mm256_set1_pd(number) };
+        Self(all, all, token)
+    }
+
     /// Converts a number per lane.
     #[inline(always)]
     pub(crate) fn from_i32(token: Avx2, numbers: &[i32; LEAF_WIDTH]) -> Self {
@@ -77,9 +85,7 @@ impl F64Lanes for F64x8 {
 
     #[inline(always)]
     fn splat(self, number: f64) -> Self {
-        // SAFETY: the value holds the token.
-        let all = unsafe { _mm256_set1_pd(number) };
-        Self(all, all, self.2)
+        Self::splat(self.2, number)
     }
 }
 
