@@ -15,7 +15,8 @@ use crate::report::sensors::SensorsReport;
 use crate::units::Units;
 
 /// Columns of the table.
-const COLUMNS: &str = "x,y,z,dx,dy,dz,E_r,E_g,E_b,E,E_direct,se_r,se_g,se_b,se";
+const COLUMNS: [&str; 15] =
+    ["x", "y", "z", "dx", "dy", "dz", "E_r", "E_g", "E_b", "E", "E_direct", "se_r", "se_g", "se_b", "se"];
 
 /// Writes the files of sensors into a directory.
 pub(crate) fn write(
@@ -50,16 +51,16 @@ fn output(directory: &Path, name: &Path, kind: &str) -> Result<OutputReport, Err
 }
 
 fn write_table(out: &mut impl Write, sensors: &[Sensor], measured: &[Measurement]) -> io::Result<()> {
-    writeln!(out, "{COLUMNS}")?;
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record(COLUMNS)?;
     for (sensor, m) in sensors.iter().zip(measured) {
         let places = [sensor.position(), sensor.direction()].map(|v| v.to_array());
         let light = m.irradiance.to_array().into_iter().chain([m.luminance(), sir_geom::luminance(m.direct)]);
         let errors = m.error().to_array().into_iter().chain([m.luminance_error()]);
-        let numbers: Vec<String> =
-            places.into_iter().flatten().chain(light).chain(errors).map(|x| format!("{x:?}")).collect();
-        writeln!(out, "{}", numbers.join(","))?;
+        let numbers = places.into_iter().flatten().chain(light).chain(errors);
+        table.write_record(numbers.map(|x| format!("{x:?}")))?;
     }
-    Ok(())
+    table.flush()
 }
 
 fn map_of(cells: &Cells, measured: &[Measurement], report: &SensorsReport, units: Units) -> Map {

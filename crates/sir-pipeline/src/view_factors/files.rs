@@ -1,6 +1,6 @@
 //! The files of view factors.
 
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
@@ -22,57 +22,54 @@ pub(super) fn write(report: &Report, directory: &Path) -> Result<Vec<PathBuf>, E
         files.push(("closed.csv", matrix(report, factors, [blocked, escaped])));
         files.push(("closed-errors.csv", matrix(report, errors, [blocked_errors, escaped_errors])));
     }
-    files.push((JSON, report.to_json()));
+    files.push((JSON, Ok(report.to_json().into_bytes())));
     let mut paths = Vec::new();
     for (name, content) in files {
         let path = directory.join(name);
-        sir_view::write_atomically(&path, |file| file.write_all(content.as_bytes()))?;
+        sir_view::write_atomically(&path, |file| file.write_all(&content?))?;
         paths.push(path);
     }
     Ok(paths)
 }
 
-/// A row for each group, with a column for each group and those of what is blocked and escapes.
-fn matrix(report: &Report, rows: &[Vec<f64>], rest: [&[f64]; 2]) -> String {
-    let names = report.groups.iter().map(|group| cell(&group.name));
-    let header: Vec<String> = ["group".into(), "area".into(), "lines".into()]
-        .into_iter()
-        .chain(names)
-        .chain(["blocked".into(), "escaped".into()])
-        .collect();
-    let mut text = header.join(",") + "\n";
+/// Returns a row for each group, with a column for each group and those of what is blocked and escapes.
+fn matrix(report: &Report, rows: &[Vec<f64>], rest: [&[f64]; 2]) -> io::Result<Vec<u8>> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let names = report.groups.iter().map(|group| group.name.as_str());
+    table.write_record(["group", "area", "lines"].into_iter().chain(names).chain(["blocked", "escaped"]))?;
     for (i, (group, row)) in report.groups.iter().zip(rows).enumerate() {
-        text += &format!("{},{},{}", cell(&group.name), group.area, group.lines);
-        row.iter().chain(rest.map(|column| &column[i])).for_each(|x| text += &format!(",{x}"));
-        text.push('\n');
+        let head = [group.name.clone(), group.area.to_string(), group.lines.to_string()];
+        let numbers = row.iter().chain(rest.map(|column| &column[i])).map(f64::to_string);
+        table.write_record(head.into_iter().chain(numbers))?;
     }
-    text
+    finish(table)
 }
 
-/// A row for each pair of which something was counted.
-fn pairs(report: &Report) -> String {
-    let mut text = String::from("from,to,lines,count,factor,error,closed,closed_error\n");
+/// Returns a row for each pair of which something was counted.
+fn pairs(report: &Report) -> io::Result<Vec<u8>> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(["from", "to", "lines", "count", "factor", "error", "closed", "closed_error"])?;
     for (i, from) in report.groups.iter().enumerate() {
         for (j, to) in report.groups.iter().enumerate().filter(|&(j, _)| report.counts[i][j] > 0) {
-            let (factor, error) = (report.counted.factors[i][j], report.counted.errors[i][j]);
-            let closed = report.closed.as_ref().map(|m| format!("{},{}", m.factors[i][j], m.errors[i][j]));
-            text += &format!(
-                "{},{},{},{},{factor},{error},{}\n",
-                cell(&from.name),
-                cell(&to.name),
-                from.lines,
-                report.counts[i][j],
-                closed.unwrap_or_else(|| ",".into())
-            );
+            let closed = report.closed.as_ref();
+            let closed =
+                |of: fn(&Matrix) -> &Vec<Vec<f64>>| closed.map_or(String::new(), |m| of(m)[i][j].to_string());
+            table.write_record([
+                from.name.clone(),
+                to.name.clone(),
+                from.lines.to_string(),
+                report.counts[i][j].to_string(),
+                report.counted.factors[i][j].to_string(),
+                report.counted.errors[i][j].to_string(),
+                closed(|m| &m.factors),
+                closed(|m| &m.errors),
+            ])?;
         }
     }
-    text
+    finish(table)
 }
 
-/// A text as a cell of a CSV file (RFC 4180).
-fn cell(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        return format!("\"{}\"", text.replace('"', "\"\""));
-    }
-    text.to_owned()
+/// Returns the bytes of a table.
+fn finish(table: csv::Writer<Vec<u8>>) -> io::Result<Vec<u8>> {
+    table.into_inner().map_err(|error| error.into_error())
 }

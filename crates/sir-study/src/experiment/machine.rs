@@ -1,7 +1,6 @@
 //! When and where the experiment was made.
 
 use std::fs;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::Serialize;
 
@@ -47,29 +46,7 @@ fn field(text: &str, name: &str) -> Option<String> {
 /// Today's date in Greenwich, such as `2026-11-24`.
 #[must_use]
 pub(crate) fn today() -> String {
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
-    let (year, month, day) = date(seconds / 86_400);
-    format!("{year}-{month:02}-{day:02}")
-}
-
-/// The date so many days after 1970-01-01.
-fn date(mut days: u64) -> (u64, u64, u64) {
-    let is_leap =
-        |year: u64| year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
-    let mut year = 1970;
-    while days >= 365 + u64::from(is_leap(year)) {
-        days -= 365 + u64::from(is_leap(year));
-        year += 1;
-    }
-    let mut month = 1;
-    for length in [31, 28 + u64::from(is_leap(year)), 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
-        if days < length {
-            break;
-        }
-        days -= length;
-        month += 1;
-    }
-    (year, month, days + 1)
+    jiff::tz::TimeZone::UTC.to_datetime(jiff::Timestamp::now()).date().to_string()
 }
 
 /// The command line of this process, quoted where a shell needs it.
@@ -89,15 +66,6 @@ pub(crate) fn command_line() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn dates_know_leap_years() {
-        assert_eq!(
-            [0, 58, 59, 789, 11_016, 11_017].map(date),
-            [(1970, 1, 1), (1970, 2, 28), (1970, 3, 1), (1972, 2, 29), (2000, 2, 29), (2000, 3, 1),]
-        );
-        assert_eq!(date(20_781), (2026, 11, 24));
-    }
 
     #[test]
     fn values_are_found_by_their_whole_name() {
