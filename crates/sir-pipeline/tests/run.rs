@@ -121,7 +121,7 @@ fn the_report_tells_what_happened() {
     let folder = folder();
     let result = run(&pipeline(folder.path(), PIPELINE), &options(folder.path())).unwrap();
     let Report { version, seed, scene, stages, outputs, pipeline, .. } = result.report;
-    assert_eq!((version, seed, pipeline.text.as_str()), (2, 5, PIPELINE));
+    assert_eq!((version, seed, pipeline.text.as_str()), (3, 5, PIPELINE));
     assert_eq!(scene.triangles, 12);
     assert!(scene.patches.abs_diff(100) < 15, "{}", scene.patches);
     assert!((scene.area - 24.0).abs() < 1e-9);

@@ -390,3 +390,9 @@ fn paths() {
       = help: scenes are read from .gltf, .glb and .obj files
     "#);
 }
+
+#[test]
+fn a_field_with_a_new_name_is_told_it() {
+    let stage = r#"Save([Image(path: "a.png", calm: false)]),"#;
+    assert!(problems(&[stage]).iter().any(|p| p.to_string().contains("the field is called `denoise` now")));
+}
