@@ -18,7 +18,7 @@
 //!
 //! Three doors for three kinds of user:
 //!
-//! * *A pipeline file*: `sir run room.ron`, or [`pipeline::run`] and [`pipeline::check`] from Rust.
+//! * *A pipeline file*: `sir run room.ron`, or [`pipeline::run`](fn@pipeline::run) and [`pipeline::check`](fn@pipeline::check) from Rust.
 //! * *A solver*: [`parallel::Solver`], or its stages one by one with [`parallel::Executor`].
 //! * *A part*: each crate works by itself; [`accel`] and [`lines`] need no scene.
 //!

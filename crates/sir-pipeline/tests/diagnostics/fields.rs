@@ -393,6 +393,6 @@ fn paths() {
 
 #[test]
 fn a_field_with_a_new_name_is_told_it() {
-    let stage = r#"Save([Image(path: "a.png", calm: false)]),"#;
-    assert!(problems(&[stage]).iter().any(|p| p.to_string().contains("the field is called `denoise` now")));
+    let shown = stages(&[r#"Save([Image(path: "a.png", calm: false)]),"#]);
+    assert!(shown.contains("the field is called `denoise` now"), "{shown}");
 }
