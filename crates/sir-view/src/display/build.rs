@@ -12,7 +12,7 @@ use crate::display::seams::Seams;
 use crate::display::smooth::{Groups, RimPiece};
 
 impl<'a> DisplayMesh<'a> {
-    /// Makes the mesh for a solution: the irradiance `E` \[W/m²\] of every [`SideId`].
+    /// Makes the mesh for a solution: the irradiance `E` \[W/m²\] of every [`SideId`](sir_mesh::SideId).
     ///
     /// # Panics
     ///
