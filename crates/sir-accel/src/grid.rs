@@ -67,8 +67,9 @@ impl Grid {
                 return None;
             }
         }
-        // A longer direction would overflow the exact test. (False for NaN, too.)
-        if !(line.direction.length_squared() <= 2.0) {
+        // A longer direction would overflow the exact test.
+        let length_squared = line.direction.length_squared();
+        if length_squared > 2.0 || length_squared.is_nan() {
             return None;
         }
         // All six numbers alike, for vector instructions.
