@@ -121,7 +121,9 @@ impl<S: Stage> State<S> {
     fn next_round(&mut self, slices: &mut Slices<'_, '_>) -> bool {
         slices.add_up(|visitor| self.stage.visit_round(visitor));
         let another = self.stage.advance(&slices.threads());
-        self.remaining = Remaining::of(&self.stage, slices.comm());
+        if another {
+            self.remaining = Remaining::of(&self.stage, slices.comm());
+        }
         another
     }
 

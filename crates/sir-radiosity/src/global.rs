@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use sir_geom::Line;
-use sir_lines::Domain;
 use sir_mesh::SideId;
 
 use crate::model::Model;
@@ -62,9 +61,4 @@ pub(crate) fn trace(
         });
         first = end;
     }
-}
-
-/// Returns a number that tells the domains of one scene apart: their surface, to the last bit.
-pub(crate) fn domain_identity(domain: &Domain) -> u64 {
-    domain.surface().to_bits()
 }

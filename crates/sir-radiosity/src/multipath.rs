@@ -115,7 +115,7 @@ impl<'m> Stage for Multipath<'m> {
             *seed,
             *tail,
             *replicas,
-            global::domain_identity(domain),
+            domain.identity(),
         ]
     }
 
