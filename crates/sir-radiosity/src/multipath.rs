@@ -108,15 +108,7 @@ impl<'m> Stage for Multipath<'m> {
 
     fn identity(settings: &Self::Settings) -> Vec<u64> {
         let MultipathSettings { model, domain, lines, tail, replicas, seed } = settings;
-        vec![
-            3,
-            model.mesh.side_count() as u64,
-            *lines,
-            *seed,
-            *tail,
-            *replicas,
-            domain.identity(),
-        ]
+        vec![3, model.mesh.side_count() as u64, *lines, *seed, *tail, *replicas, domain.identity()]
     }
 
     /// Prepares the transport of the reflected direct power of a shot.

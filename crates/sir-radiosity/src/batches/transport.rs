@@ -135,8 +135,7 @@ impl<'m> Stage for Batches<'m> {
 
     fn identity(settings: &Self::Settings) -> Vec<u64> {
         let BatchSettings { model, domain, lines, seed } = settings;
-        let mut words =
-            vec![2, model.mesh.side_count() as u64, *lines, *seed, domain.domain().identity()];
+        let mut words = vec![2, model.mesh.side_count() as u64, *lines, *seed, domain.domain().identity()];
         words.extend(domain.focus().iter().flat_map(|focus| focus.identity()));
         words
     }

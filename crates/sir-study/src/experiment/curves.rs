@@ -5,7 +5,7 @@ use std::io;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use crate::scaling::axis::Axis;
+use crate::scaling::axis::{Axis, draw_axes};
 use crate::scaling::legend::{Failure, GREY, INK, Pixel, write};
 
 /// What is shown.
@@ -55,19 +55,7 @@ impl Diagram<'_> {
                 Axis::new(self.x_last, self.x_last / 10.0),
                 Axis::new(y_last, 10f64.powi(exponent)),
             )?;
-        chart
-            .configure_mesh()
-            .disable_x_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(RGBColor(228, 228, 228))
-            .axis_style(INK)
-            .label_style(("sans-serif", 16).into_font().color(&INK))
-            .axis_desc_style(("sans-serif", 17).into_font().color(&INK))
-            .x_label_formatter(&|x| format!("{x:.0}"))
-            .y_label_formatter(&|y| format!("{y:.decimals$}"))
-            .x_desc(self.x_label)
-            .y_desc(self.y_label)
-            .draw()?;
+        draw_axes(&mut chart, (self.x_label, self.y_label), decimals)?;
         let at = |x: f64, y: f64| chart.backend_coord(&(x, y));
         let (x, top) = at(self.mark.0, y_last);
         let line = vec![(x, top + 18), at(self.mark.0, 0.0)];

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
-use plotters::prelude::Ranged;
+use plotters::prelude::*;
+
+use crate::scaling::legend::{Failure, INK};
 
 /// An axis from 0.
 ///
@@ -19,6 +21,30 @@ impl Axis {
     pub(crate) fn new(last: f64, least: f64) -> Self {
         Self { last, ticks: ticks(last, least) }
     }
+}
+
+/// A chart on two such axes.
+type Chart<'c, 't> = ChartContext<'c, SVGBackend<'t>, Cartesian2d<Axis, Axis>>;
+
+/// Draws the axes of a chart, with horizontal lines at the labels, what the axes show, and so many decimals upward.
+pub(crate) fn draw_axes(
+    chart: &mut Chart<'_, '_>,
+    (x, y): (&str, &str),
+    decimals: usize,
+) -> Result<(), Failure> {
+    chart
+        .configure_mesh()
+        .disable_x_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(RGBColor(228, 228, 228))
+        .axis_style(INK)
+        .label_style(("sans-serif", 16).into_font().color(&INK))
+        .axis_desc_style(("sans-serif", 17).into_font().color(&INK))
+        .x_label_formatter(&|x| format!("{x:.0}"))
+        .y_label_formatter(&|y| format!("{y:.decimals$}"))
+        .x_desc(x)
+        .y_desc(y)
+        .draw()
 }
 
 impl Ranged for Axis {

@@ -5,7 +5,7 @@ use std::io;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use crate::scaling::axis::Axis;
+use crate::scaling::axis::{Axis, draw_axes};
 use crate::scaling::legend::{
     Canvas, Failure, GREY, INK, Pixel, ROW, draw_legend, draw_line, draw_mark, write,
 };
@@ -111,19 +111,7 @@ impl Panel {
             .y_label_area_size(58)
             .build_cartesian_2d(Axis::new(x_last, 1.0), Axis::new(y_last, self.least_step))?;
         let decimals = usize::from(self.least_step < 1.0);
-        chart
-            .configure_mesh()
-            .disable_x_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(RGBColor(228, 228, 228))
-            .axis_style(INK)
-            .label_style(("sans-serif", 16).into_font().color(&INK))
-            .axis_desc_style(("sans-serif", 17).into_font().color(&INK))
-            .x_label_formatter(&|x| format!("{x:.0}"))
-            .y_label_formatter(&|y| format!("{y:.decimals$}"))
-            .x_desc("workers p")
-            .y_desc(self.label)
-            .draw()?;
+        draw_axes(&mut chart, ("workers p", self.label), decimals)?;
         let at = |x: f64, y: f64| chart.backend_coord(&(x, y));
         let ideal = self.ideal.map(|(x, y)| at(x, y));
         canvas.draw(&PathElement::new(ideal.to_vec(), GREY.stroke_width(1)))?;
