@@ -36,7 +36,8 @@ fn folder(text: &str) -> tempfile::TempDir {
 }
 
 fn in_replicas() -> String {
-    PIPELINE.replace("Multipath(lines: 8_000_000)", "Multipath(lines: 16_000_000, replicas: 3)")
+    PIPELINE
+        .replace("Multipath(lines: 8_000_000)", "Multipath(lines: 16_000_000, transport: Replicas(count: 3))")
 }
 
 fn repeated() -> String {

@@ -66,7 +66,8 @@ fn result(run: &Path) -> (String, Vec<u8>) {
 
 #[test]
 fn any_number_of_ranks_and_threads_gives_the_same_bits() {
-    for global in ["60_000", "60_000, replicas: 1", "60_000, replicas: 5, tail: 0"] {
+    for global in ["60_000", "60_000, transport: Replicas", "60_000, transport: Replicas(count: 5, tail: 0)"]
+    {
         let folder = folder(&pipeline(30_000, global));
         let folder = folder.path();
         let mut expected = None;
@@ -192,7 +193,7 @@ fn kill(signal: &str, pid: u32) {
 
 #[test]
 fn a_killed_rank_ends_the_run_and_the_last_checkpoint_resumes() {
-    for global in ["20_000_000", "20_000_000, replicas: 5"] {
+    for global in ["20_000_000", "20_000_000, transport: Replicas(count: 5)"] {
         let folder = folder(&pipeline(1_000_000, global));
         let child = under_way(folder.path(), 3);
         let ranks = ranks_of(&child);

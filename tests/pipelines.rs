@@ -60,7 +60,7 @@ const OPEN_BOX_PIPELINE: &str = r#"Pipeline(
         Load(path: "open.obj", sides: Front),
         Subdivide(patches: 40),
         FirstShot(lines: 20_000),
-        Multipath(lines: 20_000, tail: 4_000),
+        Multipath(lines: 20_000, transport: Replicas(tail: 4_000)),
         Save([Table(path: "patches.csv")]),
     ],
 )"#;
@@ -230,7 +230,7 @@ fn a_furnace_has_the_radiosity_of_the_geometric_series() {
 #[test]
 fn concentric_spheres_have_their_exact_radiosities() {
     const TEXT: &str = r#"(stages: [
-        Load(path: "concentric-spheres.glb"), FirstShot(lines: 50_000), Multipath(lines: 400_000, tail: 120_000),
+        Load(path: "concentric-spheres.glb"), FirstShot(lines: 50_000), Multipath(lines: 400_000, transport: Replicas(tail: 120_000)),
         Save([Table(path: "patches.csv")]),
     ])"#;
     // B₁ = 100 + 0.5 B₂ and B₂ = 0.8 (B₁/4 + 3 B₂/4): see scenes/README.md.

@@ -25,9 +25,11 @@ fn shown(fields: &str, stages: &str) -> (String, f64) {
 
 #[test]
 fn the_domain_of_global_lines_is_named() {
-    for (fields, name) in
-        [("", "hull"), (", domain: Box", "box"), (", domain: Sphere, replicas: 2", "sphere")]
-    {
+    for (fields, name) in [
+        ("", "hull"),
+        (", domain: Box", "box"),
+        (", domain: Sphere, transport: Replicas(count: 2)", "sphere"),
+    ] {
         let (shown, surface) = shown(fields, "");
         let expected = format!("20_000 lines through the {name} ({surface:.6} m²) in ");
         assert!(shown.contains(&expected), "{shown}");

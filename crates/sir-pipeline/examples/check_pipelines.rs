@@ -14,7 +14,8 @@ fn main() -> ExitCode {
         match Pipeline::read(Path::new(&file)) {
             Ok(pipeline) => {
                 let stages: Vec<&str> = pipeline.stages.iter().map(|s| s.action.name()).collect();
-                let outputs: Vec<String> = pipeline.outputs().map(|o| o.path.display().to_string()).collect();
+                let outputs: Vec<String> =
+                    pipeline.outputs().map(|o| o.path().display().to_string()).collect();
                 println!("{file}: {}; writes {}", stages.join(", "), outputs.join(", "));
             }
             Err(error) => {

@@ -4,8 +4,7 @@ use sha2::{Digest, Sha256};
 use sir_geom::{Material, Sides};
 use sir_radiosity::{Grouping, Model, ViewFactorSettings};
 
-use crate::plan::pipeline::{Action, Pipeline};
-use crate::plan::sensors::{Place, Sensors};
+use crate::plan::{Action, Pipeline};
 
 /// Name and version of this program.
 pub const PROGRAM: &str = concat!("sir ", env!("CARGO_PKG_VERSION"));
@@ -22,7 +21,9 @@ pub(crate) fn of_run(pipeline: &Pipeline, seed: u64, model: &Model) -> Fingerpri
     hash.update(&pipeline.text);
     // The text only names files of points.
     for stage in &pipeline.stages {
-        if let Action::Sensors(Sensors { at: Place::Points(sensors), .. }) = &stage.action {
+        if let Action::Sensors(sensors) = &stage.action
+            && let Some(sensors) = sensors.at.value.listed()
+        {
             let numbers =
                 sensors.iter().flat_map(|s| [s.position(), s.direction()]).flat_map(|v| v.to_array());
             numbers.for_each(|x| hash.update(x.to_bits().to_le_bytes()));

@@ -6,7 +6,8 @@
 //! are thin; the work lies in the crates below. What this crate adds is the way from text to files:
 //!
 //! * *All mistakes of a file at once, each at its place.* serde stops at the first error, so the file is parsed to a
-//!   tree whose nodes know their place, and decoded with a list of problems ([`text`]). A [`Pipeline`](plan::Pipeline) is valid by
+//!   tree whose nodes know their place, and read with a list of problems ([`text`]). Fields are declared once ([`plan`]): from
+//!   there come the reader, the writer and the tables of the reference. A [`Pipeline`](plan::Pipeline) is valid by
 //!   construction: the order of its stages, its numbers and its paths have been checked, and nothing is written before its scene
 //!   has been read.
 //! * *A library.* It prints nothing, knows no arguments and no signals: a [`Progress`] is told how far a run is, and a flag in
@@ -56,8 +57,8 @@
 //!
 //! | folder | from | to |
 //! |---|---|---|
-//! | [`text`] | the RON text of a pipeline | a [`plan`], or all its mistakes |
-//! | [`plan`] | | plain types: what a pipeline says |
+//! | [`text`] | RON | declared types, or all mistakes |
+//! | [`plan`] | the text of a pipeline | what it says, with every default filled in |
 //! | [`prepare`] | a plan | scene, patches, acceleration structure, places of sensors |
 //! | [`mod@check`] | a plan | memory and time that it will take |
 //! | [`mod@run`] | a plan | light, files and a [`report`]; resuming |

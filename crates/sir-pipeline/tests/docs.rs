@@ -5,11 +5,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sir_pipeline::plan::{Action, Pipeline};
+use sir_pipeline::plan::{Action, Pipeline, field_tables};
+
+fn path() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pipeline.md")
+}
 
 fn reference() -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pipeline.md");
-    fs::read_to_string(path).unwrap()
+    fs::read_to_string(path()).unwrap()
 }
 
 /// The examples, parsed in a folder that has their scene. All must be valid.
@@ -36,8 +39,8 @@ fn the_defaults_are_those_of_the_reference() {
     let actions = |p: &Pipeline| -> Vec<Action> {
         let mut actions: Vec<Action> = p.stages.iter().map(|s| s.action.clone()).collect();
         for action in &mut actions {
-            if let Action::Load { path, .. } = action {
-                *path = PathBuf::new();
+            if let Action::Load(load) = action {
+                load.path = PathBuf::new();
             }
         }
         actions
@@ -61,34 +64,99 @@ fn pipelines_of_the_project_are_valid() {
     }
 }
 
-/// An unknown field is answered with the list of those that exist; each of them must be in the reference, in the
-/// section of its owner.
+/// The tables of fields in the reference are those that the program makes, each below the comment `<!-- fields of NAME -->`. Run
+/// with `UPDATE_DOCS=1` to write them anew.
 #[test]
-fn all_fields_are_documented() {
-    let text = reference();
-    let nonsense = "(stages: [Load(zzzzzzzz: 1), Subdivide(zzzzzzzz: 1), Focus(zzzzzzzz: 1),
-        Light([Point(zzzzzzzz: 1, spread: Spot(zzzzzzzz: 1)), Point(spread: Lambertian(zzzzzzzz: 1)), Distant(zzzzzzzz: 1),
-        Panel(zzzzzzzz: 1), Sky(zzzzzzzz: 1, model: Cie(zzzzzzzz: 1)), Environment(zzzzzzzz: 1)]), FirstShot(zzzzzzzz: 1), SecondShot(zzzzzzzz: 1), Multipath(zzzzzzzz: 1),
-        Save([Image(zzzzzzzz: 1, camera: Camera(zzzzzzzz: 1)), Gltf(zzzzzzzz: 1), Table(zzzzzzzz: 1)])], zzzzzzzz: 1)";
-    let problems = Pipeline::parse(nonsense, Path::new("x.ron")).unwrap_err();
-    let lists: Vec<&str> = problems
-        .list()
-        .iter()
-        .map(|p| p.help.as_str())
-        .filter(|help| help.contains(" has the fields "))
-        .collect();
-    assert_eq!(lists.len(), 19);
-    for list in lists {
-        let (owner, fields) = list.split_once(" has the fields ").unwrap();
-        let section = match owner {
-            "`Camera`" | "`Point`" | "`Lambertian`" | "`Spot`" | "`Distant`" | "`Panel`" | "`Sky`"
-            | "`Cie`" | "`Environment`" => format!("| field of {owner}"),
-            _ => format!("# {owner}"),
-        };
-        let start = text.find(&section).unwrap_or_else(|| panic!("no section {section}"));
-        let end = text[start + 2..].find("\n#").map_or(text.len(), |end| start + 2 + end);
-        for field in fields.split('`').skip(1).step_by(2) {
-            assert!(text[start..end].contains(&format!("\n| `{field}` |")), "{owner} lacks {field}");
+fn tables_of_fields_are_those_of_the_program() {
+    let old = reference();
+    let mut new = old.clone();
+    for (owner, table) in field_tables() {
+        let mark = format!("<!-- fields of {owner} -->\n");
+        let start = new.find(&mark).unwrap_or_else(|| panic!("the reference lacks {mark}")) + mark.len();
+        let end = start
+            + new[start..]
+                .split_inclusive('\n')
+                .take_while(|line| line.starts_with('|'))
+                .map(str::len)
+                .sum::<usize>();
+        new.replace_range(start..end, &table);
+    }
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        fs::write(path(), &new).unwrap();
+    } else {
+        assert!(
+            new == old,
+            "docs/pipeline.md is not up to date: run `UPDATE_DOCS=1 cargo test -p sir-pipeline --test docs`"
+        );
+    }
+}
+
+/// All that a pipeline can say is read, written and read again: nothing is lost.
+#[test]
+fn what_is_written_is_what_was_read() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("room \"1\".obj"), "").unwrap();
+    fs::write(folder.path().join("points.txt"), "0 1 0 0 0.1 0").unwrap();
+    let multipath = [
+        "Multipath(lines: 3_000)",
+        "Multipath(lines: 3_000, transport: Replicas)",
+        "Multipath(lines: 3_000, transport: Replicas(count: 8, tail: 0), domain: Sphere)",
+    ];
+    let subdivide = ["max_area: 1.5e-7", "max_edge: 0.25", "patches: 20_000", "per_face: true"];
+    let repeat = ["times: 3", "until: RelativeError(0.001), at_most: 7", "until: Seconds(1.5)"];
+    let sky = [
+        "Sky(horizontal: 1)",
+        "Environment(radiance: (3, 2, 1))",
+        "Sky(model: Cie(type: 3, sun: (0.1, 0.7, 0)), up: (0, 2, 0), horizontal: 1e4, ground: 7)",
+    ];
+    let some = |of: &[&'static str], i: usize| of[i % of.len()];
+    for i in 0..4 {
+        let (multipath, subdivide) = (some(&multipath, i), some(&subdivide, i));
+        let mut lines = format!(
+            "FirstShot(lines: 1e6), Save(Table(path: \"direct.npy\")), SecondShot(lines: 5), {multipath}"
+        );
+        if i == 3 {
+            lines = format!(
+                "Focus(min: (0, 0, 0), max: (1, 2, 3), share: 0.5), {}",
+                lines.replace(multipath, "Multipath(lines: 1)")
+            );
+        }
+        let repeated = format!("Repeat({}, stages: [FirstShot(lines: 10), {multipath}])", some(&repeat, i));
+        for lines in [lines, repeated] {
+            let text = format!(
+                r#"Pipeline(seed: 18_446_744_073_709_551_615, units: Photometric, stages: [
+                Load(path: "room \"1\".obj", sides: Both),
+                Light([
+                    Point(position: (1, 2, 3), power: 60, spread: Spot(axis: (0, -2, 0.1), inner: 0.1, outer: 33.3)),
+                    Point(position: (1, 2, 3), intensity: (0.1, 0.2, 0.3), spread: Lambertian(axis: (1, 1, 1))),
+                    Distant(direction: (0.3, -2, 0.1), irradiance: 1),
+                    Panel(corner: (0.1, 1, 2), edges: ((1, 0, 0), (0, 0.3, 1)), exitance: 5),
+                    Panel(corner: (0.1, 1, 2), edges: ((1, 0, 0), (0, 0.3, 1)), power: 7e-9),
+                    {},
+                ]),
+                Subdivide({subdivide}), {lines},
+                Sensors(name: "a/desk", at: Plane(height: 0.75, spacing: 0.1)),
+                Sensors(name: "b", at: Plane(height: -1, spacing: 3, border: 0.5, up: (0, 0, 2)), rays: 7, error: 0.01),
+                Sensors(name: "c", at: Grid(corner: (0, 0, 0), along: (1, 0, 0), across: (0, 1, 1), spacing: 0.3)),
+                Sensors(name: "d", at: Points([(position: (1, 2, 3), direction: (0, 3, 0.1))])),
+                Sensors(name: "e", at: File("points.txt")),
+                Save([
+                    Image(path: "a/view.png", width: 320, height: 200, samples: 2, exposure: 1.6, denoise: false, camera: "b\\c"),
+                    Image(path: "two.exr", camera: 1),
+                    Image(path: "three.png", camera: Camera(eye: (0, 0, 4), target: (0, 0.1, 1), fov: 60)),
+                    Gltf(path: "x.glb"), Table(path: "t.csv"),
+                ]),
+            ])"#,
+                some(&sky, i)
+            );
+            let pipeline =
+                Pipeline::parse(&text, &folder.path().join("x.ron")).unwrap_or_else(|e| panic!("{e}"));
+            let written = pipeline.to_ron();
+            let again =
+                Pipeline::parse(&written, Path::new("/elsewhere/x.ron")).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!((again.seed, again.units), (pipeline.seed, pipeline.units));
+            assert_eq!(again.stages, pipeline.stages, "{written}");
+            assert_eq!(again.to_ron(), written);
         }
     }
 }

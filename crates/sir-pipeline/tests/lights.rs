@@ -5,8 +5,7 @@ use glam::DVec3;
 use sir_geom::{Light, LightKind, Rgb, Sky, SkyModel, Spread};
 use sir_pipeline::NoProgress;
 use sir_pipeline::check::estimate;
-use sir_pipeline::plan::Lamp;
-use sir_pipeline::plan::{Action, Pipeline};
+use sir_pipeline::plan::{Action, Pipeline, SceneLight};
 
 /// The text of a pipeline with these lights.
 fn text(lamps: &str) -> String {
@@ -21,9 +20,9 @@ fn with<T>(text: &str, f: impl FnOnce(Result<Pipeline, String>) -> T) -> T {
     f(pipeline.map_err(|e| e.to_string().replace(&format!("{}/", folder.path().display()), "")))
 }
 
-fn lamps(lamps: &str) -> Vec<Lamp> {
+fn lamps(lamps: &str) -> Vec<SceneLight> {
     with(&text(lamps), |pipeline| match &pipeline.unwrap().stages[1].action {
-        Action::Light { lamps, .. } => lamps.clone(),
+        Action::Light(light) => light.lamps.iter().map(|lamp| lamp.to_scene().unwrap()).collect(),
         other => unreachable!("{other:?}"),
     })
 }
@@ -35,7 +34,7 @@ fn problems(lamps: &str) -> String {
 #[test]
 fn all_kinds_of_lights_are_understood() {
     let (down, grey) = (-DVec3::Y, Rgb::splat);
-    let light = |kind| Lamp::Light(Light { name: String::new(), kind });
+    let light = |kind| SceneLight::Light(Light { name: String::new(), kind });
     let position = DVec3::new(1.0, 2.0, 3.0);
     let point = |intensity, spread| light(LightKind::Point { position, intensity, spread });
     let found = lamps(
@@ -54,20 +53,25 @@ fn all_kinds_of_lights_are_understood() {
             point(Rgb::new(3.0, 2.0, 1.0), Spread::Isotropic),
             point(grey(2.0 / std::f64::consts::PI), Spread::Lambertian { axis: down }),
             light(LightKind::Distant { direction: down, irradiance: grey(7.0) }),
-            Lamp::Panel { corner: DVec3::Y, edges: [DVec3::X * 2.0, DVec3::Z * 3.0], exitance: grey(2.0) },
-            Lamp::Sky(sky),
+            SceneLight::Panel {
+                corner: DVec3::Y,
+                edges: [DVec3::X * 2.0, DVec3::Z * 3.0],
+                exitance: grey(2.0)
+            },
+            SceneLight::Sky(sky),
         ]
     );
-    let Lamp::Light(Light {
-        kind: LightKind::Point { spread: Spread::Spot { inner, outer, .. }, .. }, ..
+    let SceneLight::Light(Light {
+        kind: LightKind::Point { spread: Spread::Spot { inner, outer, .. }, .. },
+        ..
     }) = found[2]
     else {
         unreachable!("{:?}", found[2]);
     };
     assert!((inner - 0.5).abs() < 1e-15 && outer.abs() < 1e-15);
-    assert_eq!(lamps("Environment(radiance: 3)"), [Lamp::Sky(Sky::everywhere(grey(3.0)).unwrap())]);
+    assert_eq!(lamps("Environment(radiance: 3)"), [SceneLight::Sky(Sky::everywhere(grey(3.0)).unwrap())]);
     let uniform = Sky::new(DVec3::Z, SkyModel::Uniform, grey(2.0), Rgb::ZERO).unwrap();
-    assert_eq!(lamps("Sky(up: (0, 0, 1), horizontal: 2)"), [Lamp::Sky(uniform)]);
+    assert_eq!(lamps("Sky(up: (0, 0, 1), horizontal: 2)"), [SceneLight::Sky(uniform)]);
 }
 
 #[test]

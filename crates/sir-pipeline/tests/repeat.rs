@@ -25,7 +25,7 @@ use sir_radiosity::MIN_REPEATS;
 
 const SHOTS: &str = "FirstShot(lines: 6_000), SecondShot(lines: 2_000)";
 const BATCHES: &str = "Multipath(lines: 8_000)";
-const REPLICAS: &str = "Multipath(lines: 8_000, replicas: 3)";
+const REPLICAS: &str = "Multipath(lines: 8_000, transport: Replicas(count: 3))";
 
 /// A pipeline with these stages that lights a furnace in a folder of its own.
 struct Case {

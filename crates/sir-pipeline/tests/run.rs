@@ -160,11 +160,11 @@ fn the_report_names_the_domain() {
     let mut irradiances = Vec::new();
     for (fields, body, surface) in [
         ("", "Hull", 24.0),
-        (", replicas: 2", "Hull", 24.0),
+        (", transport: Replicas(count: 2)", "Hull", 24.0),
         (", domain: Box", "Box", 24.0),
-        (", domain: Box, replicas: 2", "Box", 24.0),
+        (", domain: Box, transport: Replicas(count: 2)", "Box", 24.0),
         (", domain: Sphere", "Sphere", 12.0 * std::f64::consts::PI),
-        (", domain: Sphere, replicas: 2", "Sphere", 12.0 * std::f64::consts::PI),
+        (", domain: Sphere, transport: Replicas(count: 2)", "Sphere", 12.0 * std::f64::consts::PI),
     ] {
         let text = PIPELINE.replace("Multipath(lines: 20_000)", &format!("Multipath(lines: 20_000{fields})"));
         let result = run(&pipeline(folder.path(), &text), &options(folder.path())).unwrap();

@@ -165,7 +165,7 @@ Pipeline(
         FirstShot(lines: 1e6),
         Save([Image(path: "direct.png", width: 800, height: 600, samples: 4, exposure: Auto, camera: "front")]),
         SecondShot(lines: 250_000),
-        Multipath(lines: 1_000_000, transport: Replicas, replicas: 4, tail: 1000, domain: Box),
+        Multipath(lines: 1_000_000, transport: Replicas(count: 4, tail: 1000), domain: Box),
         Save([
             Image(path: "view.exr", exposure: 1.5, camera: Camera(eye: (4, 1.7, 3), target: (0, 1, 0), up: (0, 1, 0), fov: 45)),
             Gltf(path: "result.glb"),

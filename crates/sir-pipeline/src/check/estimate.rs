@@ -6,7 +6,7 @@ use crate::check::needs::{memory, needed_beside_model};
 use crate::check::probe::{StageEstimate, probe};
 use crate::error::Error;
 use crate::memory;
-use crate::plan::pipeline::{Action, Pipeline, Repeat, Until};
+use crate::plan::{Action, Pipeline, Repeat, Until};
 use crate::prepare::prepared::{Prepared, prepare};
 use crate::progress::{NoProgress, Progress};
 use crate::units::Units;

@@ -6,8 +6,7 @@ use sir_radiosity::{Model, Quanta, Repeats};
 use crate::error::Error;
 use crate::format::bytes;
 use crate::memory;
-use crate::plan::output::Content;
-use crate::plan::pipeline::{Action, Pipeline};
+use crate::plan::{Action, Output, Pipeline};
 use crate::prepare::cameras::chosen_camera;
 use crate::progress::Progress;
 use crate::run::save::{is_denoised, settings};
@@ -40,16 +39,16 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     let solution = 2 * size_of::<Rgb>();
     let repeats = pipeline.stages.iter().any(|stage| matches!(stage.action, Action::Repeat(_)));
     let tracing = tracing + if repeats { Repeats::BYTES_PER_SIDE } else { 0 };
-    let shown = pipeline.outputs().any(|o| o.content != Content::Table);
+    let shown = pipeline.outputs().any(|o| !matches!(o, Output::Table(_)));
     // Pictures for measuring have one of standard errors, too.
     let measured =
-        pipeline.outputs().any(|o| o.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
+        pipeline.outputs().any(|o| o.path().extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
     // Pictures without noise have a mesh of their own; making it takes less than it has itself.
     let denoise = pipeline.outputs().any(is_denoised);
     let displays = usize::from(shown) + usize::from(measured) + usize::from(denoise);
-    let pixels = pipeline.outputs().filter_map(|o| match &o.content {
-        Content::Image(image) => {
-            let camera = chosen_camera(&image.camera, scene);
+    let pixels = pipeline.outputs().filter_map(|o| match o {
+        Output::Image(image) => {
+            let camera = chosen_camera(image, scene);
             let size = settings(image, camera.as_ref(), 1);
             Some(size.width as usize * size.height as usize)
         }

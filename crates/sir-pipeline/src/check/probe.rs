@@ -9,7 +9,8 @@ use sir_radiosity::{
     StageTotals,
 };
 
-use crate::plan::pipeline::{Action, Pipeline};
+use crate::plan;
+use crate::plan::{Action, Pipeline};
 use crate::prepare::prepared::Prepared;
 
 /// How long the lines of a stage are tried to learn their rate.
@@ -38,21 +39,21 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
     for stage in pipeline.flat_stages() {
         let name = stage.action.name();
         match stage.action {
-            Action::FirstShot { lines } => {
+            Action::FirstShot(plan::FirstShot { lines }) => {
                 let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
                 let stage = FirstShot::begin(settings, (), &OneWorker)?;
                 let (rate, totals) = try_stage(&stage, lines);
                 shot = Some(stage.finish(totals)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
-            Action::SecondShot { lines } => {
+            Action::SecondShot(plan::SecondShot { lines }) => {
                 let Some(shot) = &shot else { continue };
                 let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
                 let stage = SecondShot::begin(settings, shot.clone(), &OneWorker)?;
                 let (rate, _) = try_stage(&stage, stage.round().end);
                 estimates.push(StageEstimate { name, lines, rate });
             }
-            Action::Multipath { lines, domain, .. } => {
+            Action::Multipath(plan::Multipath { lines, domain, .. }) => {
                 let Some(shot) = shot.take() else { continue };
                 // Both transports trace the same lines at about the same rate.
                 let domain = domain.lines_around(&model.scene, focus);

@@ -7,7 +7,7 @@ use sir_geom::{Rgb, Scene};
 use crate::check::estimate::{Estimate, Repeated};
 use crate::check::probe::StageEstimate;
 use crate::format::{bytes, duration, grouped};
-use crate::plan::pipeline::Until;
+use crate::plan::Until;
 use crate::prepare::prepared::Prepared;
 use crate::prepare::sources::kinds;
 

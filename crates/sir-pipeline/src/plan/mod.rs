@@ -1,13 +1,39 @@
-//! What a pipeline says, with every default filled in: plain types.
+//! What a pipeline says, with every default filled in. Each file declares the fields of a stage, or of a part of one: from this it is
+//! read, written and documented.
 
-pub(crate) mod lights;
-pub(crate) mod output;
+pub(crate) mod focus;
+pub(crate) mod image;
+pub(crate) mod light;
+pub(crate) mod lines;
+pub(crate) mod load;
+pub(crate) mod multipath;
+mod order;
+pub(crate) mod panel;
 pub(crate) mod pipeline;
+pub(crate) mod point;
+mod points_file;
+mod reference;
+pub(crate) mod save;
+pub(crate) mod scene_light;
 pub(crate) mod sensors;
-pub(crate) mod transport;
+pub(crate) mod sky;
+pub(crate) mod stage;
+pub(crate) mod subdivide;
 
-pub use lights::Lamp;
-pub use output::{CameraChoice, Content, Image, Output};
-pub use pipeline::{Action, Pipeline, Repeat, Stage, Until};
-pub use sensors::{Grid, Place, Plane, Sensors};
-pub use transport::{DomainKind, Transport};
+pub use focus::Focus;
+pub use image::{Camera, CameraChoice, Image};
+pub use light::{Distant, Lamp, Light};
+pub use lines::{FirstShot, SecondShot};
+pub use load::Load;
+pub use multipath::{DomainKind, Multipath, Replicas, Transport};
+pub use panel::{Panel, PanelStrength};
+pub use pipeline::Pipeline;
+pub use point::{Lambertian, Point, PointStrength, Spot, Spread};
+pub use points_file::PointsFile;
+pub use reference::field_tables;
+pub use save::{Gltf, Output, Save, Table};
+pub use scene_light::SceneLight;
+pub use sensors::{Grid, Place, Plane, Points, SensorPoint, Sensors};
+pub use sky::{Cie, Environment, Sky, SkyModel};
+pub use stage::{Action, Repeat, Stage, Until};
+pub use subdivide::Subdivide;

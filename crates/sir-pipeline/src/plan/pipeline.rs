@@ -1,23 +1,45 @@
 //! What a pipeline file says, with every default filled in.
 
-use std::ops::Range;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use sir_geom::{BoundingBox, SidesPolicy};
-use sir_mesh::Subdivision;
-
-use crate::plan::lights::Lamp;
-use crate::plan::output::Output;
-use crate::plan::sensors::Sensors;
-use crate::plan::transport::{DomainKind, Transport};
+use crate::error::Error;
+use crate::plan::save::{Output, Save};
+use crate::plan::stage::{Action, Stage, StageList};
+use crate::text::diagnostic::{Diagnostic, Diagnostics};
+use crate::text::field::Format as _;
+use crate::text::formats::{Choice, count};
+use crate::text::reader::Reader;
+use crate::text::record::{Body as _, Record as _, record};
+use crate::text::ron_tree;
+use crate::text::ron_tree::Value;
 use crate::units::Units;
+
+/// The most bytes of a pipeline file. Thousands of outputs fit in.
+const MAX_BYTES: u64 = 1 << 18;
+
+const UNITS: Choice<Units> =
+    Choice(&[("Radiometric", Units::Radiometric), ("Photometric", Units::Photometric)]);
+
+record! {
+    /// What a pipeline file says.
+    pub(crate) struct Content as "Pipeline" {
+        /// Seed of all random numbers. Runs with different seeds are independent; `--seed` on the command line takes precedence.
+        pub seed: u64 = count(0, u64::MAX, 1).or(1);
+        /// What the numbers are: watts, or what the eye sees of them. Photometric ones read lumens (lm) for W, lux (lx) for W/m²,
+        /// candelas for W/sr and cd/m² for W/(m² sr); nothing is converted.
+        pub units: Units = UNITS.or(Units::Radiometric);
+        /// In the order in which they run.
+        pub stages: Vec<Stage> = StageList::ALL.required();
+    }
+}
 
 /// A valid pipeline: its stages are in a possible order, its numbers are in range and its inputs exist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pipeline {
     /// The file, as it was named.
     pub path: PathBuf,
-    /// What the file says.
+    /// The text of the file.
     pub text: String,
     /// Seed of all random numbers. Default 1.
     pub seed: u64,
@@ -27,150 +49,95 @@ pub struct Pipeline {
     pub stages: Vec<Stage>,
 }
 
-/// A stage, and where the file asks for it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stage {
-    /// What to do.
-    pub action: Action,
-    /// Bytes of the pipeline's text.
-    pub span: Range<usize>,
-}
-
-/// What a stage does.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Action {
-    /// Reads a scene.
-    Load {
-        /// The scene file (glTF, GLB or OBJ): the path in the pipeline, joined to the folder of its file.
-        path: PathBuf,
-        /// Which sides of surfaces take part.
-        sides: SidesPolicy,
-    },
-    /// Adds lights to the scene.
-    Light {
-        /// The lights.
-        lamps: Vec<Lamp>,
-        /// What the file says of them.
-        text: String,
-    },
-    /// Cuts the triangles into patches.
-    Subdivide(Subdivision),
-    /// Says which part of the scene matters.
-    Focus {
-        /// The box around it.
-        bounds: BoundingBox,
-        /// Share of the lines that are drawn through it: from 0 to 0.95. Default three quarters.
-        share: f64,
-    },
-    /// Sends the power of the light sources along local lines.
-    FirstShot {
-        /// How many lines, at least 1.
-        lines: u64,
-    },
-    /// Lets the brightest patches send what they reflect along local lines, too.
-    SecondShot {
-        /// How many lines, at least 1.
-        lines: u64,
-    },
-    /// Distributes the reflected light along global lines.
-    Multipath {
-        /// How many lines, at least 1.
-        lines: u64,
-        /// How they pass on the light.
-        transport: Transport,
-        /// What they are drawn through.
-        domain: DomainKind,
-    },
-    /// Runs stages of lines again and again, for the mean of independent results.
-    Repeat(Repeat),
-    /// Measures irradiance at points.
-    Sensors(Sensors),
-    /// Writes files.
-    Save(Vec<Output>),
-}
-
-/// Stages that are run again and again.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Repeat {
-    /// How often.
-    pub until: Until,
-    /// Not more often than this, in any case: at least 1. Default: no limit.
-    pub at_most: Option<u64>,
-    /// A first shot, and what may follow it but for `Save`.
-    pub stages: Vec<Stage>,
-}
-
-/// When there have been enough repeats.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Until {
-    /// After so many: at least 1.
-    Times(u64),
-    /// When the relative error of the mean is not above this, in any band: above 0.
-    RelativeError(f64),
-    /// When another one would end later than after so many seconds: above 0.
-    Seconds(f64),
-}
-
-impl Action {
-    /// The name of the stage in a pipeline file.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Load { .. } => "Load",
-            Self::Light { .. } => "Light",
-            Self::Subdivide(_) => "Subdivide",
-            Self::Focus { .. } => "Focus",
-            Self::FirstShot { .. } => "FirstShot",
-            Self::SecondShot { .. } => "SecondShot",
-            Self::Multipath { .. } => "Multipath",
-            Self::Repeat(_) => "Repeat",
-            Self::Sensors(_) => "Sensors",
-            Self::Save(_) => "Save",
-        }
-    }
-
-    /// How many lines it has, those of a `Repeat` once.
-    #[must_use]
-    pub fn lines(&self) -> u64 {
-        match self {
-            Self::FirstShot { lines } | Self::SecondShot { lines } | Self::Multipath { lines, .. } => *lines,
-            Self::Repeat(repeat) => repeat.stages.iter().map(|stage| stage.action.lines()).sum(),
-            Self::Load { .. }
-            | Self::Light { .. }
-            | Self::Subdivide(_)
-            | Self::Focus { .. }
-            | Self::Sensors(_)
-            | Self::Save(_) => 0,
-        }
-    }
-}
-
 impl Pipeline {
-    /// All stages, with those of a `Repeat`, once, in its place.
-    pub fn flat_stages(&self) -> impl Iterator<Item = &Stage> {
-        self.stages.iter().flat_map(|stage| match &stage.action {
-            Action::Repeat(repeat) => repeat.stages.as_slice(),
-            _ => std::slice::from_ref(stage),
-        })
+    /// Reads the pipeline file `path`.
+    ///
+    /// # Errors
+    ///
+    /// All problems of the file, or why it cannot be read.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let mut bytes = Vec::new();
+        // Also what never ends can be given as a file.
+        std::fs::File::open(path)
+            .and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
+            .map_err(|source| Error::ReadPipeline { path: path.to_owned(), source })?;
+        if bytes.len() as u64 > MAX_BYTES {
+            return Err(Error::LongPipeline { path: path.to_owned(), most: MAX_BYTES });
+        }
+        let text = String::from_utf8(bytes).map_err(|_| Error::NotText { path: path.to_owned() })?;
+        Ok(Self::parse(&text, path)?)
     }
 
-    /// All files that the pipeline asks for, in the order of the file.
+    /// Reads the text of a pipeline file. Paths in it are relative to the folder of `path`.
+    ///
+    /// # Errors
+    ///
+    /// All problems of the text, each with its place and what to write instead. A missing input file is one.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, Diagnostics> {
+        // A comment in the last line must end before the file does, or `ron` refuses it.
+        let source = format!("{text}\n");
+        let mut reader = Reader::new(&source, path.parent().unwrap_or(Path::new("")));
+        let content = match ron_tree::parse(&source) {
+            Ok(root)
+                if matches!(root.name(), "" | Content::NAME)
+                    && matches!(root.value, Value::Fields(_) | Value::Items(_)) =>
+            {
+                Content::read(&mut reader, &root)
+            }
+            Ok(root) => {
+                let message = format!("the file must hold `Pipeline(…)`, but it holds {}", root.kind());
+                reader.problem(root.text, message, "write `Pipeline(stages: […])`");
+                None
+            }
+            Err(problem) => {
+                reader.problems.push(problem);
+                None
+            }
+        };
+        match content {
+            Some(Content { seed, units, stages }) if reader.problems.is_empty() => {
+                Ok(Self { path: path.to_owned(), text: text.to_owned(), seed, units, stages })
+            }
+            _ => Err(Diagnostics::new(path, text, reader.problems)),
+        }
+    }
+
+    /// Returns the text of a file that says the same as this pipeline, whatever its own text is. Input paths are written as they are
+    /// here: joined to the folder of the file.
+    #[must_use]
+    pub fn to_ron(&self) -> String {
+        let content = Content { seed: self.seed, units: self.units, stages: self.stages.clone() };
+        let fields = content.write_fields().into_iter();
+        let fields: String = fields.map(|(name, value)| format!("    {name}: {value},\n")).collect();
+        format!("{}(\n{fields})\n", Content::NAME)
+    }
+
+    /// Returns problems of this pipeline, ready to be shown.
+    #[must_use]
+    pub fn diagnostics(&self, problems: Vec<Diagnostic>) -> Diagnostics {
+        Diagnostics::new(&self.path, &self.text, problems)
+    }
+
+    /// Returns all stages, with those of a `Repeat`, once, in its place.
+    pub fn flat_stages(&self) -> impl Iterator<Item = &Stage> {
+        self.stages.iter().flat_map(Stage::flat)
+    }
+
+    /// Returns all files that the pipeline asks for, in the order of the file.
     pub fn outputs(&self) -> impl Iterator<Item = &Output> {
         self.stages.iter().flat_map(|stage| match &stage.action {
-            Action::Save(outputs) => outputs.as_slice(),
+            Action::Save(Save { outputs }) => outputs.as_slice(),
             _ => &[],
         })
     }
 
-    /// The scene file.
+    /// Returns the scene file.
     #[must_use]
     pub fn scene_path(&self) -> &Path {
-        self.stages
-            .iter()
-            .find_map(|stage| match &stage.action {
-                Action::Load { path, .. } => Some(path.as_path()),
-                _ => None,
-            })
-            .unwrap_or(Path::new(""))
+        let path = self.stages.iter().find_map(|stage| match &stage.action {
+            Action::Load(load) => Some(load.path.as_path()),
+            _ => None,
+        });
+        path.unwrap_or(Path::new(""))
     }
 }

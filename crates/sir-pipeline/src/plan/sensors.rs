@@ -1,63 +1,160 @@
 //! The stage `Sensors`: irradiance at points and on grids.
 
-use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Component, PathBuf};
 
 use glam::DVec3;
 use sir_radiosity::{Sensor, SensorSettings};
 
-/// Where irradiance is measured, and how.
+use crate::plan::points_file::PointsFile;
+use crate::text::field::Format as _;
+use crate::text::formats::{Direction, Text, Vector, count, number, positive};
+use crate::text::reader::{Fields, Reader};
+use crate::text::record::{Body, choice, list_items, named, record};
+use crate::text::ron_tree::Node;
+use crate::text::span::{Spanned, WithSpan};
+
+const DEFAULT_RAYS: u64 = 16_384;
+/// Most rays of a sensor: all patches that they meet are remembered for the error.
+const MAX_RAYS: u64 = 10_000_000;
+
+record! {
+    /// Measures irradiance at points.
+    pub struct Sensors, check Sensors::claim_outputs {
+        /// What they are called, and the names of their files in the run directory.
+        pub name: String = Text("desk").required();
+        /// Where they are.
+        pub at: Spanned<Place> = WithSpan(named("Plane(height: 0.75, spacing: 0.25)")).required();
+        /// Rays of each sensor over its hemisphere, rounded up to a multiple of 32; as many are aimed at emitting surfaces, if there
+        /// are any.
+        pub rays: u64 = count(1, MAX_RAYS, DEFAULT_RAYS).or(DEFAULT_RAYS);
+        /// Relative standard error at which a sensor is done with fewer rays, from 2,048 on; `0.005` is half a per cent. The errors
+        /// of patches do not count.
+        pub error: Option<f64> = positive(0.005).optional("none");
+    }
+}
+
+choice! {
+    /// Where sensors are.
+    pub enum Place as "place" {
+        /// At points that the pipeline lists.
+        Points(Points),
+        /// At points that a file lists.
+        File(PointsFile),
+        /// In the middle of the cells of a parallelogram.
+        Grid(Grid),
+        /// In the middle of the cells of a horizontal plane through a room.
+        Plane(Plane),
+    }
+}
+
+/// Points that the pipeline lists: at least one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sensors {
-    /// Their table, in the run directory.
-    pub table: PathBuf,
-    /// Their picture in false colours, if they are on a grid.
-    pub map: Option<PathBuf>,
-    /// What they are called.
-    pub name: String,
-    /// Where they are.
-    pub at: Place,
-    /// How carefully is measured. Default: 16,384 rays, whatever the error.
-    pub settings: SensorSettings,
-    /// Bytes of the pipeline's text that say where they are.
-    pub span: Range<usize>,
+pub struct Points(pub Vec<SensorPoint>);
+
+record! {
+    /// A point at which irradiance is measured.
+    pub struct SensorPoint as "Points" {
+        /// Where it is.
+        pub position: DVec3 = Vector([1.0, 0.75, 2.0]).required().unit("m");
+        /// The normal of the surface whose irradiance is measured.
+        pub direction: DVec3 = Direction([0.0, 1.0, 0.0]).required();
+    }
 }
 
-/// Where sensors are.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Place {
-    /// At points that the pipeline or a file lists: at least one.
-    Points(Vec<Sensor>),
-    /// In the middle of the cells of a parallelogram.
-    Grid(Grid),
-    /// In the middle of the cells of a horizontal plane through a room.
-    Plane(Plane),
+record! {
+    /// A parallelogram, cut into cells.
+    pub struct Grid, check Grid::check {
+        /// One of its corners.
+        pub corner: DVec3 = Vector([0.0, 0.75, 2.0]).required().unit("m");
+        /// The edge from there that is shown from left to right.
+        pub along: DVec3 = Vector([2.0, 0.0, 0.0]).required().unit("m");
+        /// The edge from there that is shown from the bottom to the top.
+        pub across: DVec3 = Vector([0.0, 0.0, -1.0]).required().unit("m");
+        /// About the distance of neighboring sensors: edges are cut into whole cells.
+        pub spacing: f64 = positive(0.25).required().unit("m");
+        /// Where the sensors look.
+        pub direction: Option<DVec3> = Direction([0.0, 1.0, 0.0]).optional("the normal `along × across`");
+    }
 }
 
-/// A parallelogram, cut into cells.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
-    /// One of its corners.
-    pub corner: DVec3,
-    /// The edge from there that is shown from left to right.
-    pub along: DVec3,
-    /// The edge from there that is shown from the bottom to the top.
-    pub across: DVec3,
-    /// About the distance of neighbouring sensors \[m\]: edges are cut into whole cells.
-    pub spacing: f64,
-    /// Where the sensors look. Default: the normal from which the picture is seen.
-    pub direction: DVec3,
+record! {
+    /// The work plane of a room.
+    pub struct Plane {
+        /// Height above the lowest point of the scene.
+        pub height: f64 = number(0.75).required().unit("m");
+        /// About the distance of neighboring sensors: edges are cut into whole cells.
+        pub spacing: f64 = positive(0.25).required().unit("m");
+        /// Distance that is kept from the outline of the scene. EN 12464-1 recommends 0.5.
+        pub border: f64 = number(0.5).with_range(|x| x >= 0.0, "from 0").or(0.0).unit("m");
+        /// Which way is up, where the sensors look.
+        pub up: Option<DVec3> = Direction([0.0, 1.0, 0.0]).optional("what is up in the scene");
+    }
 }
 
-/// The work plane of a room.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
-    /// Height above the lowest point of the scene \[m\].
-    pub height: f64,
-    /// About the distance of neighbouring sensors \[m\].
-    pub spacing: f64,
-    /// Distance that is kept from the outline of the scene \[m\]. Default 0.
-    pub border: f64,
-    /// Which way is up, where the sensors look. Default: what is up in the scene.
-    pub up: Option<DVec3>,
+impl Sensors {
+    /// Returns the table of the sensors, in the run directory.
+    #[must_use]
+    pub fn table(&self) -> PathBuf {
+        self.output("csv")
+    }
+
+    /// Returns the picture in false colors, in the run directory, if the sensors are on a grid.
+    #[must_use]
+    pub fn map(&self) -> Option<PathBuf> {
+        matches!(self.at.value, Place::Grid(_) | Place::Plane(_)).then(|| self.output("png"))
+    }
+
+    /// Returns how carefully is measured.
+    #[must_use]
+    pub fn settings(&self) -> SensorSettings {
+        SensorSettings { rays: self.rays, error: self.error.unwrap_or(0.0) }
+    }
+
+    fn output(&self, extension: &str) -> PathBuf {
+        let path = PathBuf::from(format!("{}.{extension}", self.name));
+        path.components().filter(|c| matches!(c, Component::Normal(_))).collect()
+    }
+
+    fn claim_outputs<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>) {
+        let Some(node) = fields.get("name") else { return };
+        for extension in ["csv", "png"].into_iter().take(if self.map().is_some() { 2 } else { 1 }) {
+            reader.claim_output(node, &format!("{}.{extension}", self.name));
+        }
+    }
+}
+
+impl Place {
+    /// Returns the points that the pipeline or a file lists.
+    #[must_use]
+    pub fn listed(&self) -> Option<Vec<Sensor>> {
+        match self {
+            Self::Points(Points(points)) => {
+                Some(points.iter().filter_map(|p| Sensor::new(p.position, p.direction)).collect())
+            }
+            Self::File(file) => Some(file.sensors.clone()),
+            Self::Grid(_) | Self::Plane(_) => None,
+        }
+    }
+}
+
+impl Body for Points {
+    fn read<'a>(reader: &mut Reader<'a>, node: &Node<'a>) -> Option<Self> {
+        let items = list_items(reader, node, "points", "(position: (1, 0.75, 2), direction: (0, 1, 0))")?;
+        let points: Vec<_> = items.iter().map(|item| SensorPoint::read(reader, item)).collect();
+        points.into_iter().collect::<Option<_>>().map(Self)
+    }
+
+    fn write(&self, name: &str) -> String {
+        let points: Vec<String> = self.0.iter().map(|point| point.write("")).collect();
+        format!("{name}([{}])", points.join(", "))
+    }
+}
+
+impl Grid {
+    fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
+        if self.along.cross(self.across).try_normalize().is_none() {
+            let help = "make `along` and `across` edges of different directions, each with a length";
+            reader.problem(fields.place, "this grid has no area", help);
+        }
+    }
 }

@@ -2,8 +2,7 @@
 
 use sir_geom::{Camera, Scene};
 
-use crate::plan::output::{CameraChoice, Content};
-use crate::plan::pipeline::Pipeline;
+use crate::plan::{CameraChoice, Image, Output, Pipeline};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::suggest::did_you_mean;
 
@@ -17,20 +16,19 @@ pub(crate) fn camera_problems(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnos
     };
     let mut problems = Vec::new();
     for output in pipeline.outputs() {
-        let Content::Image(image) = &output.content else { continue };
-        match &image.camera {
-            CameraChoice::Number { number, span } if *number >= names.len() => problems.push(Diagnostic {
-                span: span.clone(),
+        let Output::Image(Image { camera: Some(camera), .. }) = output else { continue };
+        let span = camera.span.0.clone();
+        match &camera.value {
+            CameraChoice::Number(number) if *number as usize >= names.len() => problems.push(Diagnostic {
+                span,
                 message: format!("the scene has no camera number {number}"),
                 help: known.clone(),
             }),
-            CameraChoice::Name { name, span } if !names.contains(&name.as_str()) => {
-                problems.push(Diagnostic {
-                    span: span.clone(),
-                    message: format!("the scene has no camera \"{name}\""),
-                    help: did_you_mean(name, &names).unwrap_or_else(|| known.clone()),
-                })
-            }
+            CameraChoice::Name(name) if !names.contains(&name.as_str()) => problems.push(Diagnostic {
+                span,
+                message: format!("the scene has no camera \"{name}\""),
+                help: did_you_mean(name, &names).unwrap_or_else(|| known.clone()),
+            }),
             _ => {}
         }
     }
@@ -39,12 +37,12 @@ pub(crate) fn camera_problems(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnos
 
 /// The camera of the scene or the pipeline that is meant; `None` if the scene has none and nothing was asked for.
 #[must_use]
-pub(crate) fn chosen_camera(choice: &CameraChoice, scene: &Scene) -> Option<Camera> {
+pub(crate) fn chosen_camera(image: &Image, scene: &Scene) -> Option<Camera> {
     let cameras = scene.cameras();
-    match choice {
-        CameraChoice::Default => cameras.first().cloned(),
-        CameraChoice::Number { number, .. } => cameras.get(*number).cloned(),
-        CameraChoice::Name { name, .. } => cameras.iter().find(|c| c.name == *name).cloned(),
-        CameraChoice::Own(camera) => Some(camera.clone()),
+    match image.camera.as_ref().map(|camera| &camera.value) {
+        None => cameras.first().cloned(),
+        Some(CameraChoice::Number(number)) => cameras.get(*number as usize).cloned(),
+        Some(CameraChoice::Name(name)) => cameras.iter().find(|c| c.name == *name).cloned(),
+        Some(CameraChoice::Own(camera)) => camera.to_scene(),
     }
 }

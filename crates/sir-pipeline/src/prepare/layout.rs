@@ -5,7 +5,7 @@ use sir_accel::{Ray, Tracer};
 use sir_geom::{Line, Scene};
 use sir_radiosity::{Model, SENSOR_OFFSET, Sensor};
 
-use crate::plan::sensors::{Grid, Place, Plane};
+use crate::plan::{Grid, Place, Plane};
 
 /// Most cells of a grid.
 const MOST: f64 = 1e6;
@@ -36,7 +36,9 @@ impl Layout {
     /// The sensors of a place; an error says why there are none, and what to do.
     pub(crate) fn new(place: &Place, model: &Model, up: DVec3) -> Result<Self, (String, String)> {
         match place {
-            Place::Points(sensors) => Ok(Self { sensors: sensors.clone(), cells: None }),
+            Place::Points(_) | Place::File(_) => {
+                Ok(Self { sensors: place.listed().unwrap_or_default(), cells: None })
+            }
             Place::Grid(grid) => grid.layout(&mut |_| true),
             Place::Plane(plane) => plane.layout(model, up),
         }
@@ -47,6 +49,7 @@ impl Grid {
     /// A sensor in the middle of every cell that is `wanted`.
     fn layout(&self, wanted: &mut dyn FnMut(&Sensor) -> bool) -> Result<Layout, (String, String)> {
         let Self { corner, along, across, spacing, direction } = *self;
+        let direction = direction.unwrap_or_else(|| along.cross(across));
         let size = DVec2::new(along.length(), across.length());
         let counts = (size / spacing).round().max(DVec2::ONE);
         if counts.x * counts.y > MOST {
@@ -90,7 +93,7 @@ impl Plane {
         let corner =
             (left + self.border) * along + (bottom + self.border) * across + (lowest + self.height) * up;
         let (along, across) = (size.x * along, size.y * across);
-        let grid = Grid { corner, along, across, spacing: self.spacing, direction: up };
+        let grid = Grid { corner, along, across, spacing: self.spacing, direction: Some(up) };
         let mut tracer = model.accel.tracer();
         let layout = grid.layout(&mut |sensor| is_inside(sensor, model, &mut tracer))?;
         if layout.sensors.is_empty() {
@@ -159,17 +162,17 @@ mod tests {
     #[test]
     fn a_plane_stays_in_the_room_and_out_of_the_furniture() {
         let (model, plane) = (room(), Plane { height: 0.3, spacing: 0.1, border: 0.0, up: None });
-        let count = |plane: Plane| plane.layout(&model, DVec3::Y).map(|layout| layout.sensors.len());
+        let count = |plane: &Plane| plane.layout(&model, DVec3::Y).map(|layout| layout.sensors.len());
         // 8 m² without the square metre of the table; on and above its top, all.
-        assert_eq!(count(plane), Ok(700));
-        assert_eq!(count(Plane { height: 0.7, ..plane }), Ok(800));
-        assert_eq!(count(Plane { height: 1.0, ..plane }), Ok(800));
+        assert_eq!(count(&plane), Ok(700));
+        assert_eq!(count(&Plane { height: 0.7, ..plane }), Ok(800));
+        assert_eq!(count(&Plane { height: 1.0, ..plane }), Ok(800));
         // Half a metre from the outline: 1.5 by 2 m and 1.5 by 0.5 m, without the table.
-        assert_eq!(count(Plane { border: 0.5, ..plane }), Ok(275));
+        assert_eq!(count(&Plane { border: 0.5, ..plane }), Ok(275));
         for bad in
             [Plane { height: 2.5, ..plane }, Plane { border: 1.5, ..plane }, Plane { spacing: 1e-3, ..plane }]
         {
-            assert!(count(bad).is_err(), "{bad:?}");
+            assert!(count(&bad).is_err(), "{bad:?}");
         }
     }
 

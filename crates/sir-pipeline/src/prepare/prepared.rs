@@ -11,11 +11,10 @@ use sir_radiosity::{FocusSides, Model, ModelError, SolveError, Source, emits, so
 use sir_view::guess_up;
 
 use crate::error::Error;
-use crate::plan::lights::Lamp;
 use crate::prepare::cameras::camera_problems;
 use crate::text::diagnostic::Diagnostic;
 
-use crate::plan::pipeline::{Action, Pipeline, Stage};
+use crate::plan::{Action, Pipeline, SceneLight, Stage};
 use crate::prepare::layout::Layout;
 use crate::progress::Progress;
 use crate::stopwatch::Stopwatch;
@@ -51,21 +50,27 @@ pub struct Prepared {
 /// cut as the pipeline says; the latter three are shown with their place in the pipeline.
 pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared, Error> {
     let mut options = LoadOptions::default();
-    let mut all_lamps: &[Lamp] = &[];
+    let mut lights: Vec<SceneLight> = Vec::new();
     let mut subdivision = (Subdivision::PerTriangle, 0..0);
     let mut asked = None;
     for stage in &pipeline.stages {
         match &stage.action {
-            Action::Load { sides, .. } => options.sides = *sides,
-            Action::Light { lamps, .. } => all_lamps = lamps,
-            Action::Subdivide(how) => subdivision = (*how, stage.span.clone()),
-            Action::Focus { bounds, share } => asked = Some((bounds, *share)),
+            Action::Load(load) => options.sides = load.sides,
+            Action::Light(light) => {
+                for lamp in &light.lamps {
+                    lights.push(
+                        lamp.to_scene().ok_or_else(|| pipeline.diagnostics(vec![impossible_light(stage)]))?,
+                    );
+                }
+            }
+            Action::Subdivide(subdivide) => subdivision = (subdivide.how, stage.span.0.clone()),
+            Action::Focus(focus) => asked = Some((focus.bounds(), focus.share)),
             _ => {}
         }
     }
     let watch = Stopwatch::start();
     let built = sir_geom::load_with(pipeline.scene_path(), &options, |builder| {
-        all_lamps.iter().for_each(|lamp| lamp.add_to(builder));
+        lights.iter().for_each(|light| light.add_to(builder));
         asked.iter().for_each(|(bounds, _)| builder.split_at(bounds));
     })?;
     let load_seconds = watch.seconds();
@@ -78,7 +83,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     let mut problems = camera_problems(pipeline, &built.scene);
     let watch = Stopwatch::start();
     let (how, span) = subdivision;
-    let focus = asked.map(|(&bounds, share)| {
+    let focus = asked.map(|(bounds, share)| {
         let focus = Focus::new(bounds, share, built.scene.bounding_box(), built.scene.bounding_sphere());
         focus.ok_or_else(|| pipeline.diagnostics(nothing_inside(pipeline, &built.scene)))
     });
@@ -105,14 +110,23 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     }
 }
 
+/// What is wrong with a light that was not read from a file.
+fn impossible_light(stage: &Stage) -> Diagnostic {
+    Diagnostic {
+        span: stage.span.0.clone(),
+        message: "a light of this stage is impossible".into(),
+        help: "give directions a length, a spot an `outer` not below its `inner`, and colors that are not negative".into(),
+    }
+}
+
 /// That nothing is in the focus, said at its stage.
 fn nothing_inside(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
     let around = scene.bounding_box();
-    let is_focus = |stage: &&Stage| matches!(stage.action, Action::Focus { .. });
+    let is_focus = |stage: &&Stage| matches!(stage.action, Action::Focus(_));
     let stages = pipeline.stages.iter().filter(is_focus);
     stages
         .map(|stage| Diagnostic {
-            span: stage.span.clone(),
+            span: stage.span.0.clone(),
             message: "no patch of the scene lies in the box of `Focus`".into(),
             help: format!("the scene reaches from {:.4} to {:.4}, in its own units", around.min, around.max),
         })
@@ -128,9 +142,11 @@ fn layouts(
     let (mut layouts, mut problems) = (BTreeMap::new(), Vec::new());
     for (number, stage) in pipeline.stages.iter().enumerate() {
         let Action::Sensors(sensors) = &stage.action else { continue };
-        match Layout::new(&sensors.at, model, up) {
+        match Layout::new(&sensors.at.value, model, up) {
             Ok(layout) => drop(layouts.insert(number, layout)),
-            Err((message, help)) => problems.push(Diagnostic { span: sensors.span.clone(), message, help }),
+            Err((message, help)) => {
+                problems.push(Diagnostic { span: sensors.at.span.0.clone(), message, help });
+            }
         }
     }
     if problems.is_empty() { Ok(layouts) } else { Err(problems) }

@@ -18,7 +18,7 @@ use crate::error::Error;
 use crate::fingerprint;
 use crate::fingerprint::PROGRAM;
 use crate::memory::largest_peak;
-use crate::plan::pipeline::Pipeline;
+use crate::plan::Pipeline;
 use crate::prepare::prepared::{Prepared, prepare};
 use crate::progress::{NoProgress, Progress, of_rank};
 use crate::ranks::{agree, same_everywhere};

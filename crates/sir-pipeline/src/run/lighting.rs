@@ -3,12 +3,11 @@
 use sir_lines::{Focus, GlobalLines, LocalLines};
 use sir_parallel::{Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
-    BatchSettings, Batches, FirstShot, FocusSides, Model, Multipath, MultipathSettings, PowerUnit, Quanta,
-    Received, SecondShot, Shot, ShotSettings, Solution, Transported,
+    FirstShot, FocusSides, Model, PowerUnit, Quanta, Received, SecondShot, Shot, ShotSettings, Solution,
+    Transported,
 };
 
-use crate::plan::pipeline::Action;
-use crate::plan::transport::{DomainKind, Transport};
+use crate::plan::{Action, DomainKind};
 use crate::prepare::prepared::Prepared;
 use crate::report::lines::Facts;
 use crate::report::result::{DomainReport, ErrorsReport, LightReport};
@@ -58,34 +57,22 @@ impl<'m> Lighting<'m> {
     ) -> Result<Option<Done>, RunError> {
         let model = self.model;
         let shot = |lines| ShotSettings::new(model, LocalLines { count: lines, focus: self.focus }, seed);
-        let done = match *action {
-            Action::FirstShot { lines } => {
+        let done = match action {
+            Action::FirstShot(stage) => {
                 let start = saved.map_or(Start::Fresh(()), Start::Resumed);
                 self.light = Light::None;
-                self.shot(executor.run::<FirstShot<'_>>(shot(lines), start)?)
+                self.shot(executor.run::<FirstShot<'_>>(shot(stage.lines), start)?)
             }
-            Action::SecondShot { lines } => {
-                let settings = shot(lines);
+            Action::SecondShot(stage) => {
+                let settings = shot(stage.lines);
                 let Some(start) = self.start(saved) else { return Ok(None) };
                 self.shot(executor.run::<SecondShot<'_>>(settings, start)?)
             }
-            Action::Multipath { lines, transport, domain } => {
+            Action::Multipath(stage) => {
                 let Some(start) = self.start(saved) else { return Ok(None) };
-                let domain = self.global_lines(domain);
+                let domain = self.global_lines(stage.domain);
                 let report = DomainReport::of(&domain);
-                let run = match transport {
-                    Transport::Batches => {
-                        let settings = BatchSettings { model, domain, lines, seed };
-                        executor.run::<Batches<'_>>(settings, start)?
-                    }
-                    Transport::Replicas { replicas, tail } => {
-                        // A pipeline with a focus has none of these.
-                        let domain = domain.domain().clone();
-                        let settings = MultipathSettings { model, domain, lines, tail, replicas, seed };
-                        executor.run::<Multipath<'_>>(settings, start)?
-                    }
-                };
-                self.transport(run, report)
+                self.transport(stage.run(model, domain, seed, start, executor)?, report)
             }
             _ => return Ok(None),
         };

@@ -9,7 +9,7 @@ use sir_radiosity::{FocusSides, Model, PowerUnit, RepeatedTotals, Repeats, Solut
 use crate::error::Error;
 use crate::format::duration;
 use crate::format::grouped;
-use crate::plan::pipeline::{Repeat, Until};
+use crate::plan::{Repeat, Until};
 use crate::progress::PAUSE;
 use crate::ranks::agree;
 use crate::report::light::relative_error;

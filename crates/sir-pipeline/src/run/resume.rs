@@ -9,7 +9,7 @@ use sir_parallel::{CheckpointError, Communicator, RunError, Saved};
 use crate::error::Error;
 use crate::fingerprint;
 use crate::fingerprint::{Fingerprint, PROGRAM};
-use crate::plan::pipeline::Pipeline;
+use crate::plan::Pipeline;
 use crate::ranks::{agree, broadcast_text};
 use crate::report::result::{FILE_NAME, Report};
 

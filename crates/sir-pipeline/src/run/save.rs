@@ -9,7 +9,7 @@ use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, ViewError
 use sir_view::{default_camera, render, write_exr, write_glb, write_png};
 
 use crate::error::Error;
-use crate::plan::output::{Content, Image, Output};
+use crate::plan::{Image, Output};
 use crate::prepare::cameras::chosen_camera;
 use crate::prepare::prepared::Prepared;
 use crate::progress::Progress;
@@ -29,7 +29,7 @@ pub(crate) fn save(
     written: &mut dyn FnMut(OutputReport) -> bool,
 ) -> Result<(), Error> {
     let Model { scene, mesh, accel } = &prepared.model;
-    let seen = outputs.iter().any(|o| o.content != Content::Table);
+    let seen = outputs.iter().any(|o| !matches!(o, Output::Table(_)));
     let display = seen.then(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
     let denoise = match &display {
         Some(display) if outputs.iter().any(is_denoised) => display.denoise(&solution.error, threads),
@@ -38,7 +38,7 @@ pub(crate) fn save(
     let denoise = (!denoise.is_empty()).then(|| DisplayMesh::new(scene, mesh, &denoise));
     let errors = outputs
         .iter()
-        .any(|o| matches!(o.content, Content::Image(_)) && has_extension(&o.path, "exr"))
+        .any(|o| matches!(o, Output::Image(_)) && has_extension(o.path(), "exr"))
         .then(|| DisplayMesh::of_errors(scene, mesh, &solution.error));
     let mut studio = display.as_ref().map(|display| Studio {
         prepared,
@@ -49,13 +49,13 @@ pub(crate) fn save(
         default: None,
     });
     for output in outputs {
-        let path = directory.join(&output.path);
-        progress.note(&format!("Save: {}", output.path.display()));
+        let path = directory.join(output.path());
+        progress.note(&format!("Save: {}", output.path().display()));
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(Error::directory(parent))?;
         }
-        let kind = match (&output.content, &mut studio) {
-            (Content::Image(image), Some(studio)) => {
+        let kind = match (output, &mut studio) {
+            (Output::Image(image), Some(studio)) => {
                 let Taken { camera, settings, picture, .. } = studio.take(image, is_denoised(output))?;
                 match &errors {
                     Some(errors) if has_extension(&path, "exr") => {
@@ -66,7 +66,7 @@ pub(crate) fn save(
                 }
                 "image"
             }
-            (Content::Gltf, Some(studio)) => {
+            (Output::Gltf(_), Some(studio)) => {
                 write_glb(&path, studio.display, Exposure::Auto, scene.cameras(), prepared.up)?;
                 "gltf"
             }
@@ -81,7 +81,7 @@ pub(crate) fn save(
             }
         };
         let bytes = fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len();
-        let path = output.path.to_string_lossy().into_owned();
+        let path = output.path().to_string_lossy().into_owned();
         if !written(OutputReport { path, kind: kind.into(), bytes }) {
             break;
         }
@@ -111,7 +111,7 @@ struct Taken {
 impl Studio<'_> {
     fn take(&mut self, image: &Image, is_denoised: bool) -> Result<&Taken, Error> {
         let Model { scene, accel, .. } = &self.prepared.model;
-        let chosen = chosen_camera(&image.camera, scene);
+        let chosen = chosen_camera(image, scene);
         let settings = settings(image, chosen.as_ref(), self.threads);
         let camera = chosen.unwrap_or_else(|| self.default_camera());
         let taken = match self.last.take() {
@@ -149,7 +149,7 @@ pub(crate) fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -
 
 /// Whether an output is a picture without noise. Those for measuring show what was computed.
 pub(crate) fn is_denoised(output: &Output) -> bool {
-    matches!(&output.content, Content::Image(image) if image.denoise) && !has_extension(&output.path, "exr")
+    matches!(output, Output::Image(image) if image.denoise) && !has_extension(output.path(), "exr")
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

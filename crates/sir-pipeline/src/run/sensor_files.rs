@@ -8,7 +8,7 @@ use sir_radiosity::{Measurement, Sensor};
 use sir_view::{Map, ViewError, write_atomically, write_map};
 
 use crate::error::Error;
-use crate::plan::sensors::Sensors;
+use crate::plan::Sensors;
 use crate::prepare::layout::{Cells, Layout};
 use crate::report::result::OutputReport;
 use crate::report::sensors::SensorsReport;
@@ -33,13 +33,13 @@ pub(crate) fn write(
         }
         Ok(path)
     };
-    let table = place(&sensors.table)?;
+    let table = place(&sensors.table())?;
     write_atomically(&table, |file| write_table(file, &layout.sensors, measured))?;
-    let mut written = vec![output(directory, &sensors.table, "sensors")?];
-    if let (Some(map), Some(cells)) = (&sensors.map, &layout.cells) {
+    let mut written = vec![output(directory, &sensors.table(), "sensors")?];
+    if let (Some(map), Some(cells)) = (sensors.map(), &layout.cells) {
         let report = SensorsReport::new(&sensors.name, measured);
-        write_map(&place(map)?, &map_of(cells, measured, &report, units))?;
-        written.push(output(directory, map, "map")?);
+        write_map(&place(&map)?, &map_of(cells, measured, &report, units))?;
+        written.push(output(directory, &map, "map")?);
     }
     Ok(written)
 }

@@ -6,10 +6,7 @@ use sir_parallel::{Checkpoints, Executor, RunError, Saved, Start, cores};
 use sir_radiosity::{SensorStage, SensorTask, Solution};
 
 use crate::error::Error;
-use crate::plan::output::Output;
-use crate::plan::pipeline::{Action, Stage};
-use crate::plan::sensors::Sensors;
-use crate::plan::transport::Transport;
+use crate::plan::{Action, Output, Sensors, Stage};
 use crate::ranks::agree;
 use crate::report::result::{ErrorsFrom, ErrorsReport, LinesReport, OutputReport, StageReport, Time};
 use crate::report::sensors::SensorsReport;
@@ -32,15 +29,15 @@ impl Run<'_> {
         for (number, stage) in self.pipeline.stages.iter().enumerate().skip(self.head.stage) {
             let (name, watch) = (stage.action.name(), Stopwatch::start());
             let report = match &stage.action {
-                Action::Load { .. } => StageReport::of(name, Time::of(prepared.load_seconds)),
-                Action::Light { .. } | Action::Focus { .. } => StageReport::of(name, Time::of(0.0)),
+                Action::Load(_) => StageReport::of(name, Time::of(prepared.load_seconds)),
+                Action::Light(_) | Action::Focus(_) => StageReport::of(name, Time::of(0.0)),
                 Action::Subdivide(_) => StageReport::of(name, Time::of(prepared.build_seconds)),
                 Action::Sensors(sensors) => match &solution {
                     Some(solution) => self.measure(number, sensors, solution)?,
                     None => StageReport::of(name, Time::of(0.0)),
                 },
-                Action::Save(outputs) => {
-                    self.save(solution.as_ref(), outputs)?;
+                Action::Save(save) => {
+                    self.save(solution.as_ref(), &save.outputs)?;
                     StageReport::of(name, Time::of(watch.seconds()))
                 }
                 Action::Repeat(repeat) => {
@@ -48,7 +45,7 @@ impl Run<'_> {
                     solution = Some(mean);
                     report
                 }
-                Action::FirstShot { .. } | Action::SecondShot { .. } | Action::Multipath { .. } => {
+                Action::FirstShot(_) | Action::SecondShot(_) | Action::Multipath(_) => {
                     // The light so far has been saved if it was wanted, and takes much memory.
                     drop(solution.take());
                     let (report, light) =
@@ -128,12 +125,12 @@ impl Run<'_> {
         let mut report = StageReport::of("Sensors", Time::of(0.0));
         let Some(layout) = self.prepared.layouts.get(&number) else { return Ok(report) };
         let mut executor = self.workers();
-        let total = sensors.settings.rays * layout.sensors.len() as u64;
+        let total = sensors.rays * layout.sensors.len() as u64;
         executor.observer = Box::new(self.progress.stage("Sensors", total, &self.options.stop));
         // Each stage has its own random numbers.
         let seed = self.head.report.seed.wrapping_add((number as u64) << 48);
         let model = &self.prepared.model;
-        let settings = sensors.settings;
+        let settings = sensors.settings();
         let task = SensorTask { model, solution, sensors: &layout.sensors, settings, seed };
         let done = executor.run::<SensorStage<'_>>(task, Start::Fresh(()));
         drop(executor);
@@ -185,33 +182,29 @@ impl Run<'_> {
 
 /// What to say if so much light was not sent on that the result is visibly wrong.
 pub(crate) fn unshot_warning(action: &Action, lines: &LinesReport) -> Vec<String> {
-    let Action::Multipath { transport, .. } = *action else { return Vec::new() };
+    let Action::Multipath(multipath) = action else { return Vec::new() };
     let balance = &lines.balance;
     let share = |parts: &[f64; 3]| {
         let shares = parts.iter().zip(&balance.emitted).filter(|(_, e)| **e > 0.0).map(|(part, e)| part / e);
         shares.fold(0.0, f64::max)
     };
     let unshot = share(&balance.unshot);
-    let extrapolated =
-        balance.unshot.iter().zip(&lines.extrapolated).all(|(unshot, more)| *unshot <= 0.0 || *more > 0.0);
-    match transport {
-        Transport::Batches if extrapolated && unshot > 0.1 => vec![format!(
+    let extrapolated = multipath.extrapolates()
+        && balance.unshot.iter().zip(&lines.extrapolated).all(|(unshot, more)| *unshot <= 0.0 || *more > 0.0);
+    if extrapolated && unshot > 0.1 {
+        return vec![format!(
             "{:.0} % of the light that surfaces reflect was not sent on; it was made up for as if it spread like the \
              light before it; give `Multipath` more lines, or make fewer patches",
             100.0 * unshot
-        )],
-        Transport::Batches if extrapolated || unshot <= 1e-3 => Vec::new(),
-        Transport::Replicas { .. } if unshot <= 1e-3 => Vec::new(),
-        _ => {
-            let help = match transport {
-                Transport::Batches => "more lines",
-                Transport::Replicas { .. } => "more lines, fewer replicas or a longer `tail`",
-            };
-            vec![format!(
-                "{:.1} % of the light that surfaces reflect was not sent on and is missing from the result; give \
-                 `Multipath` {help}, or make fewer patches",
-                100.0 * unshot
-            )]
-        }
+        )];
     }
+    if extrapolated || unshot <= 1e-3 {
+        return Vec::new();
+    }
+    vec![format!(
+        "{:.1} % of the light that surfaces reflect was not sent on and is missing from the result; give `Multipath` {}, \
+         or make fewer patches",
+        100.0 * unshot,
+        multipath.advice_on_unshot()
+    )]
 }

@@ -1,23 +1,21 @@
-//! The text of a pipeline file: from RON to a typed [`Pipeline`](crate::plan::Pipeline), with all mistakes at once.
+//! Reading and writing RON text by declared types, with all mistakes at once, each at its place. Knows nothing of pipelines.
 //!
-//! * `ron_tree`: the text as a tree whose nodes know their places; `reader`: typed access to its nodes.
-//! * `decode`: which stages there are; a file for each stage with more than a few fields; `order`: which may follow which.
-//! * [`Diagnostics`]: what is wrong, where, and what to write instead.
+//! * `ron_tree`: the text as a tree whose nodes know their places.
+//! * `reader`: what is known while a file is read; [`Diagnostics`]: what is wrong, where, and what to write instead.
+//! * `field`, `formats`, `paths`, `span`: how values are written, and what holds where they are left out.
+//! * `record`: types with named fields, and choices among them, declared once for reader, writer and reference.
 
-pub(crate) mod decode;
 pub(crate) mod diagnostic;
-mod focus;
-mod lights;
+pub(crate) mod field;
+pub(crate) mod formats;
 pub(crate) mod literal;
-pub(crate) mod order;
-mod outputs;
-mod points_file;
-mod read;
+pub(crate) mod paths;
 pub(crate) mod reader;
-mod repeat;
+pub(crate) mod record;
 pub(crate) mod ron_tree;
-mod sensors;
+pub(crate) mod span;
 pub(crate) mod suggest;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Position};
 pub use literal::whole_number;
+pub use span::{Span, Spanned};

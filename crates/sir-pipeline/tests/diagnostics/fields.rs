@@ -85,10 +85,10 @@ fn missing_and_repeated_fields() {
       | ^^^^
       = help: write `Load(path: "scene.gltf", …)`
 
-    x.ron:3:1: error: `Subdivide` does not say how finely
+    x.ron:3:1: error: `Subdivide` needs one of the fields `patches`, `max_area`, `max_edge` and `per_face`
     3 | Subdivide,
       | ^^^^^^^^^
-      = help: write one of `patches: 20_000`, `max_area: 0.01`, `max_edge: 0.1` or `per_face: true`
+      = help: write `patches: 20_000`, `max_area: 0.01`, `max_edge: 0.1` or `per_face: true`
 
     x.ron:4:22: error: the field `lines` is given twice
     4 | FirstShot(lines: 10, lines: 20),
@@ -113,7 +113,7 @@ fn missing_and_repeated_fields() {
     x.ron:6:45: error: `path` must be a text in quotes, but it is empty
     6 | Save([Image(width: 10), Gltf(), Table(path: "")]),
       |                                             ^^
-      = help: write for instance `path: "result.csv"`
+      = help: write for instance `path: "patches.csv"`
     "#);
     insta::assert_snapshot!(problems("(seed: 1)"), @r#"
     x.ron:1:1: error: `Pipeline` lacks the field `stages`
@@ -135,7 +135,7 @@ fn wrong_types() {
         r#"Load(path: 3, sides: "Both"),"#,
         r#"Subdivide(per_face: 4),"#,
         r#"FirstShot(10),"#,
-        r#"Multipath(lines: "many", domain: Spher, replicas: 1.5),"#,
+        r#"Multipath(lines: "many", domain: Spher, transport: Replicas(count: 1.5)),"#,
         r#"Save([Image(path: "a.png", exposure: Automatic, camera: true)]),"#,
         r#"Save(path: "b.png"),"#,
         r#"Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),"#,
@@ -153,7 +153,7 @@ fn wrong_types() {
     x.ron:3:21: error: `per_face` can only be `true`, but it is the number 4
     3 | Subdivide(per_face: 4),
       |                     ^
-      = help: write `per_face: true`, or leave `Subdivide` out
+      = help: write `per_face: true`, or leave it out
 
     x.ron:4:1: error: `FirstShot` takes named fields, but this is `FirstShot(…)`
     4 | FirstShot(10),
@@ -161,24 +161,24 @@ fn wrong_types() {
       = help: write `FirstShot(lines: …)`
 
     x.ron:5:18: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is a text
-    5 | Multipath(lines: "many", domain: Spher, replicas: 1.5),
+    5 | Multipath(lines: "many", domain: Spher, transport: Replicas(count: 1.5)),
       |                  ^^^^^^
       = help: write for instance `lines: 1_000_000`
 
     x.ron:5:34: error: `domain` must be `Hull`, `Box` or `Sphere`, but it is `Spher`
-    5 | Multipath(lines: "many", domain: Spher, replicas: 1.5),
+    5 | Multipath(lines: "many", domain: Spher, transport: Replicas(count: 1.5)),
       |                                  ^^^^^
       = help: did you mean `Sphere`?
 
-    x.ron:5:51: error: `replicas` must be a whole number from 1 to 1_000_000, but it is the number 1.5
-    5 | Multipath(lines: "many", domain: Spher, replicas: 1.5),
-      |                                                   ^^^
-      = help: write for instance `replicas: 8`
+    x.ron:5:68: error: `count` must be a whole number from 1 to 1_000_000, but it is the number 1.5
+    5 | Multipath(lines: "many", domain: Spher, transport: Replicas(count: 1.5)),
+      |                                                                    ^^^
+      = help: write for instance `count: 8`
 
     x.ron:6:38: error: `exposure` must be `Auto` or a number, but it is `Automatic`
     6 | Save([Image(path: "a.png", exposure: Automatic, camera: true)]),
       |                                      ^^^^^^^^^
-      = help: write `exposure: Auto` or for instance `exposure: 1.0`
+      = help: write `exposure: Auto` or for instance `exposure: 1.5`
 
     x.ron:6:57: error: `camera` must be a `Camera(…)`, or the number or name of one, but it is `true`
     6 | Save([Image(path: "a.png", exposure: Automatic, camera: true)]),
@@ -200,12 +200,12 @@ fn wrong_types() {
       |                                                                  ^^
       = help: write for instance `target: (1, 1, 0)`
 
-    x.ron:8:76: error: `fov` must be a finite number, but it is a text
+    x.ron:8:76: error: `fov` must be a finite number above 0 and below 180, but it is a text
     8 | Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),
       |                                                                            ^^^^^^
       = help: write for instance `fov: 45`
     "#);
-    insta::assert_snapshot!(problems("(seed: -1, stages: Load)"), @r"
+    insta::assert_snapshot!(problems("(seed: -1, stages: Load)"), @r#"
     x.ron:1:8: error: `seed` must be a whole number from 0 to 18_446_744_073_709_551_615, but it is the number -1
     1 | (seed: -1, stages: Load)
       |        ^^
@@ -214,8 +214,8 @@ fn wrong_types() {
     x.ron:1:20: error: `stages` must be a list, but it is `Load`
     1 | (seed: -1, stages: Load)
       |                    ^^^^
-      = help: write `stages: [Load(…), …]`
-    ");
+      = help: write `stages: [Load(path: "scene.gltf"), …]`
+    "#);
 }
 
 #[test]
@@ -259,48 +259,48 @@ fn numbers_out_of_range() {
       |                                                                ^^^
       = help: write for instance `samples: 4`
 
-    x.ron:6:79: error: `exposure` must be above zero, but it is -1
+    x.ron:6:79: error: `exposure` must be a number above 0, but it is the number -1
     6 | Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),
       |                                                                               ^^
-      = help: write for instance `exposure: 1.0`
+      = help: write for instance `exposure: 1.5`
 
-    x.ron:7:38: error: `exposure` must be a finite number, but it is the number NaN
+    x.ron:7:38: error: `exposure` must be a finite number above 0, but it is the number NaN
     7 | Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),
       |                                      ^^^
-      = help: write for instance `exposure: 1.0`
+      = help: write for instance `exposure: 1.5`
 
     x.ron:7:89: error: `target` must be a finite number, but it is the number inf
     7 | Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),
       |                                                                                         ^^^
       = help: write for instance `target: (1, 1, 0)`
 
-    x.ron:7:100: error: `fov` must be below 180 degrees, but it is 200
+    x.ron:7:100: error: `fov` must be a number above 0 and below 180, but it is the number 200
     7 | Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),
       |                                                                                                    ^^^
       = help: write for instance `fov: 45`
 
     x.ron:8:36: error: this camera has no direction: `eye` and `target` coincide, or `up` points along the view
     8 | Save([Image(path: "c.png", camera: Camera(eye: (0, 0, 0), target: (0, 1, 0)))]),
-      |                                    ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+      |                                    ^^^^^^
       = help: move `target` away from `eye`, and choose an `up` that is not parallel to the view
     "#);
     insta::assert_snapshot!(stages(&[
-        r#"Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)"#,
+        r#"Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, transport: Replicas(tail: 9))"#,
     ]), @r#"
-    x.ron:2:45: error: `max_area` must be above zero, but it is 0
-    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)
+    x.ron:2:45: error: `max_area` must be a number above 0, but it is the number 0
+    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, transport: Replicas(tail: 9))
       |                                             ^
       = help: write for instance `max_area: 0.01`
 
     x.ron:2:66: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 1e16
-    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)
+    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, transport: Replicas(tail: 9))
       |                                                                  ^^^^
       = help: write for instance `lines: 1_000_000`
 
-    x.ron:2:99: error: `tail` must be a whole number from 0 to 8, but it is the number 9
-    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, tail: 9)
-      |                                                                                                   ^
-      = help: write for instance `tail: 0`
+    x.ron:2:104: error: all of the 9 lines are in the `tail`
+    2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, transport: Replicas(tail: 9))
+      |                                                                                                        ^^^^^^^^^^^^^^^^^
+      = help: leave `tail` out, or make it smaller: lines before the tail bring the light of the sources
     "#);
     insta::assert_snapshot!(stages(&[
         r#"Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),"#,
@@ -313,25 +313,15 @@ fn numbers_out_of_range() {
 }
 
 #[test]
-fn what_one_transport_has_and_the_other_has_not() {
+fn replicas_have_lines_before_their_tail() {
     insta::assert_snapshot!(stages(&[
         r#"Load(path: "room.obj"), FirstShot(lines: 10),"#,
-        r#"Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)"#,
+        r#"Multipath(lines: 10, transport: Replicas(count: 20, tail: 1))"#,
     ]), @r"
-    x.ron:3:52: error: the transport `Batches` has no `replicas`
-    3 | Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)
-      |                                                    ^^
-      = help: leave `replicas` out, or write `transport: Replicas`
-
-    x.ron:3:52: error: `replicas` must be a whole number from 1 to 10, but it is the number 20
-    3 | Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)
-      |                                                    ^^
-      = help: write for instance `replicas: 8`
-
-    x.ron:3:62: error: the transport `Batches` has no `tail`
-    3 | Multipath(lines: 10, transport: Batches, replicas: 20, tail: 1)
-      |                                                              ^
-      = help: leave `tail` out, or write `transport: Replicas`
+    x.ron:3:33: error: there are 20 replicas, but 10 lines
+    3 | Multipath(lines: 10, transport: Replicas(count: 20, tail: 1))
+      |                                 ^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+      = help: each replica needs a line: ask for fewer, or for more lines
     ");
 }
 
@@ -350,12 +340,12 @@ fn paths() {
     x.ron:3:19: error: the name of the output "a.jpg" does not end in .png or .exr
     3 | Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),
       |                   ^^^^^^^
-      = help: write for instance `path: "result.png"`
+      = help: write for instance `path: "view.png"`
 
     x.ron:3:41: error: the name of the output "t.txt" does not end in .csv or .npy
     3 | Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),
       |                                         ^^^^^^^
-      = help: write for instance `path: "result.csv"`
+      = help: write for instance `path: "patches.csv"`
 
     x.ron:3:62: error: the name of the output "x.gltf" does not end in .glb
     3 | Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),
@@ -365,12 +355,12 @@ fn paths() {
     x.ron:4:19: error: the output path "/tmp/a.png" may lead out of the run directory
     4 | Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),
       |                   ^^^^^^^^^^^^
-      = help: write a relative path without `..`; `sir run --out` says where the run directory is
+      = help: write a relative path without `..`; outputs are written into the run directory
 
     x.ron:4:46: error: the output path "../a.png" may lead out of the run directory
     4 | Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),
       |                                              ^^^^^^^^^^
-      = help: write a relative path without `..`; `sir run --out` says where the run directory is
+      = help: write a relative path without `..`; outputs are written into the run directory
 
     x.ron:4:93: error: the output path "./B.png" is used twice
     4 | Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),
@@ -392,7 +382,16 @@ fn paths() {
 }
 
 #[test]
-fn a_field_with_a_new_name_is_told_it() {
-    let shown = stages(&[r#"Save([Image(path: "a.png", calm: false)]),"#]);
-    assert!(shown.contains("the field is called `denoise` now"), "{shown}");
+fn the_new_form_of_a_field_is_told() {
+    let shown = stages(&[
+        r#"Save([Image(path: "a.png", calm: false)]),"#,
+        r#"Multipath(lines: 10, replicas: 2, tail: 1),"#,
+    ]);
+    for told in [
+        "is called `denoise` now",
+        "`transport: Replicas(count: …)` now",
+        "`transport: Replicas(tail: …)` now",
+    ] {
+        assert!(shown.contains(told), "{shown}");
+    }
 }

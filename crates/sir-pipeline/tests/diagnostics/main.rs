@@ -9,8 +9,7 @@ mod syntax;
 use std::fs;
 
 use sir_pipeline::Units;
-use sir_pipeline::plan::{Action, Pipeline};
-use sir_pipeline::plan::{DomainKind, Transport};
+use sir_pipeline::plan::{Action, DomainKind, Pipeline, Replicas, Transport};
 use sir_pipeline::text::Diagnostics;
 
 const VALID: &str = r#"// A comment with ( and "
@@ -25,7 +24,7 @@ Pipeline(
         ]),
         Subdivide(patches: 20_000),
         FirstShot(lines: 1e6),
-        Multipath(lines: 1_300_000, tail: 0, domain: Sphere, replicas: 1),
+        Multipath(lines: 1_300_000, domain: Sphere, transport: Replicas(count: 1, tail: 0)),
         Save([
             Image(path: "view.png", width: 640, height: 480, samples: 2, exposure: Auto, camera: 0),
             Image(path: "own.exr", exposure: Some(1.5), camera: Camera(eye: (1, 2, 3), target: (0, 0, 0.5), up: (0, 0, 1), fov: 60)),
@@ -62,24 +61,24 @@ fn a_valid_pipeline_is_understood() {
     let names: Vec<_> = pipeline.stages.iter().map(|s| s.action.name()).collect();
     assert_eq!(names, ["Load", "Light", "Subdivide", "FirstShot", "Multipath", "Save"]);
     for stage in &pipeline.stages {
-        assert_eq!(&VALID[stage.span.clone()], stage.action.name());
+        assert_eq!(&VALID[stage.span.0.clone()], stage.action.name());
     }
     let multipath = |fields: &str| {
         let text = format!(
             r#"(stages: [Load(path: "room.obj"), FirstShot(lines: 9), Multipath(lines: 100{fields})])"#
         );
-        match parse(&text).unwrap().stages[2].action {
-            Action::Multipath { transport, domain, .. } => (transport, domain),
+        match &parse(&text).unwrap().stages[2].action {
+            Action::Multipath(multipath) => (multipath.transport.clone(), multipath.domain),
             _ => unreachable!("the third stage is Multipath"),
         }
     };
     let transport = |fields: &str| multipath(fields).0;
-    let replicas = |replicas, tail| Transport::Replicas { replicas, tail };
+    let replicas = |count, tail| Transport::Replicas(Replicas { count, tail });
     assert_eq!(transport(""), Transport::Batches);
     assert_eq!(transport(", transport: Batches"), Transport::Batches);
-    assert_eq!(transport(", transport: Replicas"), replicas(1, 10));
-    assert_eq!(transport(", replicas: 8"), replicas(8, 10));
-    assert_eq!(transport(", tail: 0"), replicas(1, 0));
+    assert_eq!(transport(", transport: Replicas"), replicas(1, None));
+    assert_eq!(transport(", transport: Replicas(count: 8)"), replicas(8, None));
+    assert_eq!(transport(", transport: Replicas(tail: 0)"), replicas(1, Some(0)));
     for (fields, body) in [
         ("", DomainKind::Hull),
         (", domain: Hull", DomainKind::Hull),
@@ -88,7 +87,7 @@ fn a_valid_pipeline_is_understood() {
     ] {
         assert_eq!(multipath(fields).1, body);
     }
-    let outputs: Vec<_> = pipeline.outputs().map(|o| o.path.to_str().unwrap()).collect();
+    let outputs: Vec<_> = pipeline.outputs().map(|o| o.path().to_str().unwrap()).collect();
     assert_eq!(outputs, ["view.png", "own.exr", "result.glb", "tables/patches.csv"]);
     assert!(pipeline.scene_path().is_file() || pipeline.scene_path().ends_with("room.obj"));
 }

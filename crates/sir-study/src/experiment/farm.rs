@@ -9,7 +9,7 @@ use crate::experiment::runs::{Done, Runs, Wanted};
 use crate::experiment::speed;
 use crate::experiment::subject::{Changes, DIRECT, Subject, TABLE};
 use crate::scaling::table::seconds;
-use sir_pipeline::plan::Transport;
+use sir_pipeline::plan::{Replicas, Transport};
 use sir_pipeline::report::Report;
 
 /// Numbers of replicas.
@@ -42,7 +42,8 @@ pub(crate) struct Farm {
 /// The transports that are compared, with the names of their runs.
 fn transports(subject: &Subject) -> Vec<(String, Transport)> {
     let replicas = REPLICAS.into_iter().filter(|&replicas| replicas <= subject.lines.global);
-    let replicas = replicas.map(|p| (format!("farm-{p:02}"), Transport::Replicas { replicas: p, tail: 0 }));
+    let replicas = replicas
+        .map(|count| (format!("farm-{count:02}"), Transport::Replicas(Replicas { count, tail: Some(0) })));
     // The run with the pictures is one in batches already, if the pipeline asks for them.
     let batches =
         (subject.transport != Transport::Batches).then(|| ("farm-batches".into(), Transport::Batches));
@@ -50,7 +51,7 @@ fn transports(subject: &Subject) -> Vec<(String, Transport)> {
 }
 
 fn wanted(runs: &Runs, subject: &Subject, (name, transport): &(String, Transport)) -> Wanted {
-    Wanted::new(name, Changes { transport: *transport, ..subject.changes() }, runs.cores)
+    Wanted::new(name, Changes { transport: transport.clone(), ..subject.changes() }, runs.cores)
 }
 
 /// Announces all runs.
@@ -69,11 +70,11 @@ pub(crate) fn find(
     full: &Done,
 ) -> Result<Farm, StudyError> {
     let direct = power(&full.table(DIRECT)?);
-    let compared = |transport: Transport, run: &Done| -> Result<Transported, StudyError> {
+    let compared = |transport: &Transport, run: &Done| -> Result<Transported, StudyError> {
         let table = run.table(TABLE)?;
         let (transport, replicas) = match transport {
             Transport::Batches => ("Batches", None),
-            Transport::Replicas { replicas, .. } => ("Replicas", Some(replicas)),
+            Transport::Replicas(replicas) => ("Replicas", Some(replicas.count)),
         };
         Ok(Transported {
             transport,
@@ -87,10 +88,10 @@ pub(crate) fn find(
     let mut found = Vec::new();
     for transport in transports(subject) {
         let run = runs.get(subject, &wanted(runs, subject, &transport))?;
-        found.push(compared(transport.1, &run)?);
+        found.push(compared(&transport.1, &run)?);
     }
     if subject.transport == Transport::Batches {
-        found.push(compared(Transport::Batches, full)?);
+        found.push(compared(&Transport::Batches, full)?);
     }
     Ok(Farm { transports: found })
 }

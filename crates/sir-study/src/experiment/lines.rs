@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use sir_pipeline::plan::Transport;
+use sir_pipeline::plan::{Replicas, Transport};
 
 /// Lines of the two stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -64,14 +64,16 @@ impl Lines {
 
 /// A transport for another number of global lines: the tail stays as large a share of them.
 #[must_use]
-pub(crate) fn fitted(transport: Transport, lines: u64, new_lines: u64) -> Transport {
+pub(crate) fn fitted(transport: &Transport, lines: u64, new_lines: u64) -> Transport {
+    let scaled = |tail: u64| {
+        let tail = tail as f64 * (new_lines as f64 / lines.max(1) as f64);
+        (tail as u64).min(new_lines.saturating_sub(1))
+    };
     match transport {
         Transport::Batches => Transport::Batches,
-        Transport::Replicas { replicas, tail } => Transport::Replicas {
-            replicas: replicas.min(new_lines),
-            tail: ((tail as f64 * (new_lines as f64 / lines.max(1) as f64)) as u64)
-                .min(new_lines.saturating_sub(1)),
-        },
+        Transport::Replicas(Replicas { count, tail }) => {
+            Transport::Replicas(Replicas { count: (*count).min(new_lines), tail: tail.map(scaled) })
+        }
     }
 }
 
@@ -110,9 +112,11 @@ mod tests {
 
     #[test]
     fn a_tail_stays_a_tenth() {
-        let transport = Transport::Replicas { replicas: 8, tail: 100 };
-        assert_eq!(fitted(transport, 1000, 50), Transport::Replicas { replicas: 8, tail: 5 });
-        assert_eq!(fitted(transport, 1000, 1), Transport::Replicas { replicas: 1, tail: 0 });
-        assert_eq!(fitted(Transport::Batches, 1000, 1), Transport::Batches);
+        let replicas = |count, tail| Transport::Replicas(Replicas { count, tail });
+        let transport = replicas(8, Some(100));
+        assert_eq!(fitted(&transport, 1000, 50), replicas(8, Some(5)));
+        assert_eq!(fitted(&transport, 1000, 1), replicas(1, Some(0)));
+        assert_eq!(fitted(&replicas(8, None), 1000, 50), replicas(8, None));
+        assert_eq!(fitted(&Transport::Batches, 1000, 1), Transport::Batches);
     }
 }

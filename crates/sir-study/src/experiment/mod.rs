@@ -26,7 +26,6 @@ mod mix;
 mod options;
 mod paper;
 mod precision;
-mod ron_text;
 mod runs;
 mod scene;
 mod speed;

@@ -13,6 +13,7 @@ use crate::experiment::subject::{Changes, Subject, TABLE};
 use crate::experiment::{bodies, farm, mix, precision, speed, spread};
 use crate::scaling::workers::{Plan, Workers};
 use sir_pipeline::NoProgress;
+use sir_pipeline::plan::Output;
 use sir_pipeline::prepare::prepare;
 
 /// Parts that compare with the reference.
@@ -148,7 +149,7 @@ fn in_this_process(
 /// one first.
 fn pictures(runs: &Runs, subject: &Subject, full: &Done) -> Result<Vec<String>, StudyError> {
     let is_png = |path: &std::path::Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-    let mut paths: Vec<_> = subject.pictures().map(|output| output.path.as_path()).collect();
+    let mut paths: Vec<_> = subject.pictures().map(Output::path).collect();
     // The order stays, but for the first one.
     if let Some(first) = paths.iter().position(|path| is_png(path)) {
         paths[..=first].rotate_right(1);

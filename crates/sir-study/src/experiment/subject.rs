@@ -8,12 +8,13 @@ use sha2::{Digest, Sha256};
 use crate::error::StudyError;
 use crate::experiment::error::ExperimentError;
 use crate::experiment::lines::{Lines, fitted};
-use crate::experiment::ron_text;
 use sir_pipeline::fingerprint::hex;
-use sir_pipeline::plan::{Action, Pipeline, Stage};
-use sir_pipeline::plan::{Content, Output};
-use sir_pipeline::plan::{DomainKind, Transport};
+use sir_pipeline::plan::{
+    Action, DomainKind, FirstShot, Load, Multipath, Output, Pipeline, Save, SecondShot, Stage, Table,
+    Transport,
+};
 use sir_pipeline::run::{absolute, run_name};
+use sir_pipeline::text::Span;
 
 /// Name of the tables of derived pipelines, with all light.
 pub(crate) const TABLE: &str = "patches.npy";
@@ -50,15 +51,15 @@ impl Subject {
     /// Reads a pipeline.
     pub(crate) fn read(path: &Path, scale: f64) -> Result<Self, StudyError> {
         let pipeline = Pipeline::read(path)?;
-        let local = pipeline.flat_stages().find_map(|stage| match stage.action {
-            Action::FirstShot { lines } => Some(lines),
+        let local = pipeline.flat_stages().find_map(|stage| match &stage.action {
+            Action::FirstShot(FirstShot { lines }) => Some(*lines),
             _ => None,
         });
-        let multipath = pipeline.flat_stages().find_map(|stage| match stage.action {
-            Action::Multipath { lines, transport, domain } => Some((lines, transport, domain)),
+        let multipath = pipeline.flat_stages().find_map(|stage| match &stage.action {
+            Action::Multipath(multipath) => Some(multipath.clone()),
             _ => None,
         });
-        let (Some(local), Some((global, transport, domain))) = (local, multipath) else {
+        let (Some(local), Some(Multipath { lines: global, transport, domain })) = (local, multipath) else {
             return Err(ExperimentError::NoMultipath { path: path.to_owned() }.into());
         };
         let scene = pipeline.scene_path();
@@ -78,7 +79,7 @@ impl Subject {
 
     /// The pipeline's transport for so many global lines.
     pub(crate) fn transport_of(&self, lines: u64) -> Transport {
-        fitted(self.transport, self.asked.global, lines)
+        fitted(&self.transport, self.asked.global, lines)
     }
 
     /// The pipeline itself, with its lines times the scale.
@@ -94,48 +95,48 @@ impl Subject {
 
     /// The pictures that the pipeline asks for.
     pub(crate) fn pictures(&self) -> impl Iterator<Item = &Output> {
-        self.pipeline.outputs().filter(|output| matches!(output.content, Content::Image(_)))
+        self.pipeline.outputs().filter(|output| matches!(output, Output::Image(_)))
     }
 
     /// The text of a derived pipeline.
     pub(crate) fn derived(&self, changes: &Changes) -> String {
-        let table = |name: &str| Output { path: PathBuf::from(name), content: Content::Table };
+        let table = |name: &str| Output::Table(Table { path: PathBuf::from(name) });
         let mut actions = Vec::new();
         for stage in &self.pipeline.stages {
             match &stage.action {
-                Action::Load { path, sides } => {
-                    actions.push(Action::Load { path: absolute(path), sides: *sides })
+                Action::Load(load) => {
+                    actions.push(Action::Load(Load { path: absolute(&load.path), ..load.clone() }))
                 }
-                light @ Action::Light { .. } => actions.push(light.clone()),
-                Action::Subdivide(how) => actions.push(Action::Subdivide(*how)),
+                kept @ (Action::Light(_) | Action::Subdivide(_)) => actions.push(kept.clone()),
+                // The paper knows of no focus, and replicas cannot have it; the experiment measures patches, not sensors.
                 _ => {}
             }
         }
-        let second_shot = self.pipeline.flat_stages().find_map(|stage| match stage.action {
+        let second_shot = self.pipeline.flat_stages().find_map(|stage| match &stage.action {
             // In proportion to the local lines.
-            Action::SecondShot { lines } => {
+            Action::SecondShot(SecondShot { lines }) => {
                 let share = changes.lines.local as f64 / self.asked.local as f64;
-                Some(Action::SecondShot { lines: ((lines as f64 * share) as u64).max(1) })
+                Some(Action::SecondShot(SecondShot { lines: ((*lines as f64 * share) as u64).max(1) }))
             }
             _ => None,
         });
-        actions.push(Action::FirstShot { lines: changes.lines.local });
+        actions.push(Action::FirstShot(FirstShot { lines: changes.lines.local }));
         if changes.direct {
-            actions.push(Action::Save(vec![table(DIRECT)]));
+            actions.push(Action::Save(Save { outputs: vec![table(DIRECT)] }));
         }
-        let (lines, transport, domain) = (changes.lines.global, changes.transport, self.domain);
+        let (lines, transport, domain) = (changes.lines.global, changes.transport.clone(), self.domain);
         actions.extend(second_shot);
-        actions.push(Action::Multipath { lines, transport, domain });
+        actions.push(Action::Multipath(Multipath { lines, transport, domain }));
         let pictures = self.pictures().filter(|_| changes.pictures).cloned();
-        actions.push(Action::Save(std::iter::once(table(TABLE)).chain(pictures).collect()));
-        let stages = actions.into_iter().map(|action| Stage { action, span: 0..0 }).collect();
+        actions.push(Action::Save(Save { outputs: std::iter::once(table(TABLE)).chain(pictures).collect() }));
+        let stages = actions.into_iter().map(|action| Stage { action, span: Span::default() }).collect();
         let (seed, units) = (changes.seed, self.pipeline.units);
         let derived = Pipeline { path: PathBuf::new(), text: String::new(), seed, units, stages };
         let Self { name, digest, .. } = self;
         format!(
             "// Derived from the pipeline of {name} by `sir experiment`. SHA-256 of the scene file:\n// \
              {digest}\n{}",
-            ron_text::text(&derived)
+            derived.to_ron()
         )
     }
 }
@@ -155,8 +156,8 @@ mod tests {
         let derived = Pipeline::parse(&subject.derived(&changes), &folder.path().join("x.ron")).unwrap();
         assert_eq!(derived.seed, 9);
         assert_eq!(derived.stages[1].action, subject.pipeline.stages[1].action);
-        assert_eq!(derived.stages[2].action, Action::FirstShot { lines: 100_000 });
-        let names: Vec<_> = derived.outputs().map(|o| o.path.display().to_string()).collect();
+        assert_eq!(derived.stages[2].action, Action::FirstShot(FirstShot { lines: 100_000 }));
+        let names: Vec<_> = derived.outputs().map(|o| o.path().display().to_string()).collect();
         assert_eq!(names, ["direct.npy", "patches.npy", "view.png", "view.exr"]);
     }
 

@@ -1,14 +1,14 @@
-//! Lights that a pipeline adds to its scene.
+//! Lights as a scene takes them.
 
 use glam::DVec3;
 use sir_geom::{Light, Material, Rgb, SceneBuilder, Sky, shapes};
 
-/// A light that a pipeline adds to its scene.
+/// A light as it is added to a scene.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Lamp {
+pub enum SceneLight {
     /// A light without a surface.
     Light(Light),
-    /// A black rectangle that emits on the side from which its edges, in their order, run counter-clockwise.
+    /// A black parallelogram that emits on the side from which its edges, in their order, run counterclockwise.
     Panel {
         /// One of its corners \[m\].
         corner: DVec3,
@@ -21,7 +21,7 @@ pub enum Lamp {
     Sky(Sky),
 }
 
-impl Lamp {
+impl SceneLight {
     /// Adds it to a scene; a sky replaces the one before.
     pub(crate) fn add_to(&self, builder: &mut SceneBuilder) {
         match self {

@@ -1,12 +1,63 @@
 //! Files of points: six numbers a line, as `rtrace` of Radiance reads them.
 
+use std::path::PathBuf;
+
 use glam::DVec3;
 use sir_radiosity::Sensor;
+
+use crate::text::formats::quoted;
+use crate::text::reader::Reader;
+use crate::text::record::Body;
+use crate::text::ron_tree::{Node, Value};
+
+/// A file of points, which is read with the pipeline: what is wrong with it is a problem of the pipeline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointsFile {
+    /// The file: the path in the pipeline, joined to the folder of its file.
+    pub path: PathBuf,
+    /// The points in it, at least one.
+    pub sensors: Vec<Sensor>,
+}
+
+impl Body for PointsFile {
+    fn read<'a>(reader: &mut Reader<'a>, node: &Node<'a>) -> Option<Self> {
+        let example = "write for instance `File(\"points.txt\")`; paths are relative to the folder of the pipeline file";
+        let path = match &node.value {
+            Value::Items(items) => match items.as_slice() {
+                [Node { value: Value::Text(name), .. }] if !name.is_empty() => reader.folder.join(name),
+                _ => PathBuf::new(),
+            },
+            _ => PathBuf::new(),
+        };
+        if path.as_os_str().is_empty() {
+            reader.problem(node.text, "`File` must have the path of a file in quotes", example);
+            return None;
+        }
+        match std::fs::read_to_string(&path).map(|text| parse(&text)) {
+            Ok(Ok(sensors)) => Some(Self { path, sensors }),
+            Ok(Err((line, why))) => {
+                let message = format!("{}:{line} is no point: {why}", path.display());
+                let help = "write `x y z dx dy dz` in a line each; `#` begins a comment";
+                reader.problem(node.text, message, help);
+                None
+            }
+            Err(error) => {
+                let message = format!("cannot read the points of {}: {error}", path.display());
+                reader.problem(node.text, message, example);
+                None
+            }
+        }
+    }
+
+    fn write(&self, name: &str) -> String {
+        format!("{name}({})", quoted(&self.path.to_string_lossy()))
+    }
+}
 
 /// Reads points, `x y z dx dy dz` in a line each; what follows a `#` is a comment.
 ///
 /// The error says which line is wrong, and why.
-pub(super) fn parse(text: &str) -> Result<Vec<Sensor>, (usize, String)> {
+fn parse(text: &str) -> Result<Vec<Sensor>, (usize, String)> {
     let mut sensors = Vec::new();
     for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
         let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();

@@ -1,0 +1,161 @@
+//! Pictures of the solution.
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+use sir_view::Exposure;
+
+use crate::text::field::Format;
+use crate::text::formats::{Count, Direction, Flag, Vector, count, positive, quoted};
+use crate::text::paths::OutputFile;
+use crate::text::reader::{Fields, Reader};
+use crate::text::record::{Body as _, record};
+use crate::text::ron_tree::{Node, Value};
+use crate::text::span::{Spanned, WithSpan};
+
+record! {
+    /// A picture of the solution.
+    pub struct Image {
+        /// `.png`: 8 bits per channel, for looking at. `.exr`: linear radiance in W/(m² sr), 32-bit floats, without exposure and tone
+        /// curve, in the channels `R`, `G`, `B`; its standard error is in `error.R`, `error.G`, `error.B`.
+        pub path: PathBuf = OutputFile { extensions: &["png", "exr"], example: "view.png" }.required();
+        /// Width of the picture.
+        pub width: u32 = pixels(800).or(800).unit("pixels");
+        /// Height of the picture. If left out: as the shape of the scene's camera asks for, or three quarters of the width.
+        pub height: Option<u32> = pixels(600).optional("from the camera").unit("pixels");
+        /// Rays per pixel along each edge: 4 means 16 rays.
+        pub samples: u32 = count(1, 64, 4).or(4);
+        /// Of PNG pictures: what radiance is multiplied by. `Auto` makes the typical brightness of the picture a middle gray.
+        pub exposure: Exposure = ExposureFormat.or(Exposure::Auto);
+        /// Whether noise is taken out of a PNG picture, see below. EXR pictures, tables and lit scenes always show what was computed.
+        pub denoise: bool = Flag.or(true);
+        /// From where the picture is taken, see below. A scene without cameras is looked at from a place that shows much of it.
+        pub camera: Option<Spanned<CameraChoice>> = WithSpan(CameraFormat).optional("the scene's first");
+    }
+}
+
+fn pixels(example: u64) -> Count<u32> {
+    count(1, 16_384, example)
+}
+
+/// The point of view of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CameraChoice {
+    /// A camera of the scene by its number, from 0.
+    Number(u32),
+    /// A camera of the scene by its name.
+    Name(String),
+    /// A camera that the pipeline describes.
+    Own(Camera),
+}
+
+record! {
+    /// A camera that a pipeline describes.
+    pub struct Camera, check Camera::check {
+        /// Where the eye is.
+        pub eye: DVec3 = Vector([1.0, 2.0, 5.0]).required().unit("m");
+        /// What is in the middle of the picture.
+        pub target: DVec3 = Vector([1.0, 1.0, 0.0]).required().unit("m");
+        /// What is up in the picture.
+        pub up: DVec3 = Direction([0.0, 1.0, 0.0]).or(DVec3::Y);
+        /// Full vertical opening angle.
+        pub fov: f64 =
+            positive(45.0).with_range(|x| 0.0 < x && x < 180.0, "above 0 and below 180").or(45.0).unit("degrees");
+    }
+}
+
+impl Camera {
+    /// Returns the camera; `None` if `eye` and `target` coincide, or `up` points along the view.
+    #[must_use]
+    pub fn to_scene(&self) -> Option<sir_geom::Camera> {
+        sir_geom::Camera::looking_at(self.eye, self.target, self.up, self.fov.to_radians())
+    }
+
+    fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
+        if self.to_scene().is_none() {
+            let message =
+                "this camera has no direction: `eye` and `target` coincide, or `up` points along the view";
+            let help = "move `target` away from `eye`, and choose an `up` that is not parallel to the view";
+            reader.problem(fields.place, message, help);
+        }
+    }
+}
+
+/// `Auto`, or a factor.
+#[derive(Clone, Copy)]
+struct ExposureFormat;
+
+impl Format for ExposureFormat {
+    type Value = Exposure;
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<Exposure> {
+        if node.name() == "Auto" {
+            return Some(Exposure::Auto);
+        }
+        if node.value == Value::Number {
+            return positive(1.5).read(reader, node, name).map(Exposure::Factor);
+        }
+        let message = format!("`{name}` must be `Auto` or a number, but it is {}", node.kind());
+        reader.problem(node.text, message, format!("write `{name}: Auto` or for instance `{name}: 1.5`"));
+        None
+    }
+
+    fn write(&self, value: &Exposure) -> String {
+        match value {
+            Exposure::Auto => "Auto".into(),
+            Exposure::Factor(factor) => positive(1.5).write(factor),
+        }
+    }
+
+    fn describe(&self) -> String {
+        "`Auto` or a number above 0".into()
+    }
+
+    fn example(&self) -> String {
+        "Auto".into()
+    }
+}
+
+/// The number or the name of a camera of the scene, or a description.
+#[derive(Clone, Copy)]
+struct CameraFormat;
+
+impl CameraFormat {
+    const NUMBER: fn() -> Count<u32> = || count(0, 1_000_000, 0);
+}
+
+impl Format for CameraFormat {
+    type Value = CameraChoice;
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<CameraChoice> {
+        match (&node.value, node.name()) {
+            (Value::Number, _) => Self::NUMBER().read(reader, node, name).map(CameraChoice::Number),
+            (Value::Text(text), _) => Some(CameraChoice::Name(text.clone())),
+            (Value::Fields(_) | Value::Items(_), "Camera") => {
+                Camera::read(reader, node).map(CameraChoice::Own)
+            }
+            _ => {
+                let what = "a `Camera(…)`, or the number or name of one";
+                let example = "0` or `camera: Camera(eye: (1, 2, 5), target: (1, 1, 0))";
+                reader.wrong_value(node, name, what, example);
+                None
+            }
+        }
+    }
+
+    fn write(&self, value: &CameraChoice) -> String {
+        match value {
+            CameraChoice::Number(number) => Self::NUMBER().write(number),
+            CameraChoice::Name(name) => quoted(name),
+            CameraChoice::Own(camera) => camera.write("Camera"),
+        }
+    }
+
+    fn describe(&self) -> String {
+        "number, text or `Camera(…)`".into()
+    }
+
+    fn example(&self) -> String {
+        "0".into()
+    }
+}

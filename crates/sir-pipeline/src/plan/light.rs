@@ -1,0 +1,86 @@
+//! The stage `Light`.
+
+use glam::DVec3;
+use sir_geom::{LightKind, Rgb};
+
+use crate::plan::panel::Panel;
+use crate::plan::point::Point;
+use crate::plan::scene_light::SceneLight;
+use crate::plan::sky::{Environment, Sky};
+use crate::text::field::Format as _;
+use crate::text::formats::{Color, Direction};
+use crate::text::reader::Reader;
+use crate::text::record::{Body, Choose as _, choice, list_items, record, write_list};
+use crate::text::ron_tree::Node;
+
+/// Adds lights to the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// The lights, at least one; at most one sky.
+    pub lamps: Vec<Lamp>,
+}
+
+choice! {
+    /// A light that a pipeline adds to its scene.
+    pub enum Lamp as "light" {
+        /// Light from a point.
+        Point(Point),
+        /// Parallel light.
+        Distant(Distant),
+        /// A parallelogram that emits.
+        Panel(Panel),
+        /// A hemisphere of light.
+        Sky(Sky),
+        /// The same light from everywhere.
+        Environment(Environment),
+    }
+}
+
+record! {
+    /// Parallel light.
+    pub struct Distant {
+        /// In which the light travels: that of the sun has a negative `y`, if `y` is up.
+        pub direction: DVec3 = Direction([0.0, -1.0, 0.0]).required();
+        /// Of a surface that faces the light.
+        pub irradiance: Rgb = Color(1000.0).required().unit("W/m²");
+    }
+}
+
+impl Lamp {
+    /// Returns the light as a scene takes it; `None` if its numbers are impossible together, which those of a file are not.
+    #[must_use]
+    pub fn to_scene(&self) -> Option<SceneLight> {
+        match self {
+            Self::Point(point) => point.to_scene(),
+            Self::Distant(Distant { direction, irradiance }) => {
+                let direction = direction.try_normalize()?;
+                let kind = LightKind::Distant { direction, irradiance: *irradiance };
+                Some(SceneLight::Light(sir_geom::Light { name: String::new(), kind }))
+            }
+            Self::Panel(panel) => Some(panel.to_scene()),
+            Self::Sky(sky) => sky.to_scene().map(SceneLight::Sky),
+            Self::Environment(Environment { radiance }) => {
+                sir_geom::Sky::everywhere(*radiance).map(SceneLight::Sky)
+            }
+        }
+    }
+}
+
+impl Body for Light {
+    fn read<'a>(reader: &mut Reader<'a>, node: &Node<'a>) -> Option<Self> {
+        let items = list_items(reader, node, "lights", "Point(position: (1, 2, 3), intensity: 100)")?;
+        let lamps: Vec<_> = items.iter().map(|item| Lamp::read(reader, item)).collect();
+        let mut skies = items.iter().filter(|item| ["Sky", "Environment"].contains(&item.name()));
+        if let Some(first) = skies.next() {
+            for other in skies {
+                let message = format!("a second sky; the first is in line {}", reader.line(first.text));
+                reader.problem(other.name(), message, "keep one `Sky` or `Environment`");
+            }
+        }
+        lamps.into_iter().collect::<Option<_>>().map(|lamps| Self { lamps })
+    }
+
+    fn write(&self, name: &str) -> String {
+        write_list(name, &self.lamps)
+    }
+}

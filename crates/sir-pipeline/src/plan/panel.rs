@@ -1,0 +1,95 @@
+//! A parallelogram that emits.
+
+use glam::DVec3;
+use sir_geom::Rgb;
+
+use crate::plan::scene_light::SceneLight;
+use crate::text::field::{Format, OneOf};
+use crate::text::formats::{Color, Vector};
+use crate::text::reader::Reader;
+use crate::text::record::record;
+use crate::text::ron_tree::{Node, Value};
+
+record! {
+    /// A black parallelogram that emits on the side from which its edges, in their order, run counterclockwise.
+    pub struct Panel {
+        /// One of its corners.
+        pub corner: DVec3 = Vector([1.0, 3.0, 2.0]).required().unit("m");
+        /// From there to the two corners next to it.
+        pub edges: [DVec3; 2] = Edges.required().unit("m");
+        /// How much light it sends.
+        pub strength: PanelStrength = strength();
+    }
+}
+
+/// How much light a panel sends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PanelStrength {
+    /// Emitted exitance per band \[W/m²\].
+    Exitance(Rgb),
+    /// Emitted power per band \[W\].
+    Power(Rgb),
+}
+
+fn strength() -> OneOf<PanelStrength> {
+    OneOf::new()
+        .field("exitance", Color(100.0), "W/m²", "Emitted per area.", PanelStrength::Exitance, |strength| {
+            if let PanelStrength::Exitance(color) = strength { Some(*color) } else { None }
+        })
+        .field("power", Color(100.0), "W", "Emitted in all.", PanelStrength::Power, |strength| {
+            if let PanelStrength::Power(color) = strength { Some(*color) } else { None }
+        })
+}
+
+impl Panel {
+    /// Returns the panel as a scene takes it.
+    pub(crate) fn to_scene(&self) -> SceneLight {
+        let Self { corner, edges, strength } = *self;
+        let exitance = match strength {
+            PanelStrength::Exitance(exitance) => exitance,
+            PanelStrength::Power(power) => power / edges[0].cross(edges[1]).length(),
+        };
+        SceneLight::Panel { corner, edges, exitance }
+    }
+}
+
+/// Two vectors that span an area.
+#[derive(Clone, Copy)]
+struct Edges;
+
+impl Format for Edges {
+    type Value = [DVec3; 2];
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<[DVec3; 2]> {
+        let (Value::Items(items) | Value::List(items)) = &node.value else {
+            reader.wrong_value(node, name, "two vectors", self.example());
+            return None;
+        };
+        let help = format!("write for instance `{name}: {}`", self.example());
+        let [a, b] = items.as_slice() else {
+            let message = format!("`{name}` must be two vectors, but there are {}", items.len());
+            reader.problem(node.text, message, help);
+            return None;
+        };
+        let [a, b] = [a, b].map(|vector| Vector([1.0, 0.0, 0.0]).read(reader, vector, name));
+        let (a, b) = (a?, b?);
+        if a.cross(b).length() > 1e-9 * a.length() * b.length() {
+            return Some([a, b]);
+        }
+        reader.problem(node.text, format!("the `{name}` of a panel span no area"), help);
+        None
+    }
+
+    fn write(&self, value: &[DVec3; 2]) -> String {
+        let [a, b] = value.map(|vector| Vector([0.0; 3]).write(&vector));
+        format!("({a}, {b})")
+    }
+
+    fn describe(&self) -> String {
+        "`((x, y, z), (x, y, z))`".into()
+    }
+
+    fn example(&self) -> String {
+        "((1, 0, 0), (0, 0, 1))".into()
+    }
+}

@@ -1,0 +1,68 @@
+//! The stage `Save`: files that a run writes.
+
+use std::path::{Path, PathBuf};
+
+use crate::plan::image::Image;
+use crate::text::field::Format as _;
+use crate::text::paths::OutputFile;
+use crate::text::reader::Reader;
+use crate::text::record::{Body, Choose as _, choice, list_items, record, write_list};
+use crate::text::ron_tree::Node;
+
+/// Writes files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Save {
+    /// The files, at least one.
+    pub outputs: Vec<Output>,
+}
+
+choice! {
+    /// A file to write.
+    pub enum Output as "output" {
+        /// A picture.
+        Image(Image),
+        /// The lit mesh, as binary glTF.
+        Gltf(Gltf),
+        /// Radiosity, irradiance and error of every patch, as CSV or NPY.
+        Table(Table),
+    }
+}
+
+record! {
+    /// The lit mesh.
+    pub struct Gltf {
+        /// `.glb`: the scene with its light as vertex colors, for viewers and modeling programs; the radiosity in W/m² is in the
+        /// attribute `_RADIOSITY`.
+        pub path: PathBuf = OutputFile { extensions: &["glb"], example: "result.glb" }.required();
+    }
+}
+
+record! {
+    /// Radiosity, irradiance and error of every patch.
+    pub struct Table {
+        /// `.csv`: text; `.npy`: the same as a structured array for NumPy, smaller and faster.
+        pub path: PathBuf = OutputFile { extensions: &["csv", "npy"], example: "patches.csv" }.required();
+    }
+}
+
+impl Output {
+    /// Returns the path of the file inside the run directory.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Image(Image { path, .. }) | Self::Gltf(Gltf { path }) | Self::Table(Table { path }) => path,
+        }
+    }
+}
+
+impl Body for Save {
+    fn read<'a>(reader: &mut Reader<'a>, node: &Node<'a>) -> Option<Self> {
+        let items = list_items(reader, node, "outputs", "Image(path: \"view.png\")")?;
+        let outputs: Vec<_> = items.iter().map(|item| Output::read(reader, item)).collect();
+        outputs.into_iter().collect::<Option<_>>().map(|outputs| Self { outputs })
+    }
+
+    fn write(&self, name: &str) -> String {
+        write_list(name, &self.outputs)
+    }
+}

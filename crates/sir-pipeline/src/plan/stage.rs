@@ -1,0 +1,281 @@
+//! Stages: all there are, and those that are repeated.
+
+use crate::plan::focus::Focus;
+use crate::plan::light::Light;
+use crate::plan::lines::{FirstShot, MAX_LINES, SecondShot};
+use crate::plan::load::Load;
+use crate::plan::multipath::{Multipath, Transport};
+use crate::plan::order::{Named, check_order, check_repeated};
+use crate::plan::save::Save;
+use crate::plan::sensors::Sensors;
+use crate::plan::subdivide::Subdivide;
+use crate::text::diagnostic::Diagnostic;
+use crate::text::field::{Format, OneOf};
+use crate::text::formats::{count, positive, write_number};
+use crate::text::reader::Reader;
+use crate::text::record::{Choose, choice, record};
+use crate::text::ron_tree::{Node, Value};
+use crate::text::span::Span;
+use crate::text::suggest::resembling;
+
+/// A stage, and where the file asks for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// What to do.
+    pub action: Action,
+    /// Where the file asks for it.
+    pub span: Span,
+}
+
+impl Stage {
+    /// Returns the stages of a `Repeat`, or else the stage itself.
+    pub fn flat(&self) -> impl Iterator<Item = &Self> {
+        match &self.action {
+            Action::Repeat(Repeat { stages, .. }) => stages.iter(),
+            _ => std::slice::from_ref(self).iter(),
+        }
+    }
+}
+
+choice! {
+    /// What a stage does.
+    pub enum Action as "stage" {
+        /// Reads a scene.
+        Load(Load),
+        /// Adds lights to the scene.
+        Light(Light),
+        /// Cuts the triangles into patches.
+        Subdivide(Subdivide),
+        /// Says which part of the scene matters.
+        Focus(Focus),
+        /// Sends the power of the light sources along local lines.
+        FirstShot(FirstShot),
+        /// Lets the brightest patches send what they reflect along local lines, too.
+        SecondShot(SecondShot),
+        /// Distributes the reflected light along global lines.
+        Multipath(Multipath),
+        /// Runs stages of lines again and again, for the mean of independent results.
+        Repeat(Repeat),
+        /// Measures irradiance at points.
+        Sensors(Sensors),
+        /// Writes files.
+        Save(Save),
+    }
+}
+
+impl Action {
+    /// Returns the name of the stage in a pipeline file.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        Choose::name(self)
+    }
+
+    /// Returns how many lines it has, those of a `Repeat` once.
+    #[must_use]
+    pub fn lines(&self) -> u64 {
+        match self {
+            Self::FirstShot(FirstShot { lines })
+            | Self::SecondShot(SecondShot { lines })
+            | Self::Multipath(Multipath { lines, .. }) => *lines,
+            Self::Repeat(repeat) => repeat.stages.iter().map(|stage| stage.action.lines()).sum(),
+            Self::Load(_)
+            | Self::Light(_)
+            | Self::Subdivide(_)
+            | Self::Focus(_)
+            | Self::Sensors(_)
+            | Self::Save(_) => 0,
+        }
+    }
+}
+
+record! {
+    /// Stages that are run again and again.
+    pub struct Repeat {
+        /// How often.
+        pub until: Until = until();
+        /// Not more often than this. A warning says if a target was not reached.
+        pub at_most: Option<u64> = count(1, MAX_LINES, 100).optional("no limit");
+        /// `FirstShot`, and what may follow it except `Sensors` and `Save`.
+        pub stages: Vec<Stage> = StageList::REPEATED.required();
+    }
+}
+
+/// When there have been enough repeats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Until {
+    /// After so many: at least 1.
+    Times(u64),
+    /// When the relative error of the mean is not above this, in any band: above 0.
+    RelativeError(f64),
+    /// When another one would end later than after so many seconds: above 0.
+    Seconds(f64),
+}
+
+fn until() -> OneOf<Until> {
+    OneOf::new()
+        .field("times", count(1, MAX_LINES, 16), "", "How often.", Until::Times, |until| match until {
+            Until::Times(times) => Some(*times),
+            _ => None,
+        })
+        .field(
+            "until",
+            Target,
+            "",
+            "`RelativeError(e)`: until the `relative_error` of the mean, as in `result.json`, is at most `e` in every band: 0.01 is \
+             1 %. `Seconds(s)`: as long as it takes at most `s` seconds, one run at least. A repeat that would end later is not begun, \
+             if it takes as long as those before did on average. Time before a run was resumed counts.",
+            |until| until,
+            |until| (!matches!(until, Until::Times(_))).then_some(*until),
+        )
+}
+
+/// A target that is not a number of repeats.
+#[derive(Clone, Copy)]
+struct Target;
+
+impl Format for Target {
+    type Value = Until;
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<Until> {
+        let kind = reader.name_of(node, "target", &["RelativeError", "Seconds"])?;
+        let (example, target): (_, fn(f64) -> Until) = match kind {
+            "Seconds" => (60.0, Until::Seconds),
+            _ => (0.01, Until::RelativeError),
+        };
+        let help = format!("write `{name}: {}`", self.write(&target(example)));
+        if let Value::Items(items) = &node.value
+            && let [number] = items.as_slice()
+        {
+            match positive(example).value(number) {
+                Ok(value) => return Some(target(value)),
+                Err(what) => {
+                    let message = format!("`{kind}` must have {what}, but it has {}", number.kind());
+                    reader.problem(number.text, message, help);
+                }
+            }
+        } else {
+            let message = format!("`{kind}` takes one number, but this is {}", node.kind());
+            reader.problem(node.text, message, help);
+        }
+        None
+    }
+
+    fn write(&self, value: &Until) -> String {
+        match value {
+            Until::Times(times) => times.to_string(),
+            Until::RelativeError(error) => format!("RelativeError({})", write_number(*error)),
+            Until::Seconds(seconds) => format!("Seconds({})", write_number(*seconds)),
+        }
+    }
+
+    fn describe(&self) -> String {
+        "`RelativeError(e)` or `Seconds(s)`, of a number above 0".into()
+    }
+
+    fn example(&self) -> String {
+        "RelativeError(0.01)".into()
+    }
+}
+
+/// Notes a problem with all replicas, because there is a focus: a line of a replica takes along all that a side holds, and so must not be aimed.
+fn refuse_replicas<'s>(reader: &mut Reader<'_>, stages: impl Iterator<Item = &'s Stage>) {
+    for stage in stages.flat_map(Stage::flat) {
+        if let Action::Multipath(Multipath { transport: Transport::Replicas(_), .. }) = stage.action {
+            reader.problems.push(Diagnostic {
+                span: stage.span.0.clone(),
+                message: "the transport `Replicas` cannot have a `Focus`: each line takes along all that a surface holds, so \
+                          lines must be the same everywhere"
+                    .into(),
+                help: "write `transport: Batches`, or leave `Focus` out".into(),
+            });
+        }
+    }
+}
+
+/// A list of stages in a possible order.
+#[derive(Clone, Copy)]
+pub(crate) struct StageList {
+    /// What they are called.
+    what: &'static str,
+    /// Those that may be in it.
+    known: &'static [&'static str],
+    /// Notes what is wrong with their order.
+    check_order: fn(&mut Reader<'_>, &[Named<'_>], &str),
+    example: &'static str,
+    /// What is written before each of them, and at the end.
+    breaks: [&'static str; 2],
+}
+
+impl StageList {
+    /// All stages of a pipeline.
+    pub(crate) const ALL: Self = Self {
+        what: "stage",
+        known: Action::NAMES,
+        check_order,
+        example: "[Load(path: \"scene.gltf\"), …]",
+        breaks: ["\n        ", "\n    "],
+    };
+
+    /// Those in a `Repeat`.
+    const REPEATED: Self = Self {
+        what: "repeated stage",
+        known: &["FirstShot", "SecondShot", "Multipath"],
+        check_order: check_repeated,
+        example: "[FirstShot(lines: 1_000_000), …]",
+        breaks: ["", ""],
+    };
+}
+
+impl Format for StageList {
+    type Value = Vec<Stage>;
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<Vec<Stage>> {
+        let Value::List(nodes) = &node.value else {
+            let message = format!("`{name}` must be a list, but it is {}", node.kind());
+            reader.problem(node.text, message, format!("write `{name}: {}`", self.example));
+            return None;
+        };
+        let mut stages = Vec::new();
+        // The order is checked if all stages are known, or nearly: what an unknown stage would have made is not known.
+        let (mut order, mut all_known) = (Vec::new(), true);
+        for node in nodes {
+            let place = node.name();
+            match reader.name_of(node, self.what, self.known) {
+                Some(name) => {
+                    order.push((name, place));
+                    let span = Span(reader.span(place));
+                    stages.push(Action::read_named(name, reader, node).map(|action| Stage { action, span }));
+                }
+                None => {
+                    stages.push(None);
+                    match resembling(place, self.known) {
+                        Some(meant) => order.push((*meant, place)),
+                        None => all_known = false,
+                    }
+                }
+            }
+        }
+        if all_known {
+            (self.check_order)(reader, &order, node.text);
+        }
+        if order.iter().any(|(name, _)| *name == "Focus") {
+            refuse_replicas(reader, stages.iter().flatten());
+        }
+        stages.into_iter().collect()
+    }
+
+    fn write(&self, value: &Vec<Stage>) -> String {
+        let [before, end] = self.breaks;
+        let stages: Vec<String> =
+            value.iter().map(|stage| format!("{before}{}", stage.action.write())).collect();
+        format!("[{}{end}]", stages.join(if before.is_empty() { ", " } else { "," }))
+    }
+
+    fn describe(&self) -> String {
+        "list of stages".into()
+    }
+
+    fn example(&self) -> String {
+        self.example.into()
+    }
+}

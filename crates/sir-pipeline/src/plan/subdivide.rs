@@ -1,0 +1,83 @@
+//! The stage `Subdivide`.
+
+use sir_mesh::Subdivision;
+
+use crate::text::field::{Format, OneOf};
+use crate::text::formats::{count, positive};
+use crate::text::reader::Reader;
+use crate::text::record::record;
+use crate::text::ron_tree::{Node, Value};
+
+record! {
+    /// Cuts the triangles into patches.
+    pub struct Subdivide {
+        /// How finely.
+        pub how: Subdivision = how();
+    }
+}
+
+fn how() -> OneOf<Subdivision> {
+    OneOf::new()
+        .field(
+            "patches",
+            count::<u32>(1, u64::from(u32::MAX), 20_000),
+            "",
+            "About this many patches in all, of areas as equal as possible; never fewer than there are triangles.",
+            |n| Subdivision::Patches(n.into()),
+            |how| if let Subdivision::Patches(n) = how { u32::try_from(*n).ok() } else { None },
+        )
+        .field(
+            "max_area",
+            positive(0.01),
+            "m²",
+            "No patch is larger.",
+            Subdivision::MaxArea,
+            |how| if let Subdivision::MaxArea(area) = how { Some(*area) } else { None },
+        )
+        .field(
+            "max_edge",
+            positive(0.1),
+            "m",
+            "No edge of a patch is longer.",
+            Subdivision::MaxEdge,
+            |how| if let Subdivision::MaxEdge(edge) = how { Some(*edge) } else { None },
+        )
+        .field(
+            "per_face",
+            True,
+            "",
+            "One patch for every flat polygon of the file, whatever the number of triangles it was cut into; bent ones are cut into \
+             their triangles.",
+            |()| Subdivision::PerFace,
+            |how| (*how == Subdivision::PerFace).then_some(()),
+        )
+}
+
+/// `true`, and nothing else.
+#[derive(Clone, Copy)]
+struct True;
+
+impl Format for True {
+    type Value = ();
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<()> {
+        if node.value == Value::Bool(true) {
+            return Some(());
+        }
+        let message = format!("`{name}` can only be `true`, but it is {}", node.kind());
+        reader.problem(node.text, message, format!("write `{name}: true`, or leave it out"));
+        None
+    }
+
+    fn write(&self, (): &()) -> String {
+        "true".into()
+    }
+
+    fn describe(&self) -> String {
+        "`true`".into()
+    }
+
+    fn example(&self) -> String {
+        "true".into()
+    }
+}

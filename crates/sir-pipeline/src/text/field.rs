@@ -1,0 +1,237 @@
+//! Fields: how a value is written, and what holds where it is left out.
+
+use crate::format::list;
+use crate::text::reader::{Fields, Reader};
+use crate::text::ron_tree::Node;
+
+/// How a value is written in a pipeline file.
+pub(crate) trait Format: Sized {
+    /// The value.
+    type Value: Clone;
+
+    /// Reads the value of the field `name`, or notes what is wrong with it.
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<Self::Value>;
+
+    /// Writes a value as [`read`](Self::read) understands it.
+    fn write(&self, value: &Self::Value) -> String;
+
+    /// Describes what may be written, for the reference.
+    fn describe(&self) -> String;
+
+    /// Returns a value as it may be written.
+    fn example(&self) -> String;
+
+    /// A field that must be given.
+    fn required(self) -> Field<Self> {
+        Field { format: self, unit: "", default: None }
+    }
+
+    /// A field with a default.
+    fn or(self, default: Self::Value) -> Field<Self> {
+        Field { format: self, unit: "", default: Some(default) }
+    }
+
+    /// A field that may be left out; `without` tells the reference what holds then.
+    fn optional(self, without: &'static str) -> Optional<Self> {
+        Optional { format: self, unit: "", without }
+    }
+}
+
+/// A row of a table of fields in the reference.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Row {
+    /// The name of the field.
+    pub(crate) name: &'static str,
+    /// What may be written.
+    pub(crate) values: String,
+    /// The unit, or nothing.
+    pub(crate) unit: &'static str,
+    /// The default, or that there is none.
+    pub(crate) default: String,
+    /// What the field means.
+    pub(crate) meaning: &'static str,
+}
+
+/// A part of a record: one field, or several of which one is given.
+pub(crate) trait Part {
+    /// The value of the part.
+    type Value;
+
+    /// Returns the rows of the reference for the part of this name and meaning.
+    fn rows(&self, name: &'static str, meaning: &'static str) -> Vec<Row>;
+
+    /// Reads the part, or notes what is wrong with it.
+    fn read<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>, name: &str) -> Option<Self::Value>;
+
+    /// Writes the part as a field: its name, and its value. `None` if it is left out.
+    fn write(&self, value: &Self::Value, name: &'static str) -> Option<(&'static str, String)>;
+}
+
+/// Returns a part as it is, and tells the compiler which values it has.
+pub(crate) fn part<T, P: Part<Value = T>>(part: P) -> P {
+    part
+}
+
+/// A field that is required or has a default.
+pub(crate) struct Field<F: Format> {
+    format: F,
+    unit: &'static str,
+    default: Option<F::Value>,
+}
+
+impl<F: Format> Field<F> {
+    /// Names the unit.
+    pub(crate) fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+}
+
+impl<F: Format> Part for Field<F> {
+    type Value = F::Value;
+
+    fn rows(&self, name: &'static str, meaning: &'static str) -> Vec<Row> {
+        let Self { format, unit, default } = self;
+        let default =
+            default.as_ref().map_or("required".into(), |value| format!("`{}`", format.write(value)));
+        vec![Row { name, values: format.describe(), unit, default, meaning }]
+    }
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>, name: &str) -> Option<F::Value> {
+        match (fields.get(name), &self.default) {
+            (Some(node), _) => self.format.read(reader, node, name),
+            (None, Some(default)) => Some(default.clone()),
+            (None, None) => {
+                if !fields.excused {
+                    let Fields { owner, place, .. } = fields;
+                    let help = format!("write `{owner}({name}: {}, …)`", self.format.example());
+                    reader.problem(place, format!("`{owner}` lacks the field `{name}`"), help);
+                }
+                None
+            }
+        }
+    }
+
+    fn write(&self, value: &F::Value, name: &'static str) -> Option<(&'static str, String)> {
+        Some((name, self.format.write(value)))
+    }
+}
+
+/// A field that may be left out.
+pub(crate) struct Optional<F: Format> {
+    format: F,
+    unit: &'static str,
+    without: &'static str,
+}
+
+impl<F: Format> Optional<F> {
+    /// Names the unit.
+    pub(crate) fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+}
+
+impl<F: Format> Part for Optional<F> {
+    type Value = Option<F::Value>;
+
+    fn rows(&self, name: &'static str, meaning: &'static str) -> Vec<Row> {
+        let Self { format, unit, without } = self;
+        vec![Row { name, values: format.describe(), unit, default: (*without).into(), meaning }]
+    }
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>, name: &str) -> Option<Self::Value> {
+        match fields.get(name) {
+            Some(node) => self.format.read(reader, node, name).map(Some),
+            None => Some(None),
+        }
+    }
+
+    fn write(&self, value: &Self::Value, name: &'static str) -> Option<(&'static str, String)> {
+        value.as_ref().map(|value| (name, self.format.write(value)))
+    }
+}
+
+/// Several fields, exactly one of which is given.
+pub(crate) struct OneOf<T> {
+    alternatives: Vec<Alternative<T>>,
+}
+
+struct Alternative<T> {
+    row: Row,
+    example: String,
+    read: Box<ReadValue<T>>,
+    write: Box<WriteValue<T>>,
+}
+
+type ReadValue<T> = dyn for<'a> Fn(&mut Reader<'a>, &Node<'a>) -> Option<T>;
+type WriteValue<T> = dyn Fn(&T) -> Option<String>;
+
+impl<T: 'static> OneOf<T> {
+    /// Returns a part without fields.
+    pub(crate) fn new() -> Self {
+        Self { alternatives: Vec::new() }
+    }
+
+    /// Adds a field: `wrap` makes its value that of the part, `unwrap` takes it out again if it is of this field.
+    pub(crate) fn field<F: Format + Clone + 'static>(
+        mut self,
+        name: &'static str,
+        format: F,
+        unit: &'static str,
+        meaning: &'static str,
+        wrap: fn(F::Value) -> T,
+        unwrap: fn(&T) -> Option<F::Value>,
+    ) -> Self {
+        let row = Row { name, values: format.describe(), unit, default: String::new(), meaning };
+        let example = format.example();
+        let writer = format.clone();
+        self.alternatives.push(Alternative {
+            row,
+            example,
+            read: Box::new(move |reader, node| format.read(reader, node, name).map(wrap)),
+            write: Box::new(move |value| unwrap(value).map(|value| writer.write(&value))),
+        });
+        self
+    }
+
+    fn names(&self) -> Vec<&'static str> {
+        self.alternatives.iter().map(|a| a.row.name).collect()
+    }
+}
+
+impl<T: 'static> Part for OneOf<T> {
+    type Value = T;
+
+    fn rows(&self, _: &'static str, _: &'static str) -> Vec<Row> {
+        let names = self.names();
+        let row = |a: &Alternative<T>| {
+            let others = names.iter().filter(|name| **name != a.row.name);
+            let all: Vec<&str> = std::iter::once("this").chain(others.copied()).collect();
+            Row { default: list(&all, "or").replacen("`this`", "this", 1), ..a.row.clone() }
+        };
+        self.alternatives.iter().map(row).collect()
+    }
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>, _: &str) -> Option<T> {
+        let Fields { owner, place, .. } = fields;
+        let mut given = self.alternatives.iter().filter_map(|a| fields.get(a.row.name).map(|node| (a, node)));
+        let Some((first, node)) = given.next() else {
+            if !fields.excused {
+                let examples: Vec<String> =
+                    self.alternatives.iter().map(|a| format!("{}: {}", a.row.name, a.example)).collect();
+                let examples: Vec<&str> = examples.iter().map(String::as_str).collect();
+                let message = format!("`{owner}` needs one of the fields {}", list(&self.names(), "and"));
+                reader.problem(place, message, format!("write {}", list(&examples, "or")));
+            }
+            return None;
+        };
+        for (other, _) in given {
+            let message = format!("`{owner}` has both `{}` and `{}`", first.row.name, other.row.name);
+            reader.problem(place, message, "keep one of them");
+        }
+        (first.read)(reader, node)
+    }
+
+    fn write(&self, value: &T, _: &'static str) -> Option<(&'static str, String)> {
+        self.alternatives.iter().find_map(|a| (a.write)(value).map(|text| (a.row.name, text)))
+    }
+}

@@ -1,0 +1,99 @@
+//! How the paths of files are written in a pipeline file.
+
+use std::path::{Path, PathBuf};
+
+use crate::text::field::Format;
+use crate::text::formats::{Text, quoted};
+use crate::text::reader::Reader;
+use crate::text::ron_tree::Node;
+use crate::text::suggest::did_you_mean;
+
+/// A scene file, which must exist.
+#[derive(Clone, Copy)]
+pub(crate) struct SceneFile;
+
+impl SceneFile {
+    const EXTENSIONS: [&str; 3] = ["gltf", "glb", "obj"];
+    const TEXT: Text = Text("scene.gltf");
+}
+
+impl Format for SceneFile {
+    type Value = PathBuf;
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<PathBuf> {
+        let text = Self::TEXT.read(reader, node, name)?;
+        let path = reader.folder.join(&text);
+        if !Self::EXTENSIONS.contains(&extension(&path).as_str()) {
+            let message = format!("\"{text}\" is not a scene file by its name");
+            reader.problem(node.text, message, "scenes are read from .gltf, .glb and .obj files");
+            return None;
+        }
+        if path.is_file() {
+            return Some(path);
+        }
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut neighbors: Vec<String> = std::fs::read_dir(folder)
+            .map(|entries| entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).collect())
+            .unwrap_or_default();
+        neighbors.sort();
+        let what = if path.exists() { "is not a file" } else { "does not exist" };
+        let help = did_you_mean(&name, &neighbors)
+            .unwrap_or_else(|| "paths are relative to the folder of the pipeline file".into());
+        reader.problem(node.text, format!("the scene file {} {what}", path.display()), help);
+        None
+    }
+
+    fn write(&self, value: &PathBuf) -> String {
+        quoted(&value.to_string_lossy())
+    }
+
+    fn describe(&self) -> String {
+        "text".into()
+    }
+
+    fn example(&self) -> String {
+        Self::TEXT.example()
+    }
+}
+
+/// A file in the run directory, with one of these extensions, which no other output has.
+#[derive(Clone, Copy)]
+pub(crate) struct OutputFile {
+    /// What its name may end in.
+    pub(crate) extensions: &'static [&'static str],
+    /// A name.
+    pub(crate) example: &'static str,
+}
+
+impl Format for OutputFile {
+    type Value = PathBuf;
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<PathBuf> {
+        let text = Text(self.example).read(reader, node, name)?;
+        if !self.extensions.contains(&extension(Path::new(&text)).as_str()) {
+            let known: Vec<String> = self.extensions.iter().map(|e| format!(".{e}")).collect();
+            let message = format!("the name of the output \"{text}\" does not end in {}", known.join(" or "));
+            reader.problem(node.text, message, format!("write for instance `{name}: {}`", self.example()));
+            return None;
+        }
+        reader.claim_output(node, &text)
+    }
+
+    fn write(&self, value: &PathBuf) -> String {
+        quoted(&value.to_string_lossy())
+    }
+
+    fn describe(&self) -> String {
+        "text".into()
+    }
+
+    fn example(&self) -> String {
+        quoted(self.example)
+    }
+}
+
+/// Returns the extension of a path in lower case, or an empty text.
+fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
