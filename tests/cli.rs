@@ -89,7 +89,11 @@ fn wrong_usage_and_wrong_pipelines_exit_with_2() {
     }
     assert!(!folder.path().join("results").exists());
     assert_eq!(sir(folder.path(), &["run", "room.ron", "--out", "o"]).0, 0);
-    assert_eq!(sir(folder.path(), &["run", "room.ron", "--out", "o"]).0, 2);
+    let (code, _, stderr) = sir(folder.path(), &["run", "room.ron", "--out", "o"]);
+    assert!(
+        code == 2 && stderr.contains("help: `--out DIR` chooses another directory, `--force`"),
+        "{stderr}"
+    );
     assert_eq!(sir(folder.path(), &["run", "room.ron", "--out", "o", "--force"]).0, 0);
 }
 

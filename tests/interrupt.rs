@@ -151,7 +151,7 @@ fn ctrl_c_and_sigterm_save_the_state_and_exit_with_130() {
             let stderr = String::from_utf8(stderr).unwrap();
             assert_eq!(status.code(), Some(130), "{name}: {stderr}");
             assert!(
-                stderr.contains("interrupted") && stderr.contains("`sir resume stopped` goes on"),
+                stderr.contains("interrupted") && stderr.contains("`sir resume stopped` continues"),
                 "{stderr}"
             );
             assert!(!folder.join("stopped/result.json").exists());
@@ -195,9 +195,9 @@ fn what_cannot_be_resumed_is_refused_with_the_reason() {
             sir().args(["resume", directory]).current_dir(folder).output().unwrap();
         let stderr = String::from_utf8(stderr).unwrap();
         assert_eq!(status.code(), Some(2), "{stderr}");
-        let last = stderr.lines().last().unwrap().to_owned();
-        assert!(last.starts_with(&format!("error: the run in {directory} cannot be resumed: ")), "{stderr}");
-        last
+        let start = format!("error: the run in {directory} cannot be resumed: ");
+        assert!(stderr.contains(&start) && stderr.contains("`sir run PIPELINE`"), "{stderr}");
+        stderr.lines().find(|line| line.starts_with(&start)).unwrap().to_owned()
     };
     // Something is changed, and changed back.
     let with = |file: &str, change: &dyn Fn(Vec<u8>) -> Vec<u8>| {
@@ -212,9 +212,9 @@ fn what_cannot_be_resumed_is_refused_with_the_reason() {
         move |bytes| String::from_utf8(bytes).unwrap().replacen(from, to, 1).into_bytes()
     };
     let error = with("work.ron", &text("8_000_000", "9_000_000"));
-    assert!(error.contains("work.ron has changed; put it back, or begin anew"), "{error}");
+    assert!(error.contains("work.ron has changed; put it back, or start a new run"), "{error}");
     let error = with("furnace.gltf", &text("0.5", "0.25"));
-    assert!(error.contains("furnace.gltf has changed; put it back, or begin anew"), "{error}");
+    assert!(error.contains("furnace.gltf has changed; put it back, or start a new run"), "{error}");
     let flip = |mut bytes: Vec<u8>| {
         let middle = bytes.len() / 2;
         bytes[middle] ^= 1;
@@ -229,5 +229,5 @@ fn what_cannot_be_resumed_is_refused_with_the_reason() {
     assert!(refused("stopped").contains("the run is finished: its result is there"));
     assert!(refused("nowhere").contains("there is no such directory"));
     fs::create_dir(folder.join("empty")).unwrap();
-    assert!(refused("empty").contains("it holds no checkpoint; begin anew with `sir run`"));
+    assert!(refused("empty").contains("it holds no checkpoint; start a new run"));
 }

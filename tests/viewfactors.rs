@@ -95,7 +95,7 @@ fn mistakes_say_what_to_do() {
     for (args, code, expected) in [
         ("absent.obj", 1, "absent.obj"),
         ("cube.ron", 1, "cube.ron"),
-        ("unnamed.obj --by group", 2, "use --by material"),
+        ("unnamed.obj --by group", 2, "use `--by material`"),
         ("cube.obj --by group --lines 95", 1, "ask for at least 96"),
         ("cube.obj --error 0", 2, "write a number from"),
         ("cube.obj --error", 2, "--error"),

@@ -1,6 +1,7 @@
 //! Why a command fails.
 
 use sir_parallel::ConnectError;
+use sir_pipeline::ErrorKind;
 use sir_pipeline::view_factors::ViewFactorsError;
 use sir_study::StudyError;
 use thiserror::Error;
@@ -34,13 +35,13 @@ impl From<ViewFactorsError> for CliError {
 }
 
 impl CliError {
-    /// The exit code of the program: 2 for wrong usage or a wrong pipeline, 130 if interrupted, else 1.
+    /// Returns the kind of failure.
     #[must_use]
-    pub fn exit_code(&self) -> u8 {
+    pub fn kind(&self) -> ErrorKind {
         match self {
-            Self::Pipeline(error) => error.exit_code(),
-            Self::Study(error) => error.exit_code(),
-            Self::Validation(error) => error.exit_code(),
+            Self::Pipeline(error) => error.kind(),
+            Self::Study(error) => error.kind(),
+            Self::Validation(error) => error.kind(),
         }
     }
 }

@@ -6,15 +6,14 @@ use std::sync::atomic::AtomicBool;
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::flag::{register, register_conditional_shutdown};
 
-/// Exit code of an interrupted program.
-const INTERRUPTED: i32 = 130;
+use crate::exit::INTERRUPTED;
 
 /// A flag that the first of these signals sets. The second one ends the program at once.
 pub(crate) fn flag() -> Arc<AtomicBool> {
     let flag = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGUSR1] {
         // In this order: the first signal finds the flag unset. Where it fails, signals do what they always do.
-        let _ = register_conditional_shutdown(signal, INTERRUPTED, Arc::clone(&flag));
+        let _ = register_conditional_shutdown(signal, INTERRUPTED.into(), Arc::clone(&flag));
         let _ = register(signal, Arc::clone(&flag));
     }
     flag

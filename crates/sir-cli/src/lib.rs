@@ -15,6 +15,7 @@
 pub mod args;
 pub mod compare;
 mod error;
+mod exit;
 pub mod experiment;
 pub mod info;
 mod interrupt;
@@ -35,7 +36,7 @@ use sir_parallel::{Communicator, SingleProcess, connect};
 use sir_pipeline::check::estimate;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::run::{resume_together, run_together};
-use sir_pipeline::{Error, RunOptions, RunResult, chain, report};
+use sir_pipeline::{RunOptions, RunResult, report};
 
 use args::{Args, Command, HowArgs, RunArgs};
 pub use error::CliError;
@@ -70,13 +71,8 @@ fn execute(command: Command) -> Result<String, ExitCode> {
 
 /// Shows an error; returns the exit code.
 fn show(error: &CliError) -> ExitCode {
-    match error {
-        CliError::Pipeline(Error::Pipeline(problems)) => eprint!("{problems}"),
-        // The rank that failed says why.
-        CliError::Pipeline(Error::Elsewhere { .. }) => {}
-        other => eprintln!("error: {}", chain(other)),
-    }
-    ExitCode::from(error.exit_code())
+    eprint!("{}", exit::message(error));
+    exit::code(error.kind())
 }
 
 /// Executes a command, together with the other ranks, until it is done or `stop` becomes true.

@@ -12,6 +12,18 @@ use thiserror::Error;
 use crate::text::diagnostic::Diagnostics;
 use crate::view_factors::error::ViewFactorsError;
 
+/// What kind of failure an error is. It decides what a program does next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// The request is wrong: a pipeline with mistakes, a directory that is taken, a run that cannot be resumed. The same request
+    /// fails again.
+    Usage,
+    /// Something failed: a file, memory, a computation, another process.
+    Failed,
+    /// Someone asked to stop.
+    Interrupted,
+}
+
 /// Why a run fails. Every message ends with what to do, where that is not obvious.
 #[derive(Debug, Error)]
 pub enum Error {
@@ -30,13 +42,13 @@ pub enum Error {
         source: io::Error,
     },
     /// What was given as a pipeline file is no text.
-    #[error("{} is not a text file, but a pipeline is one; `sir --help` shows an example", path.display())]
+    #[error("{} is not a text file, but a pipeline is one", path.display())]
     NotText {
         /// The file.
         path: PathBuf,
     },
     /// What was given as a pipeline file is too long for one.
-    #[error("{} has more than {most} bytes, but a pipeline is a short text; `sir --help` shows an example", path.display())]
+    #[error("{} has more than {most} bytes, but a pipeline is a short text", path.display())]
     LongPipeline {
         /// The file.
         path: PathBuf,
@@ -55,14 +67,14 @@ pub enum Error {
         available: String,
     },
     /// The run directory that was asked for holds a result already.
-    #[error("{} holds a result already; choose another --out, or replace it with --force", directory.display())]
+    #[error("{} holds a result already; choose another run directory, or allow it to be replaced", directory.display())]
     Exists {
         /// The directory.
         directory: PathBuf,
     },
     /// The run directory that was asked for holds an interrupted run.
     #[error(
-        "{0} holds an interrupted run; go on with it by `sir resume {0}`, choose another --out, or replace it with --force",
+        "{} holds an interrupted run; resume it, choose another run directory, or allow it to be replaced",
         directory.display()
     )]
     ExistsInterrupted {
@@ -70,7 +82,7 @@ pub enum Error {
         directory: PathBuf,
     },
     /// The run directory cannot be made.
-    #[error("cannot make the directory {}; choose another with --out", path.display())]
+    #[error("cannot make the directory {}; choose another", path.display())]
     Directory {
         /// The directory.
         path: PathBuf,
@@ -84,9 +96,7 @@ pub enum Error {
     #[error(transparent)]
     Run(#[from] RunError),
     /// The run was stopped, and can go on.
-    #[error(
-        "interrupted after {done} of {total} lines; `sir resume {}` goes on from here", directory.display()
-    )]
+    #[error("interrupted after {done} of {total} lines; resume the run in {} to continue", directory.display())]
     Interrupted {
         /// Lines done in this stage.
         done: u64,
@@ -96,19 +106,22 @@ pub enum Error {
         directory: PathBuf,
     },
     /// The run was stopped while it wrote its files, and can go on.
-    #[error("interrupted while files were written; `sir resume {}` goes on from the last checkpoint", directory.display())]
+    #[error("interrupted while files were written; resume the run in {} to continue from its last checkpoint", directory.display())]
     InterruptedSaving {
         /// The run directory.
         directory: PathBuf,
     },
     /// The run was stopped while it measured at sensors, and can go on.
-    #[error("interrupted at the sensors; `sir resume {}` goes on from the last checkpoint", directory.display())]
+    #[error("interrupted at the sensors; resume the run in {} to continue from its last checkpoint", directory.display())]
     InterruptedMeasuring {
         /// The run directory.
         directory: PathBuf,
     },
     /// A file of a run cannot be written, for want of space on a disk, for instance.
-    #[error("the run in {0} is not complete; free some space or put right what is said below, and `sir resume {0}` goes on from the last checkpoint", directory.display())]
+    #[error(
+        "the run in {} is not complete; free some space or fix the problem below, then resume the run from its last checkpoint",
+        directory.display()
+    )]
     NotWritten {
         /// The run directory.
         directory: PathBuf,
@@ -131,8 +144,8 @@ pub enum Error {
     Elsewhere {
         /// The rank.
         rank: usize,
-        /// Its exit code.
-        code: u8,
+        /// Kind of its error.
+        kind: ErrorKind,
     },
     /// A rank has read something else than the first one.
     #[error(
@@ -177,21 +190,24 @@ impl Error {
         move |source| Self::Directory { path: path.to_owned(), source }
     }
 
-    /// The exit code of the program: 2 for wrong usage or a wrong pipeline, 130 if interrupted, else 1.
+    /// Returns the kind of failure.
     #[must_use]
-    pub fn exit_code(&self) -> u8 {
+    pub fn kind(&self) -> ErrorKind {
         match self {
-            Self::Pipeline(_) | Self::ReadPipeline { .. } => 2,
-            Self::NotText { .. } | Self::LongPipeline { .. } => 2,
-            Self::Exists { .. } | Self::ExistsInterrupted { .. } => 2,
-            Self::CannotResume { .. } => 2,
-            Self::Interrupted { .. } | Self::InterruptedSaving { .. } | Self::InterruptedMeasuring { .. } => {
-                130
-            }
-            Self::Run(RunError::Interrupted { .. }) => 130,
-            Self::Elsewhere { code, .. } => *code,
-            Self::ViewFactors(error) => error.exit_code(),
-            _ => 1,
+            Self::Pipeline(_)
+            | Self::ReadPipeline { .. }
+            | Self::NotText { .. }
+            | Self::LongPipeline { .. }
+            | Self::Exists { .. }
+            | Self::ExistsInterrupted { .. }
+            | Self::CannotResume { .. } => ErrorKind::Usage,
+            Self::Interrupted { .. }
+            | Self::InterruptedSaving { .. }
+            | Self::InterruptedMeasuring { .. }
+            | Self::Run(RunError::Interrupted { .. }) => ErrorKind::Interrupted,
+            Self::Elsewhere { kind, .. } => *kind,
+            Self::ViewFactors(error) => error.kind(),
+            _ => ErrorKind::Failed,
         }
     }
 

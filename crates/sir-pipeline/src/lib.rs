@@ -83,7 +83,7 @@ mod units;
 pub mod view_factors;
 
 pub use check::check;
-pub use error::{Error, chain};
+pub use error::{Error, ErrorKind, chain};
 pub use progress::{NoProgress, Progress};
 pub use run::{RunOptions, RunResult, resume, run};
 pub use units::Units;

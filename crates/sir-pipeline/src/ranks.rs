@@ -2,16 +2,21 @@
 
 use sir_parallel::Communicator;
 
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::fingerprint::Fingerprint;
+
+/// Kinds of errors, by the numbers that stand for them between ranks.
+const KINDS: [ErrorKind; 3] = [ErrorKind::Failed, ErrorKind::Usage, ErrorKind::Interrupted];
 
 /// Lets all ranks fail if one does. The first of those that failed keeps its error, to say it; the others know who does.
 pub(crate) fn agree<T>(comm: &dyn Communicator, outcome: Result<T, Error>) -> Result<T, Error> {
     let Some(rank) = comm.first_failed(outcome.is_err()) else { return outcome };
     let mine = outcome.err().filter(|_| rank == comm.rank());
-    let mut code = [mine.as_ref().map_or(0, |error| error.exit_code().into())];
-    comm.sum(&mut code);
-    Err(mine.unwrap_or(Error::Elsewhere { rank, code: code[0] as u8 }))
+    let number = |error: &Error| KINDS.iter().position(|&kind| kind == error.kind()).unwrap_or_default();
+    // The ranks without the error add 0.
+    let mut sum = [mine.as_ref().map_or(0, |error| number(error) as i64)];
+    comm.sum(&mut sum);
+    Err(mine.unwrap_or(Error::Elsewhere { rank, kind: KINDS[sum[0] as usize] }))
 }
 
 /// Checks that all ranks are to compute the same.

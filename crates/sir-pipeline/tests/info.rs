@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use sir_pipeline::ErrorKind;
 use sir_pipeline::info::{Info, inspect};
 use sir_pipeline::plan::Pipeline;
 
@@ -255,7 +256,7 @@ fn the_same_file_gives_the_same_numbers_and_an_absent_one_an_error() {
     assert_eq!(json(), json());
     let error = inspect(Path::new("no/such.gltf")).unwrap_err();
     assert!(error.chain().contains("no/such.gltf"), "{}", error.chain());
-    assert_eq!(error.exit_code(), 1);
+    assert_eq!(error.kind(), ErrorKind::Failed);
     let error = inspect(Path::new("room.fbx")).unwrap_err().chain();
     assert!(error.contains("fbx") && error.contains("gltf"), "{error}");
 }

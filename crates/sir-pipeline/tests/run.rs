@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use sir_pipeline::Error;
 use sir_pipeline::NoProgress;
 use sir_pipeline::check::estimate;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::report::compare;
 use sir_pipeline::report::{ErrorsFrom, ErrorsReport, Report, Time};
 use sir_pipeline::run::{RunOptions, read_report, run_pipeline as run};
+use sir_pipeline::{Error, ErrorKind};
 
 /// A closed room of 2 × 2 × 2 m whose ceiling emits 1 W/m² in red and less in the other bands; a wall is too white.
 const ROOM: &str = "mtllib room.mtl
@@ -229,7 +229,7 @@ FirstShot(lines: 10),
 Save([Image(path: "a.png", camera: 0), Image(path: "b.png", camera: "door")]),
 ])"#;
     let error = run(&pipeline(folder.path(), text), &options(folder.path())).unwrap_err();
-    assert_eq!(error.exit_code(), 2);
+    assert_eq!(error.kind(), ErrorKind::Usage);
     let shown = error.to_string().replace(&format!("{}/", folder.path().display()), "");
     insta::assert_snapshot!(shown, @r#"
     room.ron:3:1: error: so fine a subdivision makes more than 4294967295 patches or sides

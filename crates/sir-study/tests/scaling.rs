@@ -5,11 +5,11 @@
 use std::fs;
 use std::num::NonZeroUsize;
 
-use sir_pipeline::NoProgress;
 use sir_pipeline::report::{
     BalanceReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, PipelineReport, Report, SceneReport,
     StageReport, Time, VERSION,
 };
+use sir_pipeline::{ErrorKind, NoProgress};
 use sir_study::StudyError;
 use sir_study::scaling::{Plan, ScalingError, Study, Workers, csv, json, markdown, measure, text, write};
 
@@ -185,7 +185,7 @@ fn results_that_differ_are_an_error() {
         study(&plan(&[1, 2], &[1], 2), changed).unwrap_err()
     };
     let error = last_differs(|report| report.stages[2].light.as_mut().unwrap().tally_hash = "other".into());
-    assert_eq!(error.exit_code(), 1);
+    assert_eq!(error.kind(), ErrorKind::Failed);
     assert_eq!(
         sir_pipeline::chain(&error),
         "2 ranks × 1 thread (repeat 2) gave another result than 1 rank × 1 thread (repeat 1): `Multipath` has \
@@ -212,11 +212,11 @@ fn a_run_that_fails_ends_the_measurement() {
     let mut runs = 0;
     let failed = measure("room", 2, &plan, &NoProgress, &mut |workers| {
         runs += 1;
-        let failure =
-            ScalingError::Run { workers, status: "exit status: 7".into(), code: 7, stderr: "no".into() };
+        let (status, stderr) = ("exit status: 2".into(), "no".into());
+        let failure = ScalingError::Run { workers, status, kind: ErrorKind::Usage, stderr };
         if runs == 2 { Err(failure.into()) } else { Ok(report(workers)) }
     });
-    assert_eq!((failed.unwrap_err().exit_code(), runs), (7, 2));
+    assert_eq!((failed.unwrap_err().kind(), runs), (ErrorKind::Usage, 2));
 }
 
 #[test]

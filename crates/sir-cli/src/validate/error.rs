@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use sir_pipeline::ErrorKind;
 use sir_validate::ValidateError;
 use thiserror::Error;
 
@@ -31,14 +32,14 @@ pub enum ValidationError {
 }
 
 impl ValidationError {
-    /// The exit code of the program.
+    /// Returns the kind of failure.
     #[must_use]
-    pub fn exit_code(&self) -> u8 {
+    pub fn kind(&self) -> ErrorKind {
         match self {
-            Self::Cases(error) if error.is_interrupt() => 130,
-            Self::Cases(error) if error.is_usage() => 2,
-            Self::ReadReference { .. } => 2,
-            Self::Cases(_) | Self::Failed { .. } => 1,
+            Self::Cases(error) if error.is_interrupt() => ErrorKind::Interrupted,
+            Self::Cases(error) if error.is_usage() => ErrorKind::Usage,
+            Self::ReadReference { .. } => ErrorKind::Usage,
+            Self::Cases(_) | Self::Failed { .. } => ErrorKind::Failed,
         }
     }
 }

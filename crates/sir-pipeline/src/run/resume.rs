@@ -69,14 +69,14 @@ fn find(directory: &Path) -> Result<Saved, Error> {
         return Err(if directory.join(FILE_NAME).exists() {
             refuse(directory, "the run is finished: its result is there")
         } else if directory.is_dir() {
-            refuse(directory, "it holds no checkpoint; begin anew with `sir run`")
+            refuse(directory, "it holds no checkpoint; start a new run")
         } else {
             refuse(directory, "there is no such directory")
         });
     }
     Saved::open(&path).map_err(|error| match error {
-        // The error names the file; there is nothing to do but to begin anew.
-        CheckpointError::Unfit { why, .. } => refuse(directory, format!("{why}; begin anew with `sir run`")),
+        // The error names the file; there is nothing to do but to start a new run.
+        CheckpointError::Unfit { why, .. } => refuse(directory, format!("{why}; start a new run")),
         other => RunError::from(other).into(),
     })
 }
@@ -89,7 +89,7 @@ pub(crate) fn pipeline(directory: &Path, head: &Head) -> Result<Pipeline, Error>
         let file = head.pipeline.display();
         return Err(refuse(
             directory,
-            format!("the pipeline {file} has changed; put it back, or begin anew"),
+            format!("the pipeline {file} has changed; put it back, or start a new run"),
         ));
     }
     Ok(Pipeline::parse(text, &head.pipeline)?)
@@ -104,7 +104,7 @@ pub(crate) fn check_fingerprint(directory: &Path, head: &Head, now: Fingerprint)
     Err(refuse(
         directory,
         format!(
-            "the scene {scene} has changed; put it back, or begin anew (a file of points counts as part of it)"
+            "the scene {scene} has changed; put it back, or start a new run (a file of points counts as part of it)"
         ),
     ))
 }

@@ -5,12 +5,14 @@ use std::path::PathBuf;
 use sir_radiosity::{ClosureError, ModelError};
 use thiserror::Error;
 
+use crate::error::ErrorKind;
+
 /// Why there are no view factors.
 #[derive(Debug, Error)]
 pub enum ViewFactorsError {
     /// View factors between named parts are asked for, and no part has a name.
     #[error(
-        "{} names no groups (glTF: names of nodes or meshes; OBJ: statements `o` or `g`); use --by material",
+        "{} names no groups (glTF: names of nodes or meshes; OBJ: statements `o` or `g`); group the surfaces by material instead",
         scene.display()
     )]
     NoGroups {
@@ -18,7 +20,7 @@ pub enum ViewFactorsError {
         scene: PathBuf,
     },
     /// The output directory holds view factors already.
-    #[error("{} holds view factors already; choose another --out, or replace them with --force", directory.display())]
+    #[error("{} holds view factors already; choose another directory, or allow them to be replaced", directory.display())]
     Exists {
         /// The directory.
         directory: PathBuf,
@@ -26,18 +28,18 @@ pub enum ViewFactorsError {
     /// The scene has too many triangles.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The factors cannot be adjusted as --closure asks.
-    #[error("--closure is impossible")]
+    /// The factors cannot be adjusted to reciprocity and sums of 1.
+    #[error("the factors cannot be adjusted to reciprocity and sums of 1")]
     Closure(#[from] ClosureError),
 }
 
 impl ViewFactorsError {
-    /// The exit code of the program.
+    /// Returns the kind of failure.
     #[must_use]
-    pub fn exit_code(&self) -> u8 {
+    pub fn kind(&self) -> ErrorKind {
         match self {
-            Self::NoGroups { .. } | Self::Exists { .. } => 2,
-            Self::Closure(_) | Self::Model(_) => 1,
+            Self::NoGroups { .. } | Self::Exists { .. } => ErrorKind::Usage,
+            Self::Closure(_) | Self::Model(_) => ErrorKind::Failed,
         }
     }
 }

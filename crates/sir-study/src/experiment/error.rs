@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use sir_pipeline::ErrorKind;
 use thiserror::Error;
 
 /// Why the experiment cannot be done.
@@ -9,8 +10,8 @@ use thiserror::Error;
 pub enum ExperimentError {
     /// No pipelines were named, and the usual ones are not there.
     #[error(
-        "there is no {}; start `sir experiment` in the folder of the project, which has the scenes, or name \
-         pipelines: `sir experiment room.ron`", path.display()
+        "there is no {}; start the experiment in the folder of the project, which has the scenes, or name other pipelines",
+        path.display()
     )]
     NoScenes {
         /// Where one of them should be.
@@ -48,7 +49,7 @@ pub enum ExperimentError {
         source: std::io::Error,
     },
     /// Ctrl-C or SIGTERM.
-    #[error("interrupted; the same command with `--out {}` goes on", directory.display())]
+    #[error("interrupted; start the same experiment with the directory {} to continue", directory.display())]
     Interrupted {
         /// Where the finished runs are.
         directory: PathBuf,
@@ -56,13 +57,13 @@ pub enum ExperimentError {
 }
 
 impl ExperimentError {
-    /// The exit code of the program.
+    /// Returns the kind of failure.
     #[must_use]
-    pub fn exit_code(&self) -> u8 {
+    pub fn kind(&self) -> ErrorKind {
         match self {
-            Self::NoScenes { .. } | Self::NoMultipath { .. } | Self::SameName { .. } => 2,
-            Self::Scene { .. } | Self::Picture { .. } => 1,
-            Self::Interrupted { .. } => 130,
+            Self::NoScenes { .. } | Self::NoMultipath { .. } | Self::SameName { .. } => ErrorKind::Usage,
+            Self::Scene { .. } | Self::Picture { .. } => ErrorKind::Failed,
+            Self::Interrupted { .. } => ErrorKind::Interrupted,
         }
     }
 }

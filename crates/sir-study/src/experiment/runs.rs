@@ -14,13 +14,13 @@ use crate::experiment::agenda::Agenda;
 use crate::experiment::subject::{Changes, Subject, TABLE};
 use crate::scaling::launch::{Launcher, NO_CHECKPOINTS};
 use crate::scaling::workers::Workers;
-use sir_pipeline::Progress;
 use sir_pipeline::fingerprint::PROGRAM;
 use sir_pipeline::format::duration;
 use sir_pipeline::report::Report;
 use sir_pipeline::run::CHECKPOINT;
 use sir_pipeline::run::read_report;
 use sir_pipeline::stopwatch::Stopwatch;
+use sir_pipeline::{ErrorKind, Progress};
 
 /// Name of the pipeline file in a run's directory.
 const PIPELINE: &str = "pipeline.ron";
@@ -109,7 +109,7 @@ impl Runs {
         if same && !wanted.timed && directory.join(CHECKPOINT).exists() {
             match self.launcher.execute(wanted.workers, &["resume".as_ref(), directory.as_os_str()]) {
                 // Of another program or scene: begin again.
-                Err(error) if error.exit_code() == 2 => {}
+                Err(error) if error.kind() == ErrorKind::Usage => {}
                 done => return done,
             }
         }

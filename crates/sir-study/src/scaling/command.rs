@@ -101,6 +101,7 @@ impl Folder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sir_pipeline::ErrorKind;
 
     #[test]
     fn measurements_are_not_overwritten_and_failures_leave_nothing() {
@@ -113,7 +114,7 @@ mod tests {
         Folder::make(Some(&path), "").unwrap().remove();
         assert!(path.exists());
         fs::write(path.join(files::JSON), "{}").unwrap();
-        let error = Folder::make(Some(&path), "").err().map(|error| error.exit_code());
-        assert_eq!(error, Some(2));
+        let error = Folder::make(Some(&path), "").err().map(|error| error.kind());
+        assert_eq!(error, Some(ErrorKind::Usage));
     }
 }

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use sir_pipeline::ErrorKind;
 use thiserror::Error;
 
 use crate::scaling::workers::Workers;
@@ -13,13 +14,13 @@ pub enum ScalingError {
     /// Ranks were asked for, but the program cannot talk to them.
     #[error(
         "this program was built without MPI and runs on 1 rank only; build it with \
-         `cargo build --release --features mpi`, or leave out --ranks"
+         `cargo build --release --features mpi`, or measure 1 rank only"
     )]
     NoMpi,
     /// The command that starts the ranks cannot be started.
     #[error(
         "cannot start `{command}` ({source}); install an MPI (Debian: `apt-get install openmpi-bin \
-         libopenmpi-dev libclang-dev`), or name what starts its processes with --mpirun"
+         libopenmpi-dev libclang-dev`), or name another program that starts the processes of a run"
     )]
     Mpirun {
         /// The program that was tried.
@@ -37,15 +38,15 @@ pub enum ScalingError {
         workers: Workers,
         /// How it ended.
         status: String,
-        /// Its exit code, for this program to end with.
-        code: u8,
+        /// Kind of its failure.
+        kind: ErrorKind,
         /// What it said.
         stderr: String,
     },
     /// A run ended well, but what it printed is no report.
     #[error(
-        "the run on {workers} printed no report ({why}); does what --mpirun starts pass on its \
-         standard output?"
+        "the run on {workers} printed no report ({why}); does the program that starts its processes pass on \
+         their standard output?"
     )]
     NoReport {
         /// Its workers.
@@ -71,7 +72,7 @@ pub enum ScalingError {
     #[error("the pipeline, its scene or the program was changed during the measurement; start it again")]
     Changed,
     /// The directory that was asked for has a measurement already.
-    #[error("{} holds the measurement of another `sir scaling`; choose another --out", directory.display())]
+    #[error("{} holds another scaling study; choose another directory", directory.display())]
     Exists {
         /// The directory.
         directory: PathBuf,
@@ -82,14 +83,14 @@ pub enum ScalingError {
 }
 
 impl ScalingError {
-    /// The exit code of the program.
+    /// Returns the kind of failure.
     #[must_use]
-    pub fn exit_code(&self) -> u8 {
+    pub fn kind(&self) -> ErrorKind {
         match self {
-            Self::NoMpi | Self::Exists { .. } => 2,
-            Self::Interrupted => 130,
-            Self::Run { code, .. } => *code,
-            _ => 1,
+            Self::NoMpi | Self::Exists { .. } => ErrorKind::Usage,
+            Self::Interrupted => ErrorKind::Interrupted,
+            Self::Run { kind, .. } => *kind,
+            _ => ErrorKind::Failed,
         }
     }
 }

@@ -3,13 +3,14 @@
 use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, ExitStatus, Output, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use crate::error::StudyError;
 use crate::scaling::error::ScalingError;
 use crate::scaling::workers::Workers;
+use sir_pipeline::ErrorKind;
 use sir_pipeline::report::Report;
 
 /// Open MPI refuses to start as root, as which one is in a container, unless it is told twice. Others ignore
@@ -96,16 +97,25 @@ impl Launcher {
 /// The report of a run that has ended, or why there is none.
 fn read(workers: Workers, output: &Output) -> Result<Report, ScalingError> {
     if !output.status.success() {
-        let code = output.status.code().and_then(|code| u8::try_from(code).ok());
         return Err(ScalingError::Run {
             workers,
             status: output.status.to_string(),
-            code: code.filter(|&code| code != 0).unwrap_or(1),
+            kind: kind(output.status),
             stderr: String::from_utf8_lossy(&output.stderr).trim_end().to_owned(),
         });
     }
     serde_json::from_slice(&output.stdout)
         .map_err(|error| ScalingError::NoReport { workers, why: error.to_string() })
+}
+
+/// Returns the kind of failure that an exit code of `sir` stands for; `sir --help` lists them.
+fn kind(status: ExitStatus) -> ErrorKind {
+    match status.code() {
+        Some(2) => ErrorKind::Usage,
+        Some(130) => ErrorKind::Interrupted,
+        // Any other code, or killed.
+        _ => ErrorKind::Failed,
+    }
 }
 
 #[cfg(test)]
@@ -162,16 +172,15 @@ mod tests {
         );
         let stopped = launcher("true");
         stopped.stop.store(true, Relaxed);
-        assert_eq!(told(&stopped).exit_code(), 130);
+        assert_eq!(told(&stopped).kind(), ErrorKind::Interrupted);
         // Every run leaves nothing behind.
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[cfg(unix)]
     #[test]
-    fn a_run_that_fails_hands_on_its_exit_code_and_what_it_said() {
+    fn a_run_that_fails_hands_on_its_kind_of_failure_and_what_it_said() {
         use std::os::unix::process::ExitStatusExt;
-        use std::process::ExitStatus;
 
         let output = |status: i32, stdout: &str, stderr: &str| Output {
             status: ExitStatus::from_raw(status),
@@ -179,13 +188,16 @@ mod tests {
             stderr: stderr.into(),
         };
         let error = read(workers(2), &output(2 << 8, "", "error: no lamp\n")).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
+        assert_eq!(error.kind(), ErrorKind::Usage);
         assert_eq!(
             error.to_string(),
             "the run on 2 ranks × 4 threads failed (exit status: 2):\nerror: no lamp"
         );
-        // Killed: there is no exit code to hand on.
-        assert_eq!(read(workers(1), &output(9, "", "")).unwrap_err().exit_code(), 1);
+        for (status, kind) in
+            [(130 << 8, ErrorKind::Interrupted), (7 << 8, ErrorKind::Failed), (9, ErrorKind::Failed)]
+        {
+            assert_eq!(read(workers(1), &output(status, "", "")).unwrap_err().kind(), kind, "{status}");
+        }
         let error = read(workers(1), &output(0, "hello", "")).unwrap_err();
         assert!(matches!(error, ScalingError::NoReport { .. }), "{error}");
     }

@@ -1,0 +1,116 @@
+//! What the program says and returns when a command fails: exit codes, and hints that name options.
+
+use std::process::ExitCode;
+
+use sir_pipeline::view_factors::ViewFactorsError;
+use sir_pipeline::{Error, ErrorKind, chain};
+use sir_study::StudyError;
+use sir_study::experiment::ExperimentError;
+use sir_study::scaling::ScalingError;
+
+use crate::error::CliError;
+
+/// Exit code of an interrupted program.
+pub(crate) const INTERRUPTED: u8 = 130;
+
+/// Returns the exit code of the program: 2 for wrong usage or a wrong pipeline, 130 if interrupted, else 1.
+pub(crate) fn code(kind: ErrorKind) -> ExitCode {
+    ExitCode::from(match kind {
+        ErrorKind::Usage => 2,
+        ErrorKind::Failed => 1,
+        ErrorKind::Interrupted => INTERRUPTED,
+    })
+}
+
+/// Returns what is shown of an error: nothing if another rank shows it.
+pub(crate) fn message(error: &CliError) -> String {
+    match error {
+        CliError::Pipeline(Error::Pipeline(problems)) => problems.to_string(),
+        CliError::Pipeline(Error::Elsewhere { .. }) => String::new(),
+        other => {
+            let hint = hint(other).map(|hint| format!("  = help: {hint}\n"));
+            format!("error: {}\n{}", chain(other), hint.unwrap_or_default())
+        }
+    }
+}
+
+/// Returns how to follow the advice of an error on the command line. The libraries know neither options nor commands.
+fn hint(error: &CliError) -> Option<String> {
+    match error {
+        CliError::Pipeline(error) => pipeline_hint(error),
+        CliError::Study(StudyError::Pipeline(error)) => pipeline_hint(error),
+        CliError::Study(StudyError::Scaling(error)) => scaling_hint(error),
+        CliError::Study(StudyError::Experiment(error)) => experiment_hint(error),
+        CliError::Study(StudyError::View(_)) | CliError::Validation(_) => None,
+    }
+}
+
+fn pipeline_hint(error: &Error) -> Option<String> {
+    Some(match error {
+        Error::NotText { .. } | Error::LongPipeline { .. } => "`sir --help` shows a pipeline".into(),
+        Error::Exists { .. } | Error::ViewFactors(ViewFactorsError::Exists { .. }) => {
+            "`--out DIR` chooses another directory, `--force` replaces what is there".into()
+        }
+        Error::ExistsInterrupted { directory } => format!(
+            "`sir resume {}` continues the run, `--out DIR` chooses another directory, `--force` replaces what is there",
+            directory.display()
+        ),
+        Error::Directory { .. } => "`--out DIR` chooses another directory".into(),
+        Error::Interrupted { directory, .. }
+        | Error::InterruptedSaving { directory }
+        | Error::InterruptedMeasuring { directory }
+        | Error::NotWritten { directory, .. } => {
+            format!("`sir resume {}` continues the run", directory.display())
+        }
+        Error::CannotResume { .. } => "`sir run PIPELINE` starts a new run".into(),
+        Error::ViewFactors(ViewFactorsError::NoGroups { .. }) => "use `--by material`".into(),
+        Error::ViewFactors(ViewFactorsError::Closure(_)) => "leave out `--closure`".into(),
+        _ => return None,
+    })
+}
+
+fn scaling_hint(error: &ScalingError) -> Option<String> {
+    Some(match error {
+        ScalingError::NoMpi => "leave out `--ranks`".into(),
+        ScalingError::Mpirun { .. } | ScalingError::NoReport { .. } => {
+            "`--mpirun COMMAND` says what starts the processes".into()
+        }
+        ScalingError::Exists { .. } => "`--out DIR` chooses another directory".into(),
+        _ => return None,
+    })
+}
+
+fn experiment_hint(error: &ExperimentError) -> Option<String> {
+    Some(match error {
+        ExperimentError::NoScenes { .. } => "`sir experiment room.ron` takes another pipeline".into(),
+        ExperimentError::Interrupted { directory } => {
+            format!("the same command with `--out {}` continues", directory.display())
+        }
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    #[test]
+    fn errors_end_with_the_option_that_helps() {
+        let directory = PathBuf::from("results/room");
+        let told = |error: Error| message(&error.into());
+        insta::assert_snapshot!(told(Error::Exists { directory: directory.clone() }), @r"
+        error: results/room holds a result already; choose another run directory, or allow it to be replaced
+          = help: `--out DIR` chooses another directory, `--force` replaces what is there
+        ");
+        insta::assert_snapshot!(told(Error::Interrupted { done: 3, total: 9, directory }), @r"
+        error: interrupted after 3 of 9 lines; resume the run in results/room to continue
+          = help: `sir resume results/room` continues the run
+        ");
+        let path = PathBuf::from("x.ron");
+        insta::assert_snapshot!(told(Error::ReadPipeline { path, source: std::io::ErrorKind::NotFound.into() }), @"
+        error: cannot read the pipeline x.ron: entity not found
+        ");
+        assert_eq!(told(Error::Elsewhere { rank: 1, kind: ErrorKind::Failed }), "");
+    }
+}
