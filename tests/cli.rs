@@ -80,7 +80,7 @@ fn wrong_usage_and_wrong_pipelines_exit_with_2() {
         (&["run", "room.ron", "--threads", "0"], "whole number from 1"),
         (&["run", "none.ron"], "error: cannot read the pipeline none.ron: "),
         (&["run", "picture.png"], "error: picture.png is not a text file"),
-        (&["run", "bad.ron"], "bad.ron:1:21: error: unknown field `line` in `FirstShot`"),
+        (&["run", "bad.ron"], "error: unknown field `line` in `FirstShot`\n --> bad.ron:1:21\n"),
         (&["check", "bad.ron"], "help: did you mean `lines`?"),
     ] {
         let (code, stdout, stderr) = sir(folder.path(), args);

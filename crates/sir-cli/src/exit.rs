@@ -108,9 +108,7 @@ mod tests {
           = help: `sir resume results/room` continues the run
         ");
         let path = PathBuf::from("x.ron");
-        insta::assert_snapshot!(told(Error::ReadPipeline { path, source: std::io::ErrorKind::NotFound.into() }), @"
-        error: cannot read the pipeline x.ron: entity not found
-        ");
+        insta::assert_snapshot!(told(Error::ReadPipeline { path, source: std::io::ErrorKind::NotFound.into() }), @"error: cannot read the pipeline x.ron: entity not found");
         assert_eq!(told(Error::Elsewhere { rank: 1, kind: ErrorKind::Failed }), "");
     }
 }

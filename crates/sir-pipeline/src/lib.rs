@@ -49,8 +49,9 @@
 //!
 //! let text = r#"Pipeline(stages: [FirstShot(line: 1_000_000)])"#;
 //! let problems = Pipeline::parse(text, Path::new("room.ron")).unwrap_err();
-//! assert!(problems.to_string().contains("room.ron:1:29: error: unknown field `line` in `FirstShot`"));
-//! assert!(problems.to_string().contains("help: did you mean `lines`?"));
+//! let shown = problems.to_string();
+//! assert!(shown.starts_with("error: unknown field `line` in `FirstShot`\n --> room.ron:1:29\n"));
+//! assert!(shown.ends_with("= help: did you mean `lines`?\n"));
 //! ```
 //!
 //! # Where things are

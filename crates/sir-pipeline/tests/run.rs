@@ -232,19 +232,28 @@ Save([Image(path: "a.png", camera: 0), Image(path: "b.png", camera: "door")]),
     assert_eq!(error.kind(), ErrorKind::Usage);
     let shown = error.to_string().replace(&format!("{}/", folder.path().display()), "");
     insta::assert_snapshot!(shown, @r#"
-    room.ron:3:1: error: so fine a subdivision makes more than 4294967295 patches or sides
+    error: so fine a subdivision makes more than 4294967295 patches or sides
+     --> room.ron:3:1
+      |
     3 | Subdivide(max_edge: 1e-9),
       | ^^^^^^^^^
+      |
       = help: ask for fewer or larger patches
 
-    room.ron:5:36: error: the scene has no camera number 0
+    error: the scene has no camera number 0
+     --> room.ron:5:36
+      |
     5 | Save([Image(path: "a.png", camera: 0), Image(path: "b.png", camera: "door")]),
       |                                    ^
+      |
       = help: the scene has no camera; leave `camera` out, or describe one with `Camera(eye: …, target: …)`
 
-    room.ron:5:69: error: the scene has no camera "door"
+    error: the scene has no camera "door"
+     --> room.ron:5:69
+      |
     5 | Save([Image(path: "a.png", camera: 0), Image(path: "b.png", camera: "door")]),
       |                                                                     ^^^^^^
+      |
       = help: the scene has no camera; leave `camera` out, or describe one with `Camera(eye: …, target: …)`
     "#);
 }

@@ -4,8 +4,10 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The most characters of a line that are shown.
-const WIDTH: usize = 160;
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+
+/// The most characters that are underlined.
+const MARKED: usize = 60;
 
 /// The most characters of a message, which may quote the file.
 const MESSAGE: usize = 400;
@@ -69,11 +71,15 @@ impl Diagnostics {
     /// Problems of the file `path`, which says `text`.
     #[must_use]
     pub fn new(path: &Path, text: &str, mut list: Vec<Diagnostic>) -> Self {
+        let end = text.trim_end().len();
         for Diagnostic { span, message, help } in &mut list {
             shorten(message);
             shorten(help);
-            span.start = span.start.min(text.len());
-            span.end = span.end.clamp(span.start, text.len());
+            *span = span.start.min(end)..span.end.min(end);
+            // The renderer takes no span that cuts a character.
+            if text.get(span.clone()).is_none() {
+                *span = end..end;
+            }
         }
         list.sort_by_key(|d| (d.span.start, d.span.end));
         Self { path: path.to_owned(), text: text.to_owned(), list }
@@ -90,25 +96,30 @@ impl Diagnostics {
     pub fn position(&self, problem: &Diagnostic) -> Position {
         Position::of(&self.text, problem.span.start)
     }
+
+    /// The part of a span that is underlined: the beginning of its first line.
+    fn mark(&self, span: &Range<usize>) -> Range<usize> {
+        let line = self.text[span.clone()].lines().next().unwrap_or_default();
+        span.start..span.start + line.chars().take(MARKED).map(char::len_utf8).sum::<usize>()
+    }
 }
 
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut path = self.path.display().to_string();
+        shorten(&mut path);
+        // The renderer replaces all other control characters. The substitute has as many bytes.
+        let text = self.text.replace(|c| ('\u{80}'..='\u{9f}').contains(&c), "·");
         for (i, problem) in self.list.iter().enumerate().take(SHOWN) {
             if i > 0 {
                 writeln!(f)?;
             }
-            let at = self.position(problem);
-            writeln!(f, "{}:{}:{}: error: {}", self.path.display(), at.line, at.column, problem.message)?;
-            let line = self.text.lines().nth(at.line - 1).unwrap_or_default();
-            let (line, indent) = excerpt(line, at.column - 1);
-            let rest = line.chars().count().saturating_sub(indent);
-            let marked = String::from_utf8_lossy(&self.text.as_bytes()[problem.span.clone()]);
-            let marks = marked.lines().next().unwrap_or_default().chars().count().min(rest).max(1);
-            let number = at.line.to_string();
-            writeln!(f, "{number} | {line}")?;
-            writeln!(f, "{:width$} | {:indent$}{}", "", "", "^".repeat(marks), width = number.len())?;
-            writeln!(f, "{:width$} = help: {}", "", problem.help, width = number.len())?;
+            let mark = AnnotationKind::Primary.span(self.mark(&problem.span));
+            let error = Level::ERROR
+                .primary_title(&problem.message)
+                .element(Snippet::source(&text).path(&path).annotation(mark))
+                .element(Level::HELP.message(&problem.help));
+            writeln!(f, "{}", Renderer::plain().render(&[error]))?;
         }
         if self.list.len() > SHOWN {
             writeln!(f, "\n{} more problems are not shown", self.list.len() - SHOWN)?;
@@ -124,15 +135,6 @@ fn shorten(text: &mut String) {
         let plain = text.chars().take(MESSAGE).map(|c| if c.is_control() { '\u{fffd}' } else { c });
         *text = plain.chain(dots.chars()).collect();
     }
-}
-
-/// The part of a line that is shown, around the character at `column`, and the place of that character in it.
-fn excerpt(line: &str, column: usize) -> (String, usize) {
-    // A tab is as wide as a terminal likes; a space keeps the marks in their place.
-    let printable = |c: char| if c.is_control() { ' ' } else { c };
-    let start = if line.chars().count() > WIDTH { column.saturating_sub(WIDTH / 2) } else { 0 };
-    let shown: String = line.chars().skip(start).take(WIDTH).map(printable).collect();
-    (shown, column - start)
 }
 
 #[cfg(test)]
@@ -153,14 +155,77 @@ mod tests {
         assert_eq!(Position::of(text, 99), Position { line: 3, column: 5 });
     }
 
+    /// A problem of a file, as shown.
+    fn shown(text: &str, span: Range<usize>) -> String {
+        let problem = Diagnostic { span, message: "wrong\u{1b}[31m".into(), help: "write\n1".into() };
+        Diagnostics::new(Path::new("x\u{1b}[31m.ron"), text, vec![problem]).to_string()
+    }
+
     #[test]
     fn of_a_long_line_a_part_is_shown() {
-        let line = "x".repeat(5000);
-        for column in [0, 79, 80, 2500, 4999, 5000] {
-            let (shown, place) = excerpt(&line, column);
-            assert!(shown.chars().count() <= WIDTH && place <= shown.chars().count(), "{column}");
+        for c in ["x", "ß", "漢"] {
+            let line = format!("{}\n", c.repeat(5000));
+            for at in [0, 79, 80, 2500, 4999, 5000] {
+                for marked in [0, 1, 59, 61, 5000] {
+                    let shown = shown(&line, at * c.len()..(at + marked) * c.len());
+                    let widest = shown.lines().map(|line| line.chars().count()).max().unwrap();
+                    assert!(widest <= 160 && shown.contains('^'), "{widest}: {shown}");
+                }
+            }
         }
-        assert_eq!(excerpt("\tab", 2), (" ab".to_owned(), 2));
+    }
+
+    #[test]
+    fn nothing_plays_tricks_on_a_terminal() {
+        insta::assert_snapshot!(shown("(\u{0}\t\u{1b}[31m\u{85}\u{9b}\u{202e}漢 x\r\n)", 19..20), @r"
+        error: wrong�[31m
+         --> x�[31m.ron:1:14
+          |
+        1 | (␀    ␛[31m··�漢 x
+          |                  ^
+          |
+          = help: write�1
+        ");
+    }
+
+    #[test]
+    fn spans_anywhere_are_shown() {
+        insta::assert_snapshot!(shown("", 0..0), @r"
+        error: wrong�[31m
+         --> x�[31m.ron:1:1
+          |
+        1 |
+          | ^
+          |
+          = help: write�1
+        ");
+        insta::assert_snapshot!(shown("(\n", 2..2), @r"
+        error: wrong�[31m
+         --> x�[31m.ron:1:2
+          |
+        1 | (
+          |  ^
+          |
+          = help: write�1
+        ");
+        insta::assert_snapshot!(shown("(ß\n  a", 2..99), @r"
+        error: wrong�[31m
+         --> x�[31m.ron:2:4
+          |
+        2 |   a
+          |    ^
+          |
+          = help: write�1
+        ");
+        insta::assert_snapshot!(shown("[\n 1,\n]", 0..8), @r"
+        error: wrong�[31m
+         --> x�[31m.ron:1:1
+          |
+        1 | [
+          | ^
+          |
+          = help: write�1
+        ");
     }
 
     #[test]
@@ -173,14 +238,20 @@ mod tests {
             vec![problem(13..14, "second", "none"), problem(3..8, "first", "do this")],
         );
         insta::assert_snapshot!(all, @r"
-        dir/x.ron:2:2: error: first
-        2 |  lines: 0,
-          |  ^^^^^
+        error: first
+         --> dir/x.ron:2:2
+          |
+        2 |     lines: 0,
+          |     ^^^^^
+          |
           = help: do this
 
-        dir/x.ron:3:1: error: second
+        error: second
+         --> dir/x.ron:3:1
+          |
         3 | )
           | ^
+          |
           = help: none
         ");
     }

@@ -12,61 +12,94 @@ fn unknown_names_and_fields() {
         r#"Render,"#,
         r#"Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),"#,
     ]), @r#"
-    x.ron:2:1: error: unknown stage `Laod`
+    error: unknown stage `Laod`
+     --> x.ron:2:1
+      |
     2 | Laod(path: "room.obj"),
       | ^^^^
+      |
       = help: did you mean `Load`?
 
-    x.ron:3:24: error: unknown field `side` in `Load`
+    error: unknown field `side` in `Load`
+     --> x.ron:3:24
+      |
     3 | Load(path: "room.obj", side: Front, colour: 1),
       |                        ^^^^
+      |
       = help: did you mean `sides`?
 
-    x.ron:3:37: error: unknown field `colour` in `Load`
+    error: unknown field `colour` in `Load`
+     --> x.ron:3:37
+      |
     3 | Load(path: "room.obj", side: Front, colour: 1),
       |                                     ^^^^^^
+      |
       = help: `Load` has the fields `path` and `sides`
 
-    x.ron:4:1: error: unknown stage `Firstshot`
+    error: unknown stage `Firstshot`
+     --> x.ron:4:1
+      |
     4 | Firstshot(lines: 10),
       | ^^^^^^^^^
+      |
       = help: did you mean `FirstShot`?
 
-    x.ron:5:11: error: unknown field `line` in `FirstShot`
+    error: unknown field `line` in `FirstShot`
+     --> x.ron:5:11
+      |
     5 | FirstShot(line: 10),
       |           ^^^^
+      |
       = help: did you mean `lines`?
 
-    x.ron:6:1: error: unknown stage `Render`
+    error: unknown stage `Render`
+     --> x.ron:6:1
+      |
     6 | Render,
       | ^^^^^^
+      |
       = help: stages are `Load`, `Light`, `Subdivide`, `Focus`, `FirstShot`, `SecondShot`, `Multipath`, `Repeat`, `Sensors` and `Save`
 
-    x.ron:7:7: error: unknown output `Picture`
+    error: unknown output `Picture`
+     --> x.ron:7:7
+      |
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
       |       ^^^^^^^
+      |
       = help: outputs are `Image`, `Gltf` and `Table`
 
-    x.ron:7:31: error: unknown output `Imgae`
+    error: unknown output `Imgae`
+     --> x.ron:7:31
+      |
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
       |                               ^^^^^
+      |
       = help: did you mean `Image`?
 
-    x.ron:7:53: error: expected one of the outputs, but this is a text
+    error: expected one of the outputs, but this is a text
+     --> x.ron:7:53
+      |
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
       |                                                     ^^^^^^^
+      |
       = help: outputs are `Image`, `Gltf` and `Table`
     "#);
     insta::assert_snapshot!(problems("Pipelin(stages: [])"), @r"
-    x.ron:1:1: error: the file must hold `Pipeline(…)`, but it holds `Pipelin(…)`
+    error: the file must hold `Pipeline(…)`, but it holds `Pipelin(…)`
+     --> x.ron:1:1
+      |
     1 | Pipelin(stages: [])
       | ^^^^^^^^^^^^^^^^^^^
+      |
       = help: write `Pipeline(stages: […])`
     ");
     insta::assert_snapshot!(problems("[1]"), @r"
-    x.ron:1:1: error: the file must hold `Pipeline(…)`, but it holds a list
+    error: the file must hold `Pipeline(…)`, but it holds a list
+     --> x.ron:1:1
+      |
     1 | [1]
       | ^^^
+      |
       = help: write `Pipeline(stages: […])`
     ");
 }
@@ -80,51 +113,78 @@ fn missing_and_repeated_fields() {
         r#"Multipath(),"#,
         r#"Save([Image(width: 10), Gltf(), Table(path: "")]),"#,
     ]), @r#"
-    x.ron:2:1: error: `Load` lacks the field `path`
+    error: `Load` lacks the field `path`
+     --> x.ron:2:1
+      |
     2 | Load(sides: Both),
       | ^^^^
+      |
       = help: write `Load(path: "scene.gltf", …)`
 
-    x.ron:3:1: error: `Subdivide` needs one of the fields `patches`, `max_area`, `max_edge` and `per_face`
+    error: `Subdivide` needs one of the fields `patches`, `max_area`, `max_edge` and `per_face`
+     --> x.ron:3:1
+      |
     3 | Subdivide,
       | ^^^^^^^^^
+      |
       = help: write `patches: 20_000`, `max_area: 0.01`, `max_edge: 0.1` or `per_face: true`
 
-    x.ron:4:22: error: the field `lines` is given twice
+    error: the field `lines` is given twice
+     --> x.ron:4:22
+      |
     4 | FirstShot(lines: 10, lines: 20),
       |                      ^^^^^
+      |
       = help: remove one of the two; the first is in line 4
 
-    x.ron:5:1: error: `Multipath` lacks the field `lines`
+    error: `Multipath` lacks the field `lines`
+     --> x.ron:5:1
+      |
     5 | Multipath(),
       | ^^^^^^^^^
+      |
       = help: write `Multipath(lines: 1_000_000, …)`
 
-    x.ron:6:7: error: `Image` lacks the field `path`
+    error: `Image` lacks the field `path`
+     --> x.ron:6:7
+      |
     6 | Save([Image(width: 10), Gltf(), Table(path: "")]),
       |       ^^^^^
+      |
       = help: write `Image(path: "view.png", …)`
 
-    x.ron:6:25: error: `Gltf` lacks the field `path`
+    error: `Gltf` lacks the field `path`
+     --> x.ron:6:25
+      |
     6 | Save([Image(width: 10), Gltf(), Table(path: "")]),
       |                         ^^^^
+      |
       = help: write `Gltf(path: "result.glb", …)`
 
-    x.ron:6:45: error: `path` must be a text in quotes, but it is empty
+    error: `path` must be a text in quotes, but it is empty
+     --> x.ron:6:45
+      |
     6 | Save([Image(width: 10), Gltf(), Table(path: "")]),
       |                                             ^^
+      |
       = help: write for instance `path: "patches.csv"`
     "#);
     insta::assert_snapshot!(problems("(seed: 1)"), @r#"
-    x.ron:1:1: error: `Pipeline` lacks the field `stages`
+    error: `Pipeline` lacks the field `stages`
+     --> x.ron:1:1
+      |
     1 | (seed: 1)
       | ^
+      |
       = help: write `Pipeline(stages: [Load(path: "scene.gltf"), …], …)`
     "#);
     insta::assert_snapshot!(problems("(seed: 1, stages: [])"), @r#"
-    x.ron:1:19: error: the pipeline has no stages
+    error: the pipeline has no stages
+     --> x.ron:1:19
+      |
     1 | (seed: 1, stages: [])
       |                   ^^
+      |
       = help: begin with `Load(path: "scene.gltf")`
     "#);
 }
@@ -140,80 +200,125 @@ fn wrong_types() {
         r#"Save(path: "b.png"),"#,
         r#"Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),"#,
     ]), @r#"
-    x.ron:2:12: error: `path` must be a text in quotes, but it is the number 3
+    error: `path` must be a text in quotes, but it is the number 3
+     --> x.ron:2:12
+      |
     2 | Load(path: 3, sides: "Both"),
       |            ^
+      |
       = help: write for instance `path: "scene.gltf"`
 
-    x.ron:2:22: error: `sides` must be `AsAuthored`, `Both` or `Front`, but it is a text
+    error: `sides` must be `AsAuthored`, `Both` or `Front`, but it is a text
+     --> x.ron:2:22
+      |
     2 | Load(path: 3, sides: "Both"),
       |                      ^^^^^^
+      |
       = help: write `AsAuthored`, `Both` or `Front`
 
-    x.ron:3:21: error: `per_face` can only be `true`, but it is the number 4
+    error: `per_face` can only be `true`, but it is the number 4
+     --> x.ron:3:21
+      |
     3 | Subdivide(per_face: 4),
       |                     ^
+      |
       = help: write `per_face: true`, or leave it out
 
-    x.ron:4:1: error: `FirstShot` takes named fields, but this is `FirstShot(…)`
+    error: `FirstShot` takes named fields, but this is `FirstShot(…)`
+     --> x.ron:4:1
+      |
     4 | FirstShot(10),
       | ^^^^^^^^^^^^^
+      |
       = help: write `FirstShot(lines: …)`
 
-    x.ron:5:18: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is a text
+    error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is a text
+     --> x.ron:5:18
+      |
     5 | Multipath(lines: "many", domain: Spher, transport: Replicas(count: 1.5)),
       |                  ^^^^^^
+      |
       = help: write for instance `lines: 1_000_000`
 
-    x.ron:5:34: error: `domain` must be `Hull`, `Box` or `Sphere`, but it is `Spher`
+    error: `domain` must be `Hull`, `Box` or `Sphere`, but it is `Spher`
+     --> x.ron:5:34
+      |
     5 | Multipath(lines: "many", domain: Spher, transport: Replicas(count: 1.5)),
       |                                  ^^^^^
+      |
       = help: did you mean `Sphere`?
 
-    x.ron:5:68: error: `count` must be a whole number from 1 to 1_000_000, but it is the number 1.5
+    error: `count` must be a whole number from 1 to 1_000_000, but it is the number 1.5
+     --> x.ron:5:68
+      |
     5 | Multipath(lines: "many", domain: Spher, transport: Replicas(count: 1.5)),
       |                                                                    ^^^
+      |
       = help: write for instance `count: 8`
 
-    x.ron:6:38: error: `exposure` must be `Auto` or a number, but it is `Automatic`
+    error: `exposure` must be `Auto` or a number, but it is `Automatic`
+     --> x.ron:6:38
+      |
     6 | Save([Image(path: "a.png", exposure: Automatic, camera: true)]),
       |                                      ^^^^^^^^^
+      |
       = help: write `exposure: Auto` or for instance `exposure: 1.5`
 
-    x.ron:6:57: error: `camera` must be a `Camera(…)`, or the number or name of one, but it is `true`
+    error: `camera` must be a `Camera(…)`, or the number or name of one, but it is `true`
+     --> x.ron:6:57
+      |
     6 | Save([Image(path: "a.png", exposure: Automatic, camera: true)]),
       |                                                         ^^^^
+      |
       = help: write for instance `camera: 0` or `camera: Camera(eye: (1, 2, 5), target: (1, 1, 0))`
 
-    x.ron:7:1: error: `Save` must have a list of outputs
+    error: `Save` must have a list of outputs
+     --> x.ron:7:1
+      |
     7 | Save(path: "b.png"),
       | ^^^^^^^^^^^^^^^^^^^
+      |
       = help: write `Save([Image(path: "view.png")])`
 
-    x.ron:8:48: error: `eye` must be three numbers, but it is the number 1
+    error: `eye` must be three numbers, but it is the number 1
+     --> x.ron:8:48
+      |
     8 | Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),
       |                                                ^
+      |
       = help: write for instance `eye: (1, 2, 5)`
 
-    x.ron:8:66: error: `target` must be a finite number, but it is `up`
+    error: `target` must be a finite number, but it is `up`
+     --> x.ron:8:66
+      |
     8 | Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),
       |                                                                  ^^
+      |
       = help: write for instance `target: (1, 1, 0)`
 
-    x.ron:8:76: error: `fov` must be a finite number above 0 and below 180, but it is a text
+    error: `fov` must be a finite number above 0 and below 180, but it is a text
+     --> x.ron:8:76
+      |
     8 | Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),
       |                                                                            ^^^^^^
+      |
       = help: write for instance `fov: 45`
     "#);
     insta::assert_snapshot!(problems("(seed: -1, stages: Load)"), @r#"
-    x.ron:1:8: error: `seed` must be a whole number from 0 to 18_446_744_073_709_551_615, but it is the number -1
+    error: `seed` must be a whole number from 0 to 18_446_744_073_709_551_615, but it is the number -1
+     --> x.ron:1:8
+      |
     1 | (seed: -1, stages: Load)
       |        ^^
+      |
       = help: write for instance `seed: 1`
 
-    x.ron:1:20: error: `stages` must be a list, but it is `Load`
+    error: `stages` must be a list, but it is `Load`
+     --> x.ron:1:20
+      |
     1 | (seed: -1, stages: Load)
       |                    ^^^^
+      |
       = help: write `stages: [Load(path: "scene.gltf"), …]`
     "#);
 }
@@ -229,85 +334,130 @@ fn numbers_out_of_range() {
         r#"Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),"#,
         r#"Save([Image(path: "c.png", camera: Camera(eye: (0, 0, 0), target: (0, 1, 0)))]),"#,
     ]), @r#"
-    x.ron:3:20: error: `patches` must be a whole number from 1 to 4_294_967_295, but it is the number 1e15
+    error: `patches` must be a whole number from 1 to 4_294_967_295, but it is the number 1e15
+     --> x.ron:3:20
+      |
     3 | Subdivide(patches: 1e15),
       |                    ^^^^
+      |
       = help: write for instance `patches: 20_000`
 
-    x.ron:4:18: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 0
+    error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 0
+     --> x.ron:4:18
+      |
     4 | FirstShot(lines: 0),
       |                  ^
+      |
       = help: write for instance `lines: 1_000_000`
 
-    x.ron:5:18: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number -5
+    error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number -5
+     --> x.ron:5:18
+      |
     5 | Multipath(lines: -5),
       |                  ^^
+      |
       = help: write for instance `lines: 1_000_000`
 
-    x.ron:6:35: error: `width` must be a whole number from 1 to 16_384, but it is the number 0
+    error: `width` must be a whole number from 1 to 16_384, but it is the number 0
+     --> x.ron:6:35
+      |
     6 | Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),
       |                                   ^
+      |
       = help: write for instance `width: 800`
 
-    x.ron:6:46: error: `height` must be a whole number from 1 to 16_384, but it is the number 100_000
+    error: `height` must be a whole number from 1 to 16_384, but it is the number 100_000
+     --> x.ron:6:46
+      |
     6 | Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),
       |                                              ^^^^^^^
+      |
       = help: write for instance `height: 600`
 
-    x.ron:6:64: error: `samples` must be a whole number from 1 to 64, but it is the number 1.5
+    error: `samples` must be a whole number from 1 to 64, but it is the number 1.5
+     --> x.ron:6:64
+      |
     6 | Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),
       |                                                                ^^^
+      |
       = help: write for instance `samples: 4`
 
-    x.ron:6:79: error: `exposure` must be a number above 0, but it is the number -1
+    error: `exposure` must be a number above 0, but it is the number -1
+     --> x.ron:6:79
+      |
     6 | Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),
       |                                                                               ^^
+      |
       = help: write for instance `exposure: 1.5`
 
-    x.ron:7:38: error: `exposure` must be a finite number above 0, but it is the number NaN
+    error: `exposure` must be a finite number above 0, but it is the number NaN
+     --> x.ron:7:38
+      |
     7 | Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),
       |                                      ^^^
+      |
       = help: write for instance `exposure: 1.5`
 
-    x.ron:7:89: error: `target` must be a finite number, but it is the number inf
+    error: `target` must be a finite number, but it is the number inf
+     --> x.ron:7:89
+      |
     7 | Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),
       |                                                                                         ^^^
+      |
       = help: write for instance `target: (1, 1, 0)`
 
-    x.ron:7:100: error: `fov` must be a number above 0 and below 180, but it is the number 200
+    error: `fov` must be a number above 0 and below 180, but it is the number 200
+     --> x.ron:7:100
+      |
     7 | Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),
       |                                                                                                    ^^^
+      |
       = help: write for instance `fov: 45`
 
-    x.ron:8:36: error: this camera has no direction: `eye` and `target` coincide, or `up` points along the view
+    error: this camera has no direction: `eye` and `target` coincide, or `up` points along the view
+     --> x.ron:8:36
+      |
     8 | Save([Image(path: "c.png", camera: Camera(eye: (0, 0, 0), target: (0, 1, 0)))]),
       |                                    ^^^^^^
+      |
       = help: move `target` away from `eye`, and choose an `up` that is not parallel to the view
     "#);
     insta::assert_snapshot!(stages(&[
         r#"Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, transport: Replicas(tail: 9))"#,
     ]), @r#"
-    x.ron:2:45: error: `max_area` must be a number above 0, but it is the number 0
+    error: `max_area` must be a number above 0, but it is the number 0
+     --> x.ron:2:45
+      |
     2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, transport: Replicas(tail: 9))
       |                                             ^
+      |
       = help: write for instance `max_area: 0.01`
 
-    x.ron:2:66: error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 1e16
+    error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 1e16
+     --> x.ron:2:66
+      |
     2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, transport: Replicas(tail: 9))
       |                                                                  ^^^^
+      |
       = help: write for instance `lines: 1_000_000`
 
-    x.ron:2:104: error: all of the 9 lines are in the `tail`
+    error: all of the 9 lines are in the `tail`
+     --> x.ron:2:104
+      |
     2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, transport: Replicas(tail: 9))
       |                                                                                                        ^^^^^^^^^^^^^^^^^
+      |
       = help: leave `tail` out, or make it smaller: lines before the tail bring the light of the sources
     "#);
     insta::assert_snapshot!(stages(&[
         r#"Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),"#,
     ]), @r#"
-    x.ron:2:25: error: `Subdivide` has both `patches` and `max_edge`
+    error: `Subdivide` has both `patches` and `max_edge`
+     --> x.ron:2:25
+      |
     2 | Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),
       |                         ^^^^^^^^^
+      |
       = help: keep one of them
     "#);
 }
@@ -318,9 +468,12 @@ fn replicas_have_lines_before_their_tail() {
         r#"Load(path: "room.obj"), FirstShot(lines: 10),"#,
         r#"Multipath(lines: 10, transport: Replicas(count: 20, tail: 1))"#,
     ]), @r"
-    x.ron:3:33: error: there are 20 replicas, but 10 lines
+    error: there are 20 replicas, but 10 lines
+     --> x.ron:3:33
+      |
     3 | Multipath(lines: 10, transport: Replicas(count: 20, tail: 1))
       |                                 ^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+      |
       = help: each replica needs a line: ask for fewer, or for more lines
     ");
 }
@@ -332,51 +485,78 @@ fn paths() {
         r#"Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),"#,
         r#"Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),"#,
     ]), @r#"
-    x.ron:2:12: error: the scene file Room.obj does not exist
+    error: the scene file Room.obj does not exist
+     --> x.ron:2:12
+      |
     2 | Load(path: "Room.obj"), FirstShot(lines: 10),
       |            ^^^^^^^^^^
+      |
       = help: did you mean `room.obj`?
 
-    x.ron:3:19: error: the name of the output "a.jpg" does not end in .png or .exr
+    error: the name of the output "a.jpg" does not end in .png or .exr
+     --> x.ron:3:19
+      |
     3 | Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),
       |                   ^^^^^^^
+      |
       = help: write for instance `path: "view.png"`
 
-    x.ron:3:41: error: the name of the output "t.txt" does not end in .csv or .npy
+    error: the name of the output "t.txt" does not end in .csv or .npy
+     --> x.ron:3:41
+      |
     3 | Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),
       |                                         ^^^^^^^
+      |
       = help: write for instance `path: "patches.csv"`
 
-    x.ron:3:62: error: the name of the output "x.gltf" does not end in .glb
+    error: the name of the output "x.gltf" does not end in .glb
+     --> x.ron:3:62
+      |
     3 | Save([Image(path: "a.jpg"), Table(path: "t.txt"), Gltf(path: "x.gltf")]),
       |                                                              ^^^^^^^^
+      |
       = help: write for instance `path: "result.glb"`
 
-    x.ron:4:19: error: the output path "/tmp/a.png" may lead out of the run directory
+    error: the output path "/tmp/a.png" may lead out of the run directory
+     --> x.ron:4:19
+      |
     4 | Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),
       |                   ^^^^^^^^^^^^
+      |
       = help: write a relative path without `..`; outputs are written into the run directory
 
-    x.ron:4:46: error: the output path "../a.png" may lead out of the run directory
+    error: the output path "../a.png" may lead out of the run directory
+     --> x.ron:4:46
+      |
     4 | Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),
       |                                              ^^^^^^^^^^
+      |
       = help: write a relative path without `..`; outputs are written into the run directory
 
-    x.ron:4:93: error: the output path "./B.png" is used twice
+    error: the output path "./B.png" is used twice
+     --> x.ron:4:93
+      |
     4 | Save([Image(path: "/tmp/a.png"), Image(path: "../a.png"), Image(path: "b.png"), Image(path: "./B.png")]),
       |                                                                                             ^^^^^^^^^
+      |
       = help: choose another name; "b.png" is in line 4
     "#);
     insta::assert_snapshot!(stages(&[r#"Load(path: "garden/tree.glb"), FirstShot(lines: 10),"#]), @r#"
-    x.ron:2:12: error: the scene file garden/tree.glb does not exist
+    error: the scene file garden/tree.glb does not exist
+     --> x.ron:2:12
+      |
     2 | Load(path: "garden/tree.glb"), FirstShot(lines: 10),
       |            ^^^^^^^^^^^^^^^^^
+      |
       = help: paths are relative to the folder of the pipeline file
     "#);
     insta::assert_snapshot!(stages(&[r#"Load(path: "room.blend"), FirstShot(lines: 10),"#]), @r#"
-    x.ron:2:12: error: "room.blend" is not a scene file by its name
+    error: "room.blend" is not a scene file by its name
+     --> x.ron:2:12
+      |
     2 | Load(path: "room.blend"), FirstShot(lines: 10),
       |            ^^^^^^^^^^^^
+      |
       = help: scenes are read from .gltf, .glb and .obj files
     "#);
 }

@@ -111,9 +111,12 @@ fn units_are_radiometric_unless_the_file_says_otherwise() {
     assert_eq!(units(""), Units::Radiometric);
     assert_eq!(units("units: Photometric, "), Units::Photometric);
     insta::assert_snapshot!(problems(&text("units: Photometrik, ")), @"
-    x.ron:1:9: error: `units` must be `Radiometric` or `Photometric`, but it is `Photometrik`
+    error: `units` must be `Radiometric` or `Photometric`, but it is `Photometrik`
+     --> x.ron:1:9
+      |
     1 | (units: Photometrik, stages: [Load(path: \"room.obj\"), FirstShot(lines: 1)])
       |         ^^^^^^^^^^^
+      |
       = help: did you mean `Photometric`?
     ");
 }
