@@ -1,8 +1,8 @@
 //! The program `sir`: its arguments, progress bars, signals, texts and exit codes. What it does lies in the crates below:
 //! pipelines in [`sir_pipeline`], studies in [`sir_study`], known answers in [`sir_validate`].
 //!
-//! Results go to files and standard output, everything else to the standard error stream. [`main`] is the whole program; the texts
-//! that it prints are public for other programs.
+//! Results go to files and standard output, everything else to the standard error stream. [`main`] is the whole program, [`main_from`]
+//! the same with given arguments (`examples/own_command.rs`); the texts that it prints are public for other programs.
 //!
 //! # Example
 //!
@@ -26,6 +26,7 @@ pub mod summary;
 pub mod validate;
 mod viewfactors;
 
+use std::ffi::OsString;
 use std::io::Write as _;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -36,7 +37,7 @@ use sir_parallel::{Communicator, SingleProcess, connect};
 use sir_pipeline::check::estimate;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::run::{resume_together, run_together};
-use sir_pipeline::{RunOptions, RunResult, report};
+use sir_pipeline::{ErrorKind, RunOptions, RunResult, report};
 
 use args::{Args, Command, HowArgs, RunArgs};
 pub use error::CliError;
@@ -45,7 +46,21 @@ use progress::Stderr;
 /// Runs the program on the arguments of the process.
 #[must_use]
 pub fn main() -> ExitCode {
-    let args = Args::parse();
+    main_from(std::env::args_os())
+}
+
+/// Runs the program on given arguments, of which the first is its name. `scaling` and `experiment` start the current executable
+/// with other arguments, and need one that passes its arguments on to [`main`].
+#[must_use]
+pub fn main_from(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
+    let args = match Args::try_parse_from(args) {
+        Ok(args) => args,
+        Err(error) => {
+            // Help and version are errors, too, for the parser. If they cannot be printed, there is nobody left to tell.
+            let _ = error.print();
+            return if error.use_stderr() { exit::code(ErrorKind::Usage) } else { ExitCode::SUCCESS };
+        }
+    };
     match execute(args.command) {
         Ok(text) => match std::io::stdout().write_all(text.as_bytes()) {
             Ok(()) => ExitCode::SUCCESS,

@@ -2,7 +2,8 @@
 //! ([`experiment`]).
 //!
 //! Both run the program `sir` again and again on pipelines, read the reports, and write tables, diagrams and text. This crate is not
-//! published: it is of use to those who work on the solver, and to readers of the paper.
+//! published: it is of use to those who work on the solver, and to readers of the paper. `examples/two_threads.rs` measures without the
+//! program: [`scaling::measure`] takes any function that makes a run.
 
 mod error;
 pub mod experiment;
