@@ -76,6 +76,12 @@ pub(crate) struct ShotSources {
 }
 
 impl<I> LocalShot<'_, I> {
+    /// Returns what the shot started from, without what its lines have brought.
+    #[must_use]
+    pub fn into_input(self) -> I {
+        self.input
+    }
+
     /// Returns the ray of a line.
     #[must_use]
     pub fn ray(&self, index: u64) -> Ray {
