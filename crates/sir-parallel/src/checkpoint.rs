@@ -127,7 +127,7 @@ fn replace(new: &Path, old: &Path) -> io::Result<()> {
 }
 
 /// Lets all ranks fail if one does.
-fn agree(comm: &dyn Communicator, outcome: Result<(), CheckpointError>) -> Result<(), CheckpointError> {
+fn agree<T>(comm: &dyn Communicator, outcome: Result<T, CheckpointError>) -> Result<T, CheckpointError> {
     match comm.first_failed(outcome.is_err()) {
         Some(rank) if outcome.is_ok() => Err(CheckpointError::Elsewhere { rank }),
         _ => outcome,
@@ -236,28 +236,25 @@ impl Saved {
         &self.head
     }
 
-    /// Restores the state that `show` shows, if it is of the stage with this identity. All ranks take part, the first
-    /// one reads.
-    pub(crate) fn restore(
+    /// Restores the state that `show` shows, if it is of the stage with this identity, and returns what `show` returns. All
+    /// ranks take part, the first one reads.
+    pub(crate) fn restore<T>(
         self,
         comm: &dyn Communicator,
         identity: &[i64],
-        show: &mut dyn FnMut(&mut dyn Visitor),
-    ) -> Result<(), CheckpointError> {
+        show: impl FnOnce(&mut dyn Visitor) -> T,
+    ) -> Result<T, CheckpointError> {
         let mut restorer = Restorer { comm, words: self.words, outcome: Ok(()) };
         let mut found = identity.to_vec();
         restorer.same(&mut found);
-        if found == identity {
-            show(&mut restorer);
-        } else if comm.is_first() {
-            restorer.outcome = Err(io::ErrorKind::UnexpectedEof.into());
-        }
+        let shown = (found == identity).then(|| show(&mut restorer));
         let left = restorer.words.as_mut().map_or(Ok(0), |words| words.read(&mut [0]));
-        let outcome = match (restorer.outcome, left) {
-            (Ok(()), Ok(0)) => Ok(()),
-            (Err(source), _) | (_, Err(source)) if source.kind() != io::ErrorKind::UnexpectedEof => {
+        let outcome = match (shown, restorer.outcome, left) {
+            (Some(shown), Ok(()), Ok(0)) => Ok(shown),
+            (_, Err(source), _) | (.., Err(source)) if source.kind() != io::ErrorKind::UnexpectedEof => {
                 Err(CheckpointError::Read { path: self.path, source })
             }
+            _ if !comm.is_first() => Err(CheckpointError::Elsewhere { rank: 0 }),
             _ => {
                 let why = "it is of another stage, scene or pipeline".into();
                 Err(CheckpointError::Unfit { path: self.path, why })

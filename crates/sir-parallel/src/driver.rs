@@ -71,20 +71,15 @@ impl<S: Stage> State<S> {
 
     fn restore(settings: S::Settings, saved: Saved, slices: &mut Slices<'_, '_>) -> Result<Self, RunError> {
         let (threads, comm) = (slices.threads(), slices.comm());
-        let mut settings = Some(settings);
-        let mut restored = None;
-        slices.restore(saved, &mut |visitor| {
-            let Some(settings) = settings.take() else { return };
+        let restored = slices.restore(saved, |visitor| {
             let mut totals = StageTotals::default();
             totals.visit(visitor);
-            restored = Some(S::restore(settings, &threads, visitor).map(|stage| {
-                let mut remaining = Remaining::of(&stage, comm);
-                remaining.restore(&stage, visitor);
-                Self { stage, remaining, totals }
-            }));
+            let stage = S::restore(settings, &threads, visitor)?;
+            let mut remaining = Remaining::of(&stage, comm);
+            remaining.restore(&stage, visitor);
+            Ok::<_, SolveError>(Self { stage, remaining, totals })
         })?;
-        // A checkpoint that is accepted was shown.
-        restored.ok_or(RunError::Checkpoint(CheckpointError::Elsewhere { rank: 0 }))?.map_err(RunError::from)
+        Ok(restored?)
     }
 
     /// Returns how many lines are done and how many there will be, if so many units of this round are left.
@@ -106,7 +101,7 @@ impl<S: Stage> State<S> {
                 let (done, total) = self.progress(left);
                 return Err(RunError::Interrupted { done, total });
             }
-            self.remaining.trace(&self.stage, (control.lines, left), slices, &mut self.totals);
+            self.remaining.trace(&self.stage, &control, left, slices, &mut self.totals);
             left = self.remaining.left(slices);
             let (done, total) = self.progress(left);
             slices.progress(done, total);

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use sir_radiosity::{Chain, Stage, StageTotals, Visitor, chain_units, share};
 
 use crate::communicator::Communicator;
-use crate::slices::Slices;
+use crate::slices::{Control, Slices};
 use crate::threads::{each, trace_blocks};
 
 /// The units of a round that are still to be traced.
@@ -68,28 +68,21 @@ impl<C: Chain> Remaining<C> {
         }
     }
 
-    /// Traces about `lines` lines of all ranks together, of `left` units; this rank traces its part of them.
+    /// Traces about `control.lines` lines of all ranks together, of `left` units; this rank traces its part of them.
     pub(crate) fn trace<S: Stage<Chain = C>>(
         &mut self,
         stage: &S,
-        (lines, left): (u64, u64),
+        control: &Control,
+        left: u64,
         slices: &mut Slices<'_, '_>,
         totals: &mut StageTotals,
     ) {
         let threads = slices.threads().0.get();
-        let workers = self.ranks * threads as u64;
+        let (lines, weight) = (control.lines, self.lines_per_unit);
         match &mut self.units {
             Units::AnyOrder { next } => {
-                let weight = self.lines_per_unit;
-                let count = if weight == 1 {
-                    lines
-                } else {
-                    // Nobody should be idle. The number of threads may differ from rank to rank.
-                    let mut least = [threads as i64];
-                    slices.talk(|comm| comm.sum(&mut least));
-                    (lines / weight).max(least[0] as u64)
-                };
-                let count = count.min(left);
+                // No thread should be idle.
+                let count = (lines / weight).max(control.workers).min(left);
                 let mine = share(count, self.rank, self.ranks);
                 let mine = *next + mine.start..*next + mine.end;
                 let trace = |thread, units, totals: &mut StageTotals| {
@@ -100,9 +93,9 @@ impl<C: Chain> Remaining<C> {
                 slices.traced(count * weight);
             }
             Units::Chains { waiting, .. } => {
-                let quota = (lines / (workers * self.lines_per_unit)).max(1);
+                let quota = (lines / (control.workers * weight)).max(1);
                 *totals += slices.tracing(|| trace_chains(stage, threads, waiting, quota));
-                slices.traced(lines.min(left * self.lines_per_unit));
+                slices.traced(lines.min(left * weight));
             }
         }
     }

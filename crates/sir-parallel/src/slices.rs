@@ -32,6 +32,8 @@ pub(crate) struct Slices<'c, 'a> {
 pub(crate) struct Control {
     /// Lines of all workers until the next agreement.
     pub(crate) lines: u64,
+    /// Number of threads of all ranks.
+    pub(crate) workers: u64,
     /// True if the state is to be saved before.
     pub(crate) save: bool,
     /// True if the stage is to be given up.
@@ -77,11 +79,13 @@ impl<'c, 'a> Slices<'c, 'a> {
         let first = self.executor.comm.is_first();
         let due = first && self.executor.checkpoints.as_ref().is_some_and(|c| c.are_due());
         let stop = self.executor.observer.should_stop();
-        let mut words = [i64::from(stop), i64::from(due), if first { self.lines as i64 } else { 0 }];
+        let lines = if first { self.lines as i64 } else { 0 };
+        let mut words = [i64::from(stop), i64::from(due), lines, self.executor.threads.get() as i64];
         self.talk(|comm| comm.sum(&mut words));
-        self.lines = words[2] as u64;
+        let [stop, due, lines, workers] = words;
+        self.lines = lines as u64;
         self.since = (Instant::now(), 0);
-        Control { lines: self.lines, save: words[0] + words[1] > 0, stop: words[0] > 0 }
+        Control { lines: self.lines, workers: workers as u64, save: stop + due > 0, stop: stop > 0 }
     }
 
     /// Notes how many lines all workers have traced since the last agreement.
@@ -121,20 +125,20 @@ impl<'c, 'a> Slices<'c, 'a> {
         late[0] > 0
     }
 
-    /// Restores the state that `show` shows.
-    pub(crate) fn restore(
+    /// Restores the state that `show` shows, and returns what `show` returns.
+    pub(crate) fn restore<T>(
         &mut self,
         saved: Saved,
-        show: &mut dyn FnMut(&mut dyn Visitor),
-    ) -> Result<(), CheckpointError> {
+        show: impl FnOnce(&mut dyn Visitor) -> T,
+    ) -> Result<T, CheckpointError> {
         let Executor { comm, prior, .. } = &mut *self.executor;
         let time = &mut self.time;
-        saved.restore(*comm, &self.identity, &mut |visitor| {
+        saved.restore(*comm, &self.identity, |visitor| {
             if let Some(prior) = prior {
                 prior(visitor);
             }
             time.visit(visitor);
-            show(visitor);
+            show(visitor)
         })
     }
 

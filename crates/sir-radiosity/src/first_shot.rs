@@ -2,51 +2,29 @@
 //!
 //! Martínez, Forés and Martín (2009), section 2; Castro, Martínez and Sbert (1998).
 
-use std::ops::Range;
-
-use sir_accel::Ray;
 use sir_geom::Rgb;
 use sir_lines::Purpose;
+use sir_mesh::SideId;
 
 use crate::error::SolveError;
-use crate::power::PowerUnit;
+use crate::local_shot::{LocalShot, ShotInput, ShotSources};
+use crate::model::Model;
+use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
-use crate::shot::{Shot, ShotSettings};
-use crate::shot_lines::ShotLines;
+use crate::shot::ShotSettings;
 use crate::sources::FocusedSources;
-use crate::stage::{AnyOrder, Stage, Workers};
-use crate::tallies::{Counters, PatchTallies};
-use crate::totals::StageTotals;
 use crate::visitor::Visitor;
 
 /// The first shot: lines from all light sources, in proportion to their power.
-#[derive(Debug)]
-pub struct FirstShot<'m> {
-    settings: ShotSettings<'m>,
-    lines: ShotLines<'m>,
-    tallies: PatchTallies,
-}
+pub type FirstShot<'m> = LocalShot<'m, ()>;
 
-impl FirstShot<'_> {
-    /// Returns the ray of a line.
-    #[must_use]
-    pub fn ray(&self, index: u64) -> Ray {
-        self.lines.ray(index)
-    }
-}
+impl ShotInput for () {
+    const NAME: &'static str = "first shot";
+    const KIND: u64 = 1;
+    const PURPOSE: Purpose = Purpose::FIRST_SHOT;
 
-impl<'m> Stage for FirstShot<'m> {
-    type Settings = ShotSettings<'m>;
-    type Input = ();
-    type Outcome = Shot;
-    type Chain = AnyOrder;
-
-    fn identity(settings: &Self::Settings) -> Vec<u64> {
-        settings.identity(1)
-    }
-
-    fn begin(settings: Self::Settings, (): (), workers: &dyn Workers) -> Result<Self, SolveError> {
-        let ShotSettings { model, lines, seed } = settings;
+    fn sources(&self, settings: &ShotSettings<'_>) -> Result<ShotSources, SolveError> {
+        let ShotSettings { model, lines, .. } = settings;
         let sources = FocusedSources::new(model, lines.focus.as_ref());
         let total = sources.sources.iter().fold(Rgb::ZERO, |sum, s| sum + s.power);
         if total.max_element() <= 0.0 {
@@ -54,43 +32,14 @@ impl<'m> Stage for FirstShot<'m> {
         }
         let reflectance = model.mesh.largest_reflectance(&model.scene);
         let unit = PowerUnit::for_total(total.max_element(), reflectance);
-        let lines = ShotLines::new(model, sources, unit, lines.count, seed, Purpose::FIRST_SHOT);
-        let tallies = lines.tallies(workers.count());
-        Ok(Self { settings, lines, tallies })
+        Ok(ShotSources { sources, sides: Vec::new(), unit })
     }
 
-    fn restore(
-        settings: Self::Settings,
-        workers: &dyn Workers,
-        visitor: &mut dyn Visitor,
-    ) -> Result<Self, SolveError> {
-        let mut stage = Self::begin(settings, (), workers)?;
-        stage.visit(visitor);
-        Ok(stage)
-    }
+    fn visit(&mut self, _visitor: &mut dyn Visitor) {}
 
-    fn round(&self) -> Range<u64> {
-        0..self.lines.lines()
-    }
+    fn restore(_model: &Model, _visitor: &mut dyn Visitor) {}
 
-    fn chain(&self, _number: u64) -> AnyOrder {
-        AnyOrder
-    }
-
-    fn trace(&self, worker: usize, _chain: &mut AnyOrder, lines: Range<u64>, totals: &mut StageTotals) {
-        self.lines.trace(worker, lines, &self.tallies, totals);
-    }
-
-    fn visit_round(&mut self, visitor: &mut dyn Visitor) {
-        self.tallies.visit(Counters::All, visitor);
-    }
-
-    fn visit(&mut self, visitor: &mut dyn Visitor) {
-        self.tallies.visit(Counters::All, visitor);
-    }
-
-    fn finish(self, totals: StageTotals) -> Result<Shot, SolveError> {
-        let nothing = Received::nothing(self.settings.model.mesh.side_count());
-        self.lines.add_to(nothing, &self.tallies, totals)
+    fn into_power(self, model: &Model) -> (Received, Vec<(SideId, Quanta)>) {
+        (Received::nothing(model.mesh.side_count()), Vec::new())
     }
 }

@@ -5,8 +5,6 @@
 //! see it. Local lines carry the same from everywhere. The brightest patches are those whose power is to all the power of the
 //! sources as the lines of this shot are to those of the first: then a line carries as much as a line of the first shot.
 
-use std::ops::Range;
-
 use sir_geom::{Rgb, Side};
 use sir_lines::Purpose;
 use sir_mesh::{PatchId, SideId};
@@ -14,97 +12,60 @@ use sir_mesh::{PatchId, SideId};
 use crate::emitter::Emitter;
 use crate::error::SolveError;
 use crate::focus_sides::FocusSides;
+use crate::local_shot::{LocalShot, ShotInput, ShotSources};
 use crate::model::Model;
-use crate::power::Quanta;
+use crate::power::{PowerUnit, Quanta};
+use crate::received::Received;
 use crate::shot::{Shot, ShotSettings};
-use crate::shot_lines::ShotLines;
 use crate::sources::{FocusedSources, Source};
-use crate::stage::{AnyOrder, Stage, Workers};
-use crate::tallies::{Counters, PatchTallies};
-use crate::totals::StageTotals;
-use crate::visitor::Visitor;
+use crate::totals::{Balance, Counts};
+use crate::visitor::{Visitor, visit_counts};
 
 /// The second shot: lines from the brightest patches; with a focus, that of the first shot, from those in it. There are no lines
 /// if nothing reflects.
-#[derive(Debug)]
-pub struct SecondShot<'m> {
-    /// The outcome of the first shot.
-    first: Shot,
-    lines: ShotLines<'m>,
-    /// The side that each source of the lines is, or is a part of.
-    sides: Vec<SideId>,
-    tallies: PatchTallies,
-}
+pub type SecondShot<'m> = LocalShot<'m, Shot>;
 
-impl<'m> Stage for SecondShot<'m> {
-    type Settings = ShotSettings<'m>;
-    type Input = Shot;
-    type Outcome = Shot;
-    type Chain = AnyOrder;
+impl ShotInput for Shot {
+    const NAME: &'static str = "second shot";
+    const KIND: u64 = 4;
+    const PURPOSE: Purpose = Purpose::SECOND_SHOT;
 
-    fn identity(settings: &Self::Settings) -> Vec<u64> {
-        settings.identity(4)
-    }
-
-    fn begin(settings: Self::Settings, shot: Shot, workers: &dyn Workers) -> Result<Self, SolveError> {
-        let ShotSettings { model, lines, seed } = settings;
-        let unshot = shot.unshot(model);
-        let total = shot.balance.emitted.total() * lines.count as f64 / shot.counts.lines.max(1) as f64;
+    fn sources(&self, settings: &ShotSettings<'_>) -> Result<ShotSources, SolveError> {
+        let ShotSettings { model, lines, .. } = settings;
+        let unshot = self.unshot(model);
+        let total = self.balance.emitted.total() * lines.count as f64 / self.counts.lines.max(1) as f64;
         let focus = lines.focus.as_ref();
         let share = focus.map_or(1.0, |focus| FocusedSources::new(model, Some(focus)).inner_share());
         let bright = brightest(model, &unshot, &FocusSides::of(model, focus), total * share);
-        let (sources, sides) = sources_of(model, &shot, &unshot, &bright);
-        let count = if sources.is_empty() { 0 } else { lines.count };
-        let sources = FocusedSources::plain(sources);
-        let lines = ShotLines::new(model, sources, shot.unit, count, seed, Purpose::SECOND_SHOT);
-        let tallies = lines.tallies(workers.count());
-        Ok(Self { first: shot, lines, sides, tallies })
-    }
-
-    fn restore(
-        settings: Self::Settings,
-        workers: &dyn Workers,
-        visitor: &mut dyn Visitor,
-    ) -> Result<Self, SolveError> {
-        // Which patches are bright follows from the first shot.
-        let first = Shot::restore(settings.model, visitor);
-        let stage = Self::begin(settings, first, workers)?;
-        stage.tallies.visit(Counters::All, visitor);
-        Ok(stage)
-    }
-
-    fn round(&self) -> Range<u64> {
-        0..self.lines.lines()
-    }
-
-    fn chain(&self, _number: u64) -> AnyOrder {
-        AnyOrder
-    }
-
-    fn trace(&self, worker: usize, _chain: &mut AnyOrder, lines: Range<u64>, totals: &mut StageTotals) {
-        self.lines.trace(worker, lines, &self.tallies, totals);
-    }
-
-    fn visit_round(&mut self, visitor: &mut dyn Visitor) {
-        self.tallies.visit(Counters::All, visitor);
+        let (sources, sides) = sources_of(model, self, &unshot, &bright);
+        Ok(ShotSources { sources: FocusedSources::plain(sources), sides, unit: self.unit })
     }
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
-        self.first.visit(visitor);
-        self.tallies.visit(Counters::All, visitor);
+        self.received.visit(visitor);
+        self.unit.visit(visitor);
+        let Balance { emitted, absorbed, blocked, escaped, unshot } = &mut self.balance;
+        for quanta in [emitted, absorbed, blocked, escaped, unshot] {
+            visitor.same(&mut quanta.0);
+        }
+        let Counts { lines, empty, odd, crossings } = &mut self.counts;
+        visit_counts([lines, empty, odd, crossings], visitor);
     }
 
-    /// Returns the light of both shots, and what patches have still to send.
-    fn finish(self, totals: StageTotals) -> Result<Shot, SolveError> {
-        let Self { first: Shot { received, sent: mut all, .. }, lines, sides, tallies } = self;
-        let both = lines.add_to(received, &tallies, totals)?;
-        for (side, power) in sides.into_iter().zip(lines.sent()) {
-            match all.last_mut() {
-                Some((last, sum)) if *last == side => *sum += power,
-                _ => all.push((side, power)),
-            }
-        }
-        Ok(Shot { sent: all, ..both })
+    fn restore(model: &Model, visitor: &mut dyn Visitor) -> Self {
+        let mut shot = Self {
+            received: Received::nothing(model.mesh.side_count()),
+            unit: PowerUnit::for_total(1.0, 0.0),
+            balance: Balance::default(),
+            counts: Counts::default(),
+            sent: Vec::new(),
+        };
+        shot.visit(visitor);
+        shot
+    }
+
+    fn into_power(self, _model: &Model) -> (Received, Vec<(SideId, Quanta)>) {
+        (self.received, self.sent)
     }
 }
 

@@ -8,7 +8,6 @@ use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
 use crate::solution::Solution;
 use crate::totals::{Balance, Counts};
-use crate::visitor::{Visitor, visit_counts};
 
 /// Settings of a first or second shot.
 #[derive(Clone, Copy, Debug)]
@@ -70,30 +69,5 @@ impl Shot {
     #[must_use]
     pub fn solution(&self, model: &Model) -> Solution {
         Solution::new(model, &self.received, self.unit)
-    }
-
-    /// Shows a first shot to a visitor.
-    pub(crate) fn visit(&mut self, visitor: &mut dyn Visitor) {
-        self.received.visit(visitor);
-        self.unit.visit(visitor);
-        let Balance { emitted, absorbed, blocked, escaped, unshot } = &mut self.balance;
-        for quanta in [emitted, absorbed, blocked, escaped, unshot] {
-            visitor.same(&mut quanta.0);
-        }
-        let Counts { lines, empty, odd, crossings } = &mut self.counts;
-        visit_counts([lines, empty, odd, crossings], visitor);
-    }
-
-    /// Returns the first shot that [`visit`](Self::visit) has shown to the visitor who saved it.
-    pub(crate) fn restore(model: &Model, visitor: &mut dyn Visitor) -> Self {
-        let mut shot = Self {
-            received: Received::nothing(model.mesh.side_count()),
-            unit: PowerUnit::for_total(1.0, 0.0),
-            balance: Balance::default(),
-            counts: Counts::default(),
-            sent: Vec::new(),
-        };
-        shot.visit(visitor);
-        shot
     }
 }

@@ -2,13 +2,13 @@
 #![allow(unsafe_code, reason = "vector instructions; the token proves them, and values hold it")]
 
 use std::arch::x86_64::*;
-use std::hint::black_box;
 
 use crate::simd::avx2::integer::{lane_numbers, sort4, sort8};
 use crate::simd::avx2::single::F32x8;
 use crate::simd::avx2::token::Avx2;
 use crate::simd::backend::{F32Lanes, F64Lanes, F64Store, Kernel, LEAF_WIDTH, NODE_WIDTH, SimdBackend};
 use crate::simd::insertion;
+use crate::simd::x86::{compiled_for, lanewise};
 
 /// Exists only if the processor has AVX-512 F, DQ and VL, beside what [`Avx2`] proves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,26 +29,7 @@ impl SimdBackend for Avx512 {
     type LeafF32 = F32x8;
     type PairF64 = F64x8;
 
-    fn run<K: Kernel>(self, kernel: K) -> K::Output {
-        #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,popcnt")]
-        fn run<K: Kernel>(token: Avx512, kernel: K) -> K::Output {
-            kernel.run(token)
-        }
-        // SAFETY: the token proves the features.
-        unsafe { run(self, kernel) }
-    }
-
-    #[inline(always)]
-    fn outline<R, F: FnOnce() -> R>(self, work: F) -> R {
-        #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,popcnt")]
-        fn outline<R, F: FnOnce() -> R>(work: F) -> R {
-            work()
-        }
-        // The compiler drops `inline(never)` where there are target features; it cannot inline a pointer that it does not know.
-        let outline: unsafe fn(F) -> R = black_box(outline::<R, F>);
-        // SAFETY: the token proves the features.
-        unsafe { outline(work) }
-    }
+    compiled_for!("avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,popcnt");
 
     #[inline(always)]
     fn load_node(self, numbers: &[f32; NODE_WIDTH]) -> F32x16 {
@@ -164,17 +145,6 @@ pub(crate) struct F32x16(__m512, Avx512);
 /// Eight numbers in double precision. They hold the token that proves AVX-512.
 #[derive(Clone, Copy)]
 pub(crate) struct F64x8(__m512d, Avx512);
-
-/// A method that applies an instruction to the lanes of `self` and of the other arguments.
-macro_rules! lanewise {
-    ($method:ident, $instruction:ident $(, $argument:ident)*) => {
-        #[inline(always)]
-        fn $method(self $(, $argument: Self)*) -> Self {
-            // SAFETY: the value holds the token.
-            Self(unsafe { $instruction(self.0 $(, $argument.0)*) }, self.1)
-        }
-    };
-}
 
 impl F32Lanes<NODE_WIDTH> for F32x16 {
     lanewise!(sub, _mm512_sub_ps, other);

@@ -18,3 +18,5 @@ pub(crate) mod dispatch;
 mod insertion;
 pub(crate) mod portable;
 pub(crate) mod prefetch;
+#[cfg(target_arch = "x86_64")]
+mod x86;

@@ -103,87 +103,55 @@ fn compress<T: Copy, const N: usize>(from: &[T; N], mask: u32, to: &mut [T; N]) 
     }
 }
 
+/// A method that applies a function to the lanes of `self` and of the other arguments.
+macro_rules! lanewise {
+    ($method:ident, $function:expr $(, $argument:ident)*) => {
+        #[inline(always)]
+        fn $method(self $(, $argument: Self)*) -> Self {
+            let function = $function;
+            from_fn(|lane| function(self[lane] $(, $argument[lane])*))
+        }
+    };
+}
+
+/// A method that returns the mask of the lanes for which a comparison holds.
+macro_rules! mask {
+    ($method:ident, $comparison:tt) => {
+        #[inline(always)]
+        fn $method(self, other: Self) -> u32 {
+            let holds = |lane: usize| self[lane] $comparison other[lane];
+            (0..self.len()).fold(0, |mask, lane| mask | u32::from(holds(lane)) << lane)
+        }
+    };
+}
+
 impl<const N: usize> F32Lanes<N> for [f32; N] {
+    lanewise!(sub, |a, b| a - b, other);
+    lanewise!(mul, |a, b| a * b, other);
+    lanewise!(mul_add, |a, b, c| a * b + c, factor, term);
+    lanewise!(mul_sub, |a, b, c| a * b - c, factor, term);
+    lanewise!(min, |a, b| if a < b { a } else { b }, other);
+    lanewise!(max, |a, b| if a > b { a } else { b }, other);
+    mask!(mask_le, <=);
+
     #[inline(always)]
     fn compress(self, mask: u32, to: &mut [f32; N]) {
         compress(&self, mask, to);
     }
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        from_fn(|i| self[i] - other[i])
-    }
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        from_fn(|i| self[i] * other[i])
-    }
-
-    #[inline(always)]
-    fn mul_add(self, factor: Self, term: Self) -> Self {
-        from_fn(|i| self[i] * factor[i] + term[i])
-    }
-
-    #[inline(always)]
-    fn mul_sub(self, factor: Self, term: Self) -> Self {
-        from_fn(|i| self[i] * factor[i] - term[i])
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        from_fn(|i| if self[i] < other[i] { self[i] } else { other[i] })
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        from_fn(|i| if self[i] > other[i] { self[i] } else { other[i] })
-    }
-
-    #[inline(always)]
-    fn mask_le(self, other: Self) -> u32 {
-        (0..N).fold(0, |mask, i| mask | u32::from(self[i] <= other[i]) << i)
-    }
 }
 
 impl F64Lanes for [f64; LEAF_WIDTH] {
+    lanewise!(add, |a, b| a + b, other);
+    lanewise!(sub, |a, b| a - b, other);
+    lanewise!(mul, |a, b| a * b, other);
+    lanewise!(min, |a, b| if a < b { a } else { b }, other);
+    lanewise!(max, |a, b| if a > b { a } else { b }, other);
+    mask!(mask_le, <=);
+    mask!(mask_lt, <);
+
     #[inline(always)]
     fn splat(self, number: f64) -> Self {
         [number; LEAF_WIDTH]
-    }
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        from_fn(|i| self[i] + other[i])
-    }
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        from_fn(|i| self[i] - other[i])
-    }
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        from_fn(|i| self[i] * other[i])
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        from_fn(|i| if self[i] < other[i] { self[i] } else { other[i] })
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        from_fn(|i| if self[i] > other[i] { self[i] } else { other[i] })
-    }
-
-    #[inline(always)]
-    fn mask_le(self, other: Self) -> u32 {
-        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(self[i] <= other[i]) << i)
-    }
-
-    #[inline(always)]
-    fn mask_lt(self, other: Self) -> u32 {
-        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(self[i] < other[i]) << i)
     }
 }
 

@@ -47,10 +47,11 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::SecondShot(plan::SecondShot { lines }) => {
-                let Some(shot) = &shot else { continue };
+                let Some(first) = shot.take() else { continue };
                 let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
-                let stage = SecondShot::begin(settings, shot.clone(), &OneWorker)?;
+                let stage = SecondShot::begin(settings, first, &OneWorker)?;
                 let (rate, _) = try_stage(&stage, stage.round().end);
+                shot = Some(stage.into_input());
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::Multipath(plan::Multipath { lines, domain, .. }) => {

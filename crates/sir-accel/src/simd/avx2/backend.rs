@@ -2,7 +2,6 @@
 #![allow(unsafe_code, reason = "vector instructions; the token proves them")]
 
 use std::arch::x86_64::*;
-use std::hint::black_box;
 
 use crate::simd::avx2::double::F64x8;
 use crate::simd::avx2::integer::{compress8, compress16, lane_numbers, sort4, sort8};
@@ -10,32 +9,14 @@ use crate::simd::avx2::single::{F32x8, F32x16};
 use crate::simd::avx2::token::Avx2;
 use crate::simd::backend::{Kernel, LEAF_WIDTH, NODE_WIDTH, SimdBackend};
 use crate::simd::insertion;
+use crate::simd::x86::compiled_for;
 
 impl SimdBackend for Avx2 {
     type NodeF32 = F32x16;
     type LeafF32 = F32x8;
     type PairF64 = F64x8;
 
-    fn run<K: Kernel>(self, kernel: K) -> K::Output {
-        #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
-        fn run<K: Kernel>(token: Avx2, kernel: K) -> K::Output {
-            kernel.run(token)
-        }
-        // SAFETY: the token proves the features.
-        unsafe { run(self, kernel) }
-    }
-
-    #[inline(always)]
-    fn outline<R, F: FnOnce() -> R>(self, work: F) -> R {
-        #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
-        fn outline<R, F: FnOnce() -> R>(work: F) -> R {
-            work()
-        }
-        // The compiler drops `inline(never)` where there are target features; it cannot inline a pointer that it does not know.
-        let outline: unsafe fn(F) -> R = black_box(outline::<R, F>);
-        // SAFETY: the token proves the features.
-        unsafe { outline(work) }
-    }
+    compiled_for!("avx2,fma,bmi1,bmi2,popcnt");
 
     #[inline(always)]
     fn load_node(self, numbers: &[f32; NODE_WIDTH]) -> F32x16 {

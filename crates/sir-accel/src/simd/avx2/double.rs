@@ -5,6 +5,7 @@ use std::arch::x86_64::*;
 
 use crate::simd::avx2::token::Avx2;
 use crate::simd::backend::{F64Lanes, F64Store, LEAF_WIDTH};
+use crate::simd::x86::halves;
 
 /// Eight numbers in two halves. They hold the token that proves AVX2.
 #[derive(Clone, Copy)]
@@ -48,17 +49,6 @@ impl F64x8 {
     }
 }
 
-/// A method that applies an instruction to the lanes of `self` and `other`.
-macro_rules! lanewise {
-    ($method:ident, $instruction:ident) => {
-        #[inline(always)]
-        fn $method(self, other: Self) -> Self {
-            // SAFETY: the value holds the token.
-            unsafe { Self($instruction(self.0, other.0), $instruction(self.1, other.1), self.2) }
-        }
-    };
-}
-
 /// A method that gives the mask of the lanes for which a comparison holds.
 macro_rules! mask {
     ($method:ident, $comparison:ident) => {
@@ -75,11 +65,11 @@ macro_rules! mask {
 }
 
 impl F64Lanes for F64x8 {
-    lanewise!(add, _mm256_add_pd);
-    lanewise!(sub, _mm256_sub_pd);
-    lanewise!(mul, _mm256_mul_pd);
-    lanewise!(min, _mm256_min_pd);
-    lanewise!(max, _mm256_max_pd);
+    halves!(add, _mm256_add_pd, other);
+    halves!(sub, _mm256_sub_pd, other);
+    halves!(mul, _mm256_mul_pd, other);
+    halves!(min, _mm256_min_pd, other);
+    halves!(max, _mm256_max_pd, other);
     mask!(mask_le, _CMP_LE_OQ);
     mask!(mask_lt, _CMP_LT_OQ);
 

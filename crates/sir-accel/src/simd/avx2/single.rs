@@ -6,6 +6,7 @@ use std::arch::x86_64::*;
 use crate::simd::avx2::integer::{compress8, compress16};
 use crate::simd::avx2::token::Avx2;
 use crate::simd::backend::{F32Lanes, LEAF_WIDTH, NODE_WIDTH};
+use crate::simd::x86::{halves, lanewise};
 
 /// Eight numbers. They hold the token that proves AVX2 and FMA.
 #[derive(Clone, Copy)]
@@ -63,31 +64,6 @@ impl F32x16 {
         // SAFETY: the value holds the token.
         unsafe { [_mm256_castps_si256(self.0), _mm256_castps_si256(self.1)] }
     }
-}
-
-/// A method that applies an instruction to the lanes of `self` and of the other arguments.
-macro_rules! lanewise {
-    ($method:ident, $instruction:ident $(, $argument:ident)*) => {
-        #[inline(always)]
-        fn $method(self $(, $argument: Self)*) -> Self {
-            // SAFETY: the value holds the token.
-            Self(unsafe { $instruction(self.0 $(, $argument.0)*) }, self.1)
-        }
-    };
-}
-
-/// The same for two halves.
-macro_rules! halves {
-    ($method:ident, $instruction:ident $(, $argument:ident)*) => {
-        #[inline(always)]
-        fn $method(self $(, $argument: Self)*) -> Self {
-            // SAFETY: the value holds the token.
-            let halves = unsafe {
-                ($instruction(self.0 $(, $argument.0)*), $instruction(self.1 $(, $argument.1)*))
-            };
-            Self(halves.0, halves.1, self.2)
-        }
-    };
 }
 
 /// The mask of the lanes where `a ≤ b`.
