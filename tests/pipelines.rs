@@ -240,7 +240,7 @@ fn concentric_spheres_have_their_exact_radiosities() {
         let Outcome { report, table, .. } = outcome(&scene_folder("concentric-spheres"), TEXT, Some(seed));
         assert_balanced(&report);
         for (k, mean) in means.iter_mut().enumerate() {
-            let rows = || table.rows.iter().filter(|r| (r.centre.length() > 1.5) == (k == 1));
+            let rows = || table.rows.iter().filter(|r| (r.center.length() > 1.5) == (k == 1));
             assert_eq!(rows().count(), 5120);
             let area: f64 = rows().map(|r| r.area).sum();
             mean.push(rows().map(|r| r.radiosity * r.area).sum::<Rgb>() / area);

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 /// A cube of six named faces without a material library; both sides of a face count, but outside there is nothing.
 const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
-usemtl grey\no floor\nf 1 2 3 4\no \"ceiling, high\"\nf 6 5 8 7\ng west\nf 5 1 4 8\ng east\nf 2 6 7 3\no south\nf 5 6 2 1\no north\nf 4 3 7 8\n";
+usemtl gray\no floor\nf 1 2 3 4\no \"ceiling, high\"\nf 6 5 8 7\ng west\nf 5 1 4 8\ng east\nf 2 6 7 3\no south\nf 5 6 2 1\no north\nf 4 3 7 8\n";
 
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -101,7 +101,7 @@ fn mistakes_say_what_to_do() {
         ("cube.obj --error", 2, "--error"),
         ("cube.obj --relative 0.1", 2, "--error <E>"),
         ("cube.obj --lines many", 2, "such as 1_000_000"),
-        ("cube.obj --by colour", 2, "group"),
+        ("cube.obj --by color", 2, "group"),
         ("cube.obj --sides none", 2, "as-authored"),
         ("", 2, "<SCENE>"),
     ] {

@@ -159,7 +159,7 @@ impl Embree {
     pub(crate) fn load() -> Result<Self, String> {
         let mut reason = String::new();
         for name in NAMES {
-            // SAFETY: the initialisers of Embree have no preconditions.
+            // SAFETY: the initializers of Embree have no preconditions.
             match unsafe { Library::new(name) } {
                 Ok(library) => return Self::from_library(library).map_err(|e| e.to_string()),
                 Err(error) => reason = error.to_string(),

@@ -39,13 +39,13 @@ fn third_party(path: &str) -> Option<Scene> {
 /// Sixty-four balls in a room, of `20 · 4^level` triangles each.
 pub(crate) fn balls(level: u32) -> Scene {
     let mut builder = SceneBuilder::new();
-    let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
-    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::splat(4.0), [grey; 6], shapes::Facing::Inward);
+    let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));
+    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::splat(4.0), [gray; 6], shapes::Facing::Inward);
     for i in 0..64 {
         let place = DVec3::new(f64::from(i % 4), f64::from(i / 4 % 4), f64::from(i / 16));
         let jitter = DVec3::new(0.05 * f64::from(i % 3), 0.04 * f64::from(i % 5), 0.03 * f64::from(i % 7));
         let radius = 0.2 + 0.02 * f64::from(i % 6);
-        shapes::sphere(&mut builder, place + 0.4 + jitter, radius, level, shapes::Facing::Outward, |_| grey);
+        shapes::sphere(&mut builder, place + 0.4 + jitter, radius, level, shapes::Facing::Outward, |_| gray);
     }
     builder.build().unwrap().scene
 }

@@ -24,7 +24,7 @@ pub struct Accel {
 
 impl Accel {
     /// Arranges triangles, which are numbered in the order of `indices`. Their front is the side from which the corners run
-    /// counter-clockwise. Takes about a second per million triangles.
+    /// counterclockwise. Takes about a second per million triangles.
     ///
     /// Corners are rounded to a grid of 2³¹ steps across the bounding sphere of all triangles. A triangle without an area, or without one
     /// on this grid, keeps its number and is never hit. There may be no triangles at all. Positions that no triangle uses
@@ -103,7 +103,7 @@ fn bounding_sphere(positions: &[DVec3], indices: &[[u32; 3]]) -> Result<Bounding
     };
     match sphere {
         // No triangles, or one place for all their corners: nothing has an area, on whatever grid.
-        None => Ok(BoundingSphere { centre: DVec3::ZERO, radius: 1.0 }),
+        None => Ok(BoundingSphere { center: DVec3::ZERO, radius: 1.0 }),
         Some(sphere) if sphere.radius == 0.0 => Ok(BoundingSphere { radius: 1.0, ..sphere }),
         Some(sphere) if (1e-140..=1e140).contains(&sphere.radius) => Ok(sphere),
         Some(sphere) => Err(AccelError::Extent { radius: sphere.radius }),

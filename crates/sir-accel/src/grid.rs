@@ -44,7 +44,7 @@ impl Grid {
     pub(crate) fn new(sphere: BoundingSphere) -> Self {
         // Two steps less than the radius: differences of coordinates then fit 32 bits.
         let scale = (RADIUS - 2.0) / sphere.radius;
-        Self { center: sphere.centre, scale, step: 1.0 / scale }
+        Self { center: sphere.center, scale, step: 1.0 / scale }
     }
 
     /// Returns the grid point next to a point of the scene.
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     fn grid() -> Grid {
-        Grid::new(BoundingSphere { centre: DVec3::new(100.0, -7.0, 3.0), radius: 25.0 })
+        Grid::new(BoundingSphere { center: DVec3::new(100.0, -7.0, 3.0), radius: 25.0 })
     }
 
     #[test]

@@ -92,7 +92,7 @@ extern crate self as sir_accel;
 pub use accel::Accel;
 pub use error::AccelError;
 pub use hit::{Hit, LineHits};
-pub use memory::{collect_in_large_pages, prefetch};
+pub use memory::{collect_in_huge_pages, prefetch};
 pub use opacity::Opacity;
 pub use options::Options;
 pub use ray::{Ray, TRange};

@@ -10,7 +10,7 @@ pub fn prefetch<T>(what: &T) {
 
 /// Collects items that will be read in random order. On Linux a large collection asks for huge pages (transparent huge pages),
 /// because a miss of the translation buffer takes as long as reading memory.
-pub fn collect_in_large_pages<T>(things: impl ExactSizeIterator<Item = T>) -> Vec<T> {
+pub fn collect_in_huge_pages<T>(things: impl ExactSizeIterator<Item = T>) -> Vec<T> {
     let mut all = Vec::with_capacity(things.len());
     advise(&mut all);
     all.extend(things);
@@ -47,7 +47,7 @@ mod tests {
     #[test]
     fn all_is_collected() {
         for count in [0, 1, 1000, 3_000_000] {
-            assert!(collect_in_large_pages(0..count).into_iter().eq(0..count));
+            assert!(collect_in_huge_pages(0..count).into_iter().eq(0..count));
         }
     }
 }

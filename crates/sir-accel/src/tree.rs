@@ -6,7 +6,7 @@ use sir_types::TriangleId;
 
 use crate::build::{Hierarchy, hierarchy};
 use crate::leaf::Leaf;
-use crate::memory::{collect_in_large_pages, prefetch};
+use crate::memory::{collect_in_huge_pages, prefetch};
 use crate::node::{LEAF, Node};
 use crate::simd::prefetch::prefetch as prefetch_bytes;
 use crate::triangle::GridTriangle;
@@ -32,12 +32,12 @@ impl Tree {
         let Hierarchy { nodes, leaves: ranges, order } = hierarchy(triangles);
         let mut places = vec![0; triangles.len()];
         order.iter().zip(0..).for_each(|(&i, place)| places[i as usize] = place);
-        let triangles = collect_in_large_pages(order.iter().map(|&i| triangles[i as usize]));
+        let triangles = collect_in_huge_pages(order.iter().map(|&i| triangles[i as usize]));
         let of = |range: &Range<u32>| triangles[range.start as usize..range.end as usize].iter();
-        let leaves = collect_in_large_pages(ranges.iter().map(|range| Leaf::new(of(range))));
+        let leaves = collect_in_huge_pages(ranges.iter().map(|range| Leaf::new(of(range))));
         let firsts = ranges.iter().map(|range| range.start).collect();
         let stack_size = stack_size(&nodes, 0);
-        let nodes = collect_in_large_pages(nodes.into_iter());
+        let nodes = collect_in_huge_pages(nodes.into_iter());
         Self { nodes, leaves, firsts, triangles, places, stack_size }
     }
 

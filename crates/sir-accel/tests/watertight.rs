@@ -61,7 +61,7 @@ fn both_directions_see_the_same_surfaces() {
     let sphere = scene.bounding_sphere();
     each_line(&scene, 3, 100_000, |line, hits| {
         // Origins far away are moved differently in the two directions: not the same line to the last bit.
-        if line.origin.distance(sphere.centre) > 1.5 * sphere.radius {
+        if line.origin.distance(sphere.center) > 1.5 * sphere.radius {
             return;
         }
         let reverse = Line { origin: line.origin, direction: -line.direction };

@@ -13,7 +13,7 @@ pub(crate) struct Appearance {
     pub(crate) textures: Vec<Texture>,
     /// Coordinates of the corners of triangles.
     pub(crate) coordinates: Vec<[Vec2; 3]>,
-    /// Colours, and in the last place opacities, of the corners of triangles.
+    /// Colors, and in the last place opacities, of the corners of triangles.
     pub(crate) tints: Vec<[Vec4; 3]>,
 }
 
@@ -75,7 +75,7 @@ impl Appearance {
         Some((self.textures.get(map.texture.index())?, coordinates.map(|c| c.as_dvec2())))
     }
 
-    /// Colour and opacity that the corners give a triangle at a point.
+    /// Color and opacity that the corners give a triangle at a point.
     pub(crate) fn tint(&self, corners: Corners, point: Barycentric) -> Option<(Rgb, f64)> {
         let mixed = mix_tint(*self.tints.get(corners.tint as usize)?, point);
         Some((mixed.truncate().max(Rgb::ZERO), mixed.w.clamp(0.0, 1.0)))
@@ -97,7 +97,7 @@ pub(crate) fn mix(corners: [DVec2; 3], point: Barycentric) -> DVec2 {
     (1.0 - point.v - point.w) * corners[0] + point.v * corners[1] + point.w * corners[2]
 }
 
-/// The colour, and in the last place the opacity, at a point of a triangle.
+/// The color, and in the last place the opacity, at a point of a triangle.
 fn mix_tint(corners: [Vec4; 3], point: Barycentric) -> DVec4 {
     let [a, b, c] = corners.map(|corner| corner.as_dvec4());
     (1.0 - point.v - point.w) * a + point.v * b + point.w * c

@@ -15,7 +15,7 @@ use crate::polygon;
 use crate::scene::{Scene, Triangle};
 use crate::sky::Sky;
 use crate::split::{Corner, split};
-use crate::texture::{ColourMap, Texture, TextureId};
+use crate::texture::{ColorMap, Texture, TextureId};
 use crate::warning::{Built, Warning};
 use sir_types::{BoundingBox, BoundingSphere};
 
@@ -93,7 +93,7 @@ impl SceneBuilder {
         group
     }
 
-    /// Adds a polygon, counter-clockwise seen from its front; with fewer than three corners it adds nothing. It is cut into the fan of
+    /// Adds a polygon, counterclockwise seen from its front; with fewer than three corners it adds nothing. It is cut into the fan of
     /// triangles `(0, 1, 2), (0, 2, 3), …` if that is right, as it is for convex ones, else into as many others. One that crosses
     /// itself, or has more than 4,096 corners, is cut into the fan with a warning.
     pub fn add_polygon(&mut self, corners: &[VertexId], material: MaterialId) -> FaceId {
@@ -106,7 +106,7 @@ impl SceneBuilder {
         self.add_face(&triangles, material)
     }
 
-    /// Adds triangles that belong together, counter-clockwise seen from their fronts.
+    /// Adds triangles that belong together, counterclockwise seen from their fronts.
     pub fn add_face(&mut self, triangles: &[[VertexId; 3]], material: MaterialId) -> FaceId {
         let face = FaceId(self.faces);
         self.faces += 1;
@@ -120,8 +120,8 @@ impl SceneBuilder {
     }
 
     /// Gives the triangle that was added last what varies over it, corner by corner: as many sets of texture coordinates as the maps
-    /// of its material use ([`Material::coordinate_sets`]), and a colour with opacity that multiplies those of the
-    /// material. Coordinates that are not finite are ignored, and the triangle has the mean colour of its texture.
+    /// of its material use ([`Material::coordinate_sets`]), and a color with opacity that multiplies those of the
+    /// material. Coordinates that are not finite are ignored, and the triangle has the mean color of its texture.
     pub fn set_corners(&mut self, coordinates: &[[Vec2; 3]], tint: Option<[Vec4; 3]>) {
         if let Some(triangle) = self.triangles.last_mut() {
             triangle.corners = self.appearance.add(coordinates, tint);
@@ -129,7 +129,7 @@ impl SceneBuilder {
     }
 
     /// [`set_corners`](Self::set_corners) for all triangles of the polygon that was added last and has these `corners`: each set of
-    /// coordinates has one place for each of them, the tint one colour.
+    /// coordinates has one place for each of them, the tint one color.
     pub fn set_polygon_corners(
         &mut self,
         corners: &[VertexId],
@@ -258,7 +258,7 @@ impl SceneBuilder {
 
     fn check_materials(&mut self) -> Result<(), SceneError> {
         for m in &mut self.materials {
-            let factor = |map: &Option<ColourMap>| map.map_or(Rgb::ZERO, |map| map.factor);
+            let factor = |map: &Option<ColorMap>| map.map_or(Rgb::ZERO, |map| map.factor);
             for (what, value) in [
                 ("reflectance", m.reflectance),
                 ("exitance", m.exitance),

@@ -32,7 +32,7 @@ pub enum SceneError {
         /// How many there are.
         count: usize,
     },
-    /// A material has a negative, infinite or undefined colour.
+    /// A material has a negative, infinite or undefined color.
     #[error("material {} has the {what} ({:?}, {:?}, {:?}), which must be finite and not negative", quoted(name), value.x, value.y, value.z)]
     BadMaterial {
         /// Name of the material.

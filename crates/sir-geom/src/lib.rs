@@ -21,9 +21,9 @@
 //!
 //! # Conventions
 //!
-//! * Lengths are metres if the scene says so; the solver never needs to know.
-//! * The *front* of a triangle is the side from which its corners run counter-clockwise.
-//! * Colours are linear Rec. 709 RGB ([`Rgb`]).
+//! * Lengths are meters if the scene says so; the solver never needs to know.
+//! * The *front* of a triangle is the side from which its corners run counterclockwise.
+//! * Colors are linear Rec. 709 RGB ([`Rgb`]).
 //! * Emission is stored as radiant *exitance* `M` \[W/m²\]: a file's emitted radiance `L` becomes `M = π L`.
 //!
 //! # Example
@@ -33,8 +33,8 @@
 //! use glam::DVec3;
 //!
 //! let mut builder = SceneBuilder::new();
-//! let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
-//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
+//! let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));
+//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [gray; 6], Facing::Inward);
 //! let scene = builder.build()?.scene;
 //! assert_eq!(scene.triangles().len(), 12);
 //! assert!((scene.total_area() - 6.0).abs() < 1e-12);
@@ -71,5 +71,5 @@ pub use scene::{Scene, Triangle};
 pub use sir_types::{Barycentric, BoundingBox, BoundingSphere, Line, Side, TriangleId, typed_index};
 pub use sky::{Sky, SkyModel};
 pub use surface::Opacities;
-pub use texture::{ColourMap, Texture, TextureId, TextureMap, TextureMean, TextureSums, Wrap};
+pub use texture::{ColorMap, Texture, TextureId, TextureMap, TextureMean, TextureSums, Wrap};
 pub use warning::{Built, Warning};

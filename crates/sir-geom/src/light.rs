@@ -112,8 +112,8 @@ impl Spread {
 impl LightKind {
     /// What is wrong with it, if anything: the name of a field and what it must be.
     pub(crate) fn check(&self) -> Result<(), (&'static str, &'static str)> {
-        let colour = |what, colour: Rgb| {
-            let good = colour.is_finite() && colour.min_element() >= 0.0;
+        let color = |what, color: Rgb| {
+            let good = color.is_finite() && color.min_element() >= 0.0;
             good.then_some(()).ok_or((what, "it must be finite and not negative"))
         };
         let unit = |what, vector: DVec3| {
@@ -122,7 +122,7 @@ impl LightKind {
         };
         match *self {
             Self::Point { position, intensity, spread } => {
-                colour("intensity", intensity)?;
+                color("intensity", intensity)?;
                 if !position.is_finite() {
                     return Err(("position", "it must be finite"));
                 }
@@ -138,7 +138,7 @@ impl LightKind {
             }
             Self::Distant { direction, irradiance } => {
                 unit("direction", direction)?;
-                colour("irradiance", irradiance)
+                color("irradiance", irradiance)
             }
         }
     }

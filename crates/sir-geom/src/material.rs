@@ -1,7 +1,7 @@
 //! Diffuse materials.
 
 use crate::color::Rgb;
-use crate::texture::{ColourMap, TextureMap};
+use crate::texture::{ColorMap, TextureMap};
 
 /// The largest reflectance of a scene in any band.
 ///
@@ -64,12 +64,12 @@ pub struct Material {
     /// Diffuse reflectance per band, in `[0, 1)`. With a texture, its mean over the image.
     pub reflectance: Rgb,
     /// The texture of the reflectance.
-    pub reflectance_map: Option<ColourMap>,
+    pub reflectance_map: Option<ColorMap>,
     /// Emitted radiant exitance `M` of the front per band \[W/m²\]; of a radiance `L` it is `π L`. With a texture, its mean over
     /// the image.
     pub exitance: Rgb,
     /// The texture of the exitance.
-    pub exitance_map: Option<ColourMap>,
+    pub exitance_map: Option<ColorMap>,
     /// How much of the light it stops.
     pub opacity: Opacity,
     /// Which sides reflect.
@@ -104,8 +104,8 @@ impl Material {
     /// How many sets of texture coordinates its triangles need.
     #[must_use]
     pub fn coordinate_sets(&self) -> usize {
-        let colours = [self.reflectance_map, self.exitance_map].map(|colour| colour.map(|colour| colour.map));
-        let maps = colours.into_iter().chain([self.opacity.map]).flatten();
+        let colors = [self.reflectance_map, self.exitance_map].map(|color| color.map(|color| color.map));
+        let maps = colors.into_iter().chain([self.opacity.map]).flatten();
         maps.map(|map| usize::from(map.coordinates) + 1).max().unwrap_or(0)
     }
 

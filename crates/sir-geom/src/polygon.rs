@@ -2,7 +2,7 @@
 //!
 //! Most polygons of files are convex, and the fan from their first corner is right. Of the others it is not: triangles of a fan
 //! would lie outside of the outline or over each other. Those are cut by their ears (Meisters 1975), which are the triangles that
-//! an outline can do without. All corners stay corners of triangles, also those in the middle of a straight edge: a neighbour may
+//! an outline can do without. All corners stay corners of triangles, also those in the middle of a straight edge: a neighbor may
 //! have one there, and a crack would open where one of them had not.
 
 use glam::{DVec2, DVec3};
@@ -20,13 +20,13 @@ pub(crate) const FLAT: f64 = 1e-12;
 /// A polygon in triangles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
-    /// Numbers of corners, as many as there are less two; counter-clockwise seen from where those of the polygon are.
+    /// Numbers of corners, as many as there are less two; counterclockwise seen from where those of the polygon are.
     pub(crate) triangles: Vec<[usize; 3]>,
     /// Whether they are the polygon. A fan takes their place if its outline crosses itself, or has too many corners.
     pub(crate) right: bool,
 }
 
-/// Cuts a polygon whose outline is counter-clockwise seen from its front, and which is about flat.
+/// Cuts a polygon whose outline is counterclockwise seen from its front, and which is about flat.
 pub(crate) fn cut(corners: &[DVec3]) -> Cut {
     let fan: Vec<_> = (2..corners.len()).map(|i| [0, i - 1, i]).collect();
     let normal = normal(corners);
@@ -34,7 +34,7 @@ pub(crate) fn cut(corners: &[DVec3]) -> Cut {
         return Cut { triangles: fan, right: true };
     }
     if normal == DVec3::ZERO {
-        // A line, or an outline that runs as far clockwise as counter-clockwise.
+        // A line, or an outline that runs as far clockwise as counterclockwise.
         let right =
             fan.iter().all(|t| (corners[t[1]] - corners[0]).cross(corners[t[2]] - corners[0]) == DVec3::ZERO);
         return Cut { triangles: fan, right };
@@ -90,7 +90,7 @@ fn covers(triangles: &[[usize; 3]], flat: &[DVec2]) -> bool {
 /// What is left of an outline.
 struct Ring<'p> {
     points: &'p [DVec2],
-    /// Neighbours of each corner that is left.
+    /// Neighbors of each corner that is left.
     before: Vec<usize>,
     behind: Vec<usize>,
     /// Whether a corner is an ear as far as is known.

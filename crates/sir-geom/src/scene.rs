@@ -17,7 +17,7 @@ use sir_types::{BoundingBox, BoundingSphere, TriangleId};
 /// A triangle of a [`Scene`]. Its area is never zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Triangle {
-    /// Corners, counter-clockwise seen from the front.
+    /// Corners, counterclockwise seen from the front.
     pub vertices: [VertexId; 3],
     /// Material of both sides.
     pub material: MaterialId,

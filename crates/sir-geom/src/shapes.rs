@@ -16,7 +16,7 @@ pub enum Facing {
     Outward,
 }
 
-/// Adds one quadrilateral, corners counter-clockwise seen from its front.
+/// Adds one quadrilateral, corners counterclockwise seen from its front.
 pub fn quad(builder: &mut SceneBuilder, corners: [DVec3; 4], material: MaterialId) -> FaceId {
     let corners = corners.map(|p| builder.add_vertex(p));
     builder.add_polygon(&corners, material)
@@ -48,10 +48,10 @@ pub fn cuboid(
 }
 
 /// Adds a sphere of `20 · 4^level` triangles: an icosahedron whose edges were halved `level` times, with every
-/// vertex on the sphere. The material of a triangle is chosen by the unit vector from the centre to its middle.
+/// vertex on the sphere. The material of a triangle is chosen by the unit vector from the center to its middle.
 pub fn sphere(
     builder: &mut SceneBuilder,
-    centre: DVec3,
+    center: DVec3,
     radius: f64,
     level: u32,
     facing: Facing,
@@ -74,7 +74,7 @@ pub fn sphere(
             })
             .collect();
     }
-    let vertices: Vec<VertexId> = points.iter().map(|&p| builder.add_vertex(centre + radius * p)).collect();
+    let vertices: Vec<VertexId> = points.iter().map(|&p| builder.add_vertex(center + radius * p)).collect();
     for [a, b, c] in triangles {
         let outward = (points[a] + points[b] + points[c]).normalize();
         let corners = match facing {
@@ -86,7 +86,7 @@ pub fn sphere(
     }
 }
 
-/// Unit vectors to the 12 corners, and the 20 triangles, counter-clockwise seen from outside.
+/// Unit vectors to the 12 corners, and the 20 triangles, counterclockwise seen from outside.
 fn icosahedron() -> (Vec<DVec3>, Vec<[usize; 3]>) {
     let g = 0.5 * (1.0 + 5.0f64.sqrt());
     let points = [

@@ -105,7 +105,7 @@ impl Sky {
     /// radiance `ground` \[W/(m² sr)\]; `up` is the direction of the zenith.
     ///
     /// `None` if `up` or the direction of the sun has no length, the sun is below the horizon, a type is not of 1 to 15, or a
-    /// colour is negative or not finite.
+    /// color is negative or not finite.
     #[must_use]
     pub fn new(up: DVec3, model: SkyModel, horizontal: Rgb, ground: Rgb) -> Option<Self> {
         let up = up.try_normalize()?;
@@ -117,7 +117,7 @@ impl Sky {
                 Pattern::General { coefficients, sun: sun.try_normalize().filter(|sun| sun.dot(up) >= 0.0)? }
             }
         };
-        let possible = |colour: Rgb| colour.is_finite() && colour.min_element() >= 0.0;
+        let possible = |color: Rgb| color.is_finite() && color.min_element() >= 0.0;
         if !possible(horizontal) || !possible(ground) {
             return None;
         }
@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn impossible_skies_are_refused() {
-        let new = |model, colour| Sky::new(DVec3::Z, model, colour, Rgb::ZERO);
+        let new = |model, color| Sky::new(DVec3::Z, model, color, Rgb::ZERO);
         assert!(new(SkyModel::General { kind: 0, sun: SUN }, Rgb::ONE).is_none());
         assert!(new(SkyModel::General { kind: 16, sun: SUN }, Rgb::ONE).is_none());
         assert!(new(SkyModel::General { kind: 1, sun: -SUN }, Rgb::ONE).is_none());

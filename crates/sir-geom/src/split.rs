@@ -20,7 +20,7 @@ pub(crate) struct Corner {
 /// The convex parts of a triangle: the one in the box is the last. `None` if the triangle lies in the box, or outside of it, as a whole, or
 /// is nowhere.
 ///
-/// Neighbours get the same corners, to the last bit, on an edge that is cut in both.
+/// Neighbors get the same corners, to the last bit, on an edge that is cut in both.
 pub(crate) fn split(triangle: [DVec3; 3], bounds: &BoundingBox) -> Option<Vec<Vec<Corner>>> {
     if !triangle.iter().all(|place| place.is_finite()) {
         return None;
@@ -157,7 +157,7 @@ mod tests {
         assert!(edges.keys().all(|&(from, to)| edges.contains_key(&(to, from))));
     }
 
-    /// A colour that the corners give is the same everywhere, whatever is cut; so are texture coordinates.
+    /// A color that the corners give is the same everywhere, whatever is cut; so are texture coordinates.
     #[test]
     fn what_varies_goes_on() {
         let mut b = SceneBuilder::new();

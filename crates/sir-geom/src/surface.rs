@@ -8,7 +8,7 @@ use crate::appearance::{Appearance, Corners, NO_TINT, mix};
 use crate::color::Rgb;
 use crate::material::{MAX_REFLECTANCE, Material, Opacity};
 use crate::scene::{Scene, Triangle};
-use crate::texture::{ColourMap, Texture, TextureMap};
+use crate::texture::{ColorMap, Texture, TextureMap};
 use sir_types::{Barycentric, Side, TriangleId};
 
 /// Which triangles of a scene let light through, and where. Does without the scene.
@@ -62,7 +62,7 @@ impl Scene {
         self.appearance.texture(map, self.triangle(id).corners)
     }
 
-    /// Colour by which the reflectance of a triangle is multiplied at a point, and its opacity.
+    /// Color by which the reflectance of a triangle is multiplied at a point, and its opacity.
     #[must_use]
     pub fn tint_at(&self, id: TriangleId, point: Barycentric) -> Option<(Rgb, f64)> {
         self.appearance.tint(self.triangle(id).corners, point)
@@ -78,14 +78,14 @@ impl Scene {
     #[must_use]
     pub fn reflectance_at(&self, id: TriangleId, point: Barycentric) -> Rgb {
         let material = self.material(id);
-        let colour = material.reflectance_map.and_then(|ColourMap { map, factor }| {
+        let color = material.reflectance_map.and_then(|ColorMap { map, factor }| {
             let (texture, corners) = self.texture_on(id, &map)?;
-            Some(factor * texture.colour_at(mix(corners, point), map.wrap))
+            Some(factor * texture.color_at(mix(corners, point), map.wrap))
         });
-        self.tinted(id, point, colour.unwrap_or(material.reflectance))
+        self.tinted(id, point, color.unwrap_or(material.reflectance))
     }
 
-    /// A reflectance, times the colour that the corners give the triangle at a point; at most [`MAX_REFLECTANCE`].
+    /// A reflectance, times the color that the corners give the triangle at a point; at most [`MAX_REFLECTANCE`].
     #[must_use]
     pub fn tinted(&self, id: TriangleId, point: Barycentric, reflectance: Rgb) -> Rgb {
         let tint = self.tint_at(id, point).map_or(Rgb::ONE, |(tint, _)| tint);
@@ -96,11 +96,11 @@ impl Scene {
     #[must_use]
     pub fn exitance_at(&self, id: TriangleId, side: Side, point: Barycentric) -> Rgb {
         let mean = self.exitance(id, side);
-        let colour = self.material(id).exitance_map.filter(|_| mean != Rgb::ZERO).and_then(|colour| {
-            let (texture, corners) = self.texture_on(id, &colour.map)?;
-            Some(colour.factor * texture.colour_at(mix(corners, point), colour.map.wrap))
+        let color = self.material(id).exitance_map.filter(|_| mean != Rgb::ZERO).and_then(|color| {
+            let (texture, corners) = self.texture_on(id, &color.map)?;
+            Some(color.factor * texture.color_at(mix(corners, point), color.map.wrap))
         });
-        colour.unwrap_or(mean)
+        color.unwrap_or(mean)
     }
 
     /// Which share of the light that meets a triangle at a point is stopped.
@@ -111,7 +111,7 @@ impl Scene {
 
     /// Whether light goes through some of a triangle.
     #[must_use]
-    pub fn lets_light_through(&self, id: TriangleId) -> bool {
+    pub fn is_transparent(&self, id: TriangleId) -> bool {
         self.is_open(self.triangle(id))
     }
 

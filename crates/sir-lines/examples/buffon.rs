@@ -27,7 +27,7 @@ fn radical_inverse(base: u64, mut number: u64) -> f64 {
 }
 
 fn main() {
-    let domain = Domain::Sphere(BoundingSphere { centre: DVec3::ZERO, radius: 1.0 });
+    let domain = Domain::Sphere(BoundingSphere { center: DVec3::ZERO, radius: 1.0 });
     let streams = Streams::new(1, Purpose::GLOBAL);
     println!("    lines       generator         streams          Halton");
     for lines in [10_000, 100_000, 1_000_000, 10_000_000] {

@@ -59,7 +59,7 @@ impl Domain {
                 let [s, t, u, v, ..] = point;
                 let (a, b) = (unit_vector([s, t]), unit_vector([u, v]));
                 Line {
-                    origin: sphere.centre + sphere.radius * a,
+                    origin: sphere.center + sphere.radius * a,
                     direction: (b - a).try_normalize().unwrap_or(-a),
                 }
             }

@@ -201,8 +201,8 @@ mod tests {
     /// A box of 20 × 2 × 20 m, and a focus in a corner of it that reaches beyond the scene.
     fn corner(share: f64) -> GlobalLines {
         let mut b = SceneBuilder::new();
-        let grey = b.add_material(Material::diffuse("", Rgb::splat(0.5)));
-        cuboid(&mut b, DVec3::ZERO, DVec3::new(20.0, 2.0, 20.0), [grey; 6], Facing::Inward);
+        let gray = b.add_material(Material::diffuse("", Rgb::splat(0.5)));
+        cuboid(&mut b, DVec3::ZERO, DVec3::new(20.0, 2.0, 20.0), [gray; 6], Facing::Inward);
         let scene = b.build().unwrap().scene;
         let bounds = BoundingBox { min: DVec3::new(-5.0, 0.0, -5.0), max: DVec3::new(2.0, 3.0, 1.0) };
         let focus = Focus::new(bounds, share, scene.bounding_box(), scene.bounding_sphere()).unwrap();
@@ -223,15 +223,15 @@ mod tests {
             assert!(lines.weight() > 10 && (lines.share() - share).abs() < 0.05, "{}", lines.share());
             let all: Vec<_> = (0..LINES).map(|i| lines.line(i, 12_345, streams.line(i).point())).collect();
             let radius = 0.4;
-            for (centre, normal) in [
+            for (center, normal) in [
                 (DVec3::new(1.0, 1.0, 0.5), DVec3::Y),
                 (DVec3::new(15.0, 1.0, 12.0), DVec3::Y),
                 (DVec3::new(2.0, 1.0, 0.5), DVec3::Z),
                 (DVec3::new(2.5, 1.0, 0.5), DVec3::X),
             ] {
                 let crosses = |line: &Line| {
-                    let t = (centre - line.origin).dot(normal) / line.direction.dot(normal);
-                    line.at(t).distance_squared(centre) < radius * radius
+                    let t = (center - line.origin).dot(normal) / line.direction.dot(normal);
+                    line.at(t).distance_squared(center) < radius * radius
                 };
                 let weights =
                     all.iter().filter(|(line, _)| crosses(line)).map(|(_, weight)| f64::from(*weight));
@@ -239,9 +239,9 @@ mod tests {
                 let expected = lines.forecast(LINES).crossings(std::f64::consts::PI * radius * radius);
                 assert!(
                     (sum - expected).abs() < 4.0 * f64::sqrt(squares),
-                    "{share}, {centre}: {sum} of {expected}"
+                    "{share}, {center}: {sum} of {expected}"
                 );
-                if centre.x < 2.0 {
+                if center.x < 2.0 {
                     let without =
                         lines.domain().forecast(LINES).crossings(std::f64::consts::PI * radius * radius);
                     assert!(weights.count() as f64 > 10.0 * without);

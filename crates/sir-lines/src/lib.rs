@@ -5,7 +5,7 @@
 //!
 //! *A sampler is a function.* It takes a point `[f64; K]` of the unit cube `[0, 1)^K` and returns a line, a direction or a place;
 //! uniform points give the density that its documentation states. So any sequence of points serves: [`random_point`] draws one
-//! from any generator of the crate [`rand`], [`EvenPoints`] is a low-discrepancy sequence, and a caller may bring its own.
+//! from any generator of the crate [`rand`], [`R2Sequence`] is a low-discrepancy sequence, and a caller may bring its own.
 //!
 //! | sampler | K | result |
 //! |---|---|---|
@@ -37,7 +37,7 @@
 //! use sir_lines::{Domain, random_point};
 //! use sir_types::BoundingSphere;
 //!
-//! let domain = Domain::Sphere(BoundingSphere { centre: glam::DVec3::ZERO, radius: 1.0 });
+//! let domain = Domain::Sphere(BoundingSphere { center: glam::DVec3::ZERO, radius: 1.0 });
 //! let mut generator = SmallRng::seed_from_u64(7);
 //! let disc = 1.0 / std::f64::consts::PI; // squared radius of a disc of area 1 in the plane z = 0
 //! let lines = 100_000;
@@ -54,9 +54,9 @@
 //!
 //! ```
 //! use glam::DVec3;
-//! use sir_lines::{EvenPoints, cosine_direction};
+//! use sir_lines::{R2Sequence, cosine_direction};
 //!
-//! let points = EvenPoints::new([0.3, 0.8]);
+//! let points = R2Sequence::new([0.3, 0.8]);
 //! let lines = 1000;
 //! let meet = (0..lines)
 //!     .map(|i| cosine_direction(DVec3::Z, points.at(i)))
@@ -68,7 +68,6 @@
 mod alias;
 mod allocation;
 mod domain;
-mod even;
 mod facets;
 mod focus;
 mod forecast;
@@ -76,12 +75,12 @@ mod hull;
 mod local;
 mod parallel;
 mod point;
+mod r2_sequence;
 mod stream;
 mod turn;
 
 pub use allocation::Allocation;
 pub use domain::Domain;
-pub use even::EvenPoints;
 pub use facets::Facets;
 pub use focus::{Focus, GlobalLines, LocalLines, MAX_FOCUS_DENSITY};
 pub use forecast::Forecast;
@@ -91,4 +90,5 @@ pub use local::{
 };
 pub use parallel::ParallelLines;
 pub use point::random_point;
+pub use r2_sequence::R2Sequence;
 pub use stream::{Purpose, Stream, Streams, seed_of_repeat};

@@ -68,15 +68,15 @@ mod tests {
         for direction in [DVec3::new(2.0, -1.0, -2.0) / 3.0, DVec3::new(0.6, 0.8, 0.0), DVec3::Z] {
             let lines = ParallelLines::through(bounds, direction);
             let expected = std::f64::consts::PI / lines.area();
-            for centre in [DVec3::ZERO, DVec3::new(0.0, 1.0, -2.0)] {
+            for center in [DVec3::ZERO, DVec3::new(0.0, 1.0, -2.0)] {
                 let n = 100_000;
                 let meets = |i: &u64| {
                     let origin = lines.line(streams.line(*i).point()).origin;
-                    (origin - centre).cross(direction).length_squared() < 1.0
+                    (origin - center).cross(direction).length_squared() < 1.0
                 };
                 let share = (0..n).filter(meets).count() as f64 / n as f64;
                 let error = (expected * (1.0 - expected) / n as f64).sqrt();
-                assert!((share - expected).abs() < 4.0 * error, "{direction}, {centre}: {share}");
+                assert!((share - expected).abs() < 4.0 * error, "{direction}, {center}: {share}");
             }
         }
     }

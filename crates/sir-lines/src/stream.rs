@@ -152,14 +152,14 @@ mod tests {
     #[test]
     fn neighboring_lines_seeds_and_stages_are_uncorrelated() {
         let n = 20_000;
-        let centred = |seed, stage, i| Streams::new(seed, stage).line(i).unit() - 0.5;
+        let centerd = |seed, stage, i| Streams::new(seed, stage).line(i).unit() - 0.5;
         let (global, local) = (Purpose::GLOBAL, Purpose::FIRST_SHOT);
-        let lines = |i| centred(1, global, i) * centred(1, global, i + 1);
-        let seeds = |i| centred(i, global, 0) * centred(i + 1, global, 0);
-        let stages = |i| centred(1, global, i) * centred(1, local, i);
+        let lines = |i| centerd(1, global, i) * centerd(1, global, i + 1);
+        let seeds = |i| centerd(i, global, 0) * centerd(i + 1, global, 0);
+        let stages = |i| centerd(1, global, i) * centerd(1, local, i);
         for product in [&lines as &dyn Fn(u64) -> f64, &seeds, &stages] {
             let sum: f64 = (0..n).map(product).sum();
-            // A product of two centred uniform numbers has the standard deviation 1/12.
+            // A product of two centerd uniform numbers has the standard deviation 1/12.
             let z = sum * 12.0 / f64::from(n as u32).sqrt();
             assert!(z.abs() < 4.0, "correlated: z = {z}");
         }

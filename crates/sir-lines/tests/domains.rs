@@ -17,7 +17,7 @@ const TETRAHEDRON: [DVec3; 4] = [
     DVec3::new(2.0, -1.0, 5.0),
 ];
 
-/// Corners of the faces of the tetrahedron, counter-clockwise seen from outside.
+/// Corners of the faces of the tetrahedron, counterclockwise seen from outside.
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
 fn face(f: usize) -> [DVec3; 3] {
@@ -85,7 +85,7 @@ fn mean_chords_are_those_of_cauchy() {
     let [sphere, cuboid, hull] = domains(&scene);
 
     let Domain::Sphere(s) = sphere else { unreachable!() };
-    let chord = |line: Line| 2.0 * (s.centre - line.origin).dot(line.direction);
+    let chord = |line: Line| 2.0 * (s.center - line.origin).dot(line.direction);
     assert_mean(lines(&sphere, 1).map(chord), 4.0 / 3.0 * s.radius, "sphere");
 
     let bounds = scene.bounding_box();
@@ -178,7 +178,7 @@ fn directions_are_in_proportion_to_the_shadow() {
 }
 
 /// Whatever body lines are drawn from, those that meet a ball in it are the same: their number is that of the forecast,
-/// they have no preferred direction, and pass the centre at a distance whose square is uniform.
+/// they have no preferred direction, and pass the center at a distance whose square is uniform.
 #[test]
 fn lines_through_a_ball_do_not_know_where_they_come_from() {
     // The ball inside the tetrahedron that touches all faces, a little smaller, and another one nearer to a corner.
@@ -188,16 +188,16 @@ fn lines_through_a_ball_do_not_know_where_they_come_from() {
     let middle = (0..4).map(|f| areas[f] * TETRAHEDRON[[3, 2, 0, 1][f]]).sum::<DVec3>() / surface;
     let volume = scaled_normal(face(0)).dot(face(0)[0] - TETRAHEDRON[3]) / 6.0;
     let largest = 0.99 * 3.0 * volume / surface;
-    for (centre, radius) in [(middle, largest), (middle.lerp(TETRAHEDRON[3], 0.4), 0.6 * largest)] {
+    for (center, radius) in [(middle, largest), (middle.lerp(TETRAHEDRON[3], 0.4), 0.6 * largest)] {
         for f in 0..4 {
-            let height = scaled_normal(face(f)).normalize().dot(face(f)[0] - centre);
+            let height = scaled_normal(face(f)).normalize().dot(face(f)[0] - center);
             assert!(height > radius, "the ball is in the tetrahedron: {height}");
         }
         let area = 4.0 * std::f64::consts::PI * radius * radius;
         for domain in domains(&tetrahedron()) {
             let what = domain.name();
             let offset = |line: &Line| {
-                let to = centre - line.origin;
+                let to = center - line.origin;
                 (to - to.dot(line.direction) * line.direction) / radius
             };
             let meets = |line: &Line| offset(line).length_squared() < 1.0;
@@ -220,7 +220,7 @@ fn lines_through_a_ball_do_not_know_where_they_come_from() {
     }
 }
 
-/// Crossings of 200 patches anywhere in the body, in any position: the squares of their normalised deviations from the
+/// Crossings of 200 patches anywhere in the body, in any position: the squares of their normalized deviations from the
 /// forecast add up as χ².
 #[test]
 fn crossings_of_patches_are_those_of_the_forecast() {

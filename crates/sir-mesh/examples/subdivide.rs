@@ -8,9 +8,9 @@ use sir_mesh::{PatchMesh, Subdivision};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut builder = SceneBuilder::new();
-    let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
-    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::new(4.0, 3.0, 5.0), [grey; 6], Facing::Inward);
-    shapes::sphere(&mut builder, DVec3::new(2.0, 1.0, 2.0), 0.8, 3, Facing::Outward, |_| grey);
+    let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));
+    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::new(4.0, 3.0, 5.0), [gray; 6], Facing::Inward);
+    shapes::sphere(&mut builder, DVec3::new(2.0, 1.0, 2.0), 0.8, 3, Facing::Outward, |_| gray);
     let scene = builder.build()?.scene;
     println!("{} triangles, {:.2} m²", scene.triangles().len(), scene.total_area());
     for subdivision in [

@@ -24,8 +24,8 @@
 //! use sir_mesh::{PatchMesh, Subdivision};
 //!
 //! let mut builder = SceneBuilder::new();
-//! let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
-//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
+//! let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));
+//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [gray; 6], Facing::Inward);
 //! let scene = builder.build()?.scene;
 //!
 //! let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01))?;

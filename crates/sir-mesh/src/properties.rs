@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use sir_geom::{
-    Barycentric, ColourMap, Material, Opacities, Opacity, Rgb, Scene, TextureId, TextureMap, TextureMean,
+    Barycentric, ColorMap, Material, Opacities, Opacity, Rgb, Scene, TextureId, TextureMap, TextureMean,
     TextureSums, TriangleId, Wrap,
 };
 
@@ -95,15 +95,15 @@ impl Properties {
         }
         let emits = varied.iter().any(|&t| scene.material(t).exitance_map.is_some());
         let gaps = Opacities::of(scene).is_some();
-        let colours = |is_needed: bool, of: fn(&Total) -> Rgb| {
+        let colors = |is_needed: bool, of: fn(&Total) -> Rgb| {
             let needed = if is_needed { &totals[..] } else { &[] };
             needed.iter().map(|total| of(total).as_vec3().to_array()).collect()
         };
         let shares = totals.iter().map(|t| (t.covered / t.area) as f32);
         Self {
             first,
-            reflectance: colours(true, |t| t.of_covered(t.reflected, t.any.reflectance)),
-            exitance: colours(emits, |t| t.of_covered(t.emitted, t.any.exitance)),
+            reflectance: colors(true, |t| t.of_covered(t.reflected, t.any.reflectance)),
+            exitance: colors(emits, |t| t.of_covered(t.emitted, t.any.exitance)),
             coverage: if gaps { shares.collect() } else { Vec::new() },
         }
     }
@@ -168,12 +168,12 @@ impl Images<'_> {
             }
             None => self.scene.opacity_at(t, middle),
         };
-        let mut colour = |map: Option<ColourMap>, plain: Rgb| {
-            let Some(ColourMap { map, factor }) = map else { return plain };
+        let mut color = |map: Option<ColorMap>, plain: Rgb| {
+            let Some(ColorMap { map, factor }) = map else { return plain };
             let weight = Some(&opacity).filter(|opacity| opacity.map == Some(map));
-            self.over(t, &map, weight, corners).map_or(plain, |mean| factor * mean.colour)
+            self.over(t, &map, weight, corners).map_or(plain, |mean| factor * mean.color)
         };
-        let (reflectance, exitance) = (colour(reflectance_map, reflectance), colour(exitance_map, exitance));
+        let (reflectance, exitance) = (color(reflectance_map, reflectance), color(exitance_map, exitance));
         Mean { reflectance: self.scene.tinted(t, middle, reflectance), exitance, coverage }
     }
 
@@ -212,10 +212,10 @@ mod tests {
         let mut b = SceneBuilder::new();
         let texture = b.add_texture(Texture::new(2, 1, vec![[255, 0, 0, 255], [0, 255, 0, 51]]).unwrap());
         let map = TextureMap { texture, wrap: [Wrap::Clamp; 2], coordinates: 0 };
-        let colour = Some(ColourMap { map, factor: Rgb::splat(0.5) });
+        let color = Some(ColorMap { map, factor: Rgb::splat(0.5) });
         let material = b.add_material(Material {
-            reflectance_map: colour,
-            exitance_map: colour,
+            reflectance_map: color,
+            exitance_map: color,
             opacity: Opacity { map: opacity.map.or(Some(map)), ..opacity },
             sides: Sides::Both,
             ..Material::diffuse("", Rgb::splat(0.25)).emitting(Rgb::splat(0.25))

@@ -116,13 +116,13 @@ fn plot(path: &str, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
             .draw_series(LineSeries::new(formula, BLACK.mix(0.4).stroke_width(3)))?
             .label("ρ/(1−ρ) P/n")
             .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], BLACK.mix(0.4)));
-        for (k, colour) in [RED, MAGENTA, BLUE].into_iter().enumerate() {
+        for (k, color) in [RED, MAGENTA, BLUE].into_iter().enumerate() {
             let points =
                 || of().map(move |row| ((row.workers as f64).log2(), (-100.0 * row.bias[k]).max(LEAST)));
             chart
-                .draw_series(LineSeries::new(points(), colour).point_size(4))?
+                .draw_series(LineSeries::new(points(), color).point_size(4))?
                 .label(NAMES[k])
-                .legend(move |(x, y)| Circle::new((x + 9, y), 4, colour.filled()));
+                .legend(move |(x, y)| Circle::new((x + 9, y), 4, color.filled()));
         }
         chart
             .configure_series_labels()

@@ -17,7 +17,7 @@ pub enum ConnectError {
         size: u32,
     },
     /// MPI does not start.
-    #[error("MPI cannot be initialised; is another copy of MPI active in this process?")]
+    #[error("MPI cannot be initialized; is another copy of MPI active in this process?")]
     Initialise,
 }
 

@@ -47,8 +47,8 @@ pub(crate) fn of_scene(model: &Model) -> Fingerprint {
         number(triangle.material.0.into());
     }
     for material in scene.materials() {
-        let colours = [material.reflectance, material.exitance];
-        colours.iter().flat_map(|c| c.to_array()).for_each(|x| number(x.to_bits()));
+        let colors = [material.reflectance, material.exitance];
+        colors.iter().flat_map(|c| c.to_array()).for_each(|x| number(x.to_bits()));
         number(u64::from(material.sides == Sides::Both) + 2 * u64::from(material.back_emits));
     }
     scene.hash_appearance(&mut number);

@@ -13,7 +13,7 @@ fn corners(size: [f64; 3]) -> Vec<[f64; 3]> {
     (0..8).map(|i| [at(i, 0), at(i, 1), at(i, 2)]).collect()
 }
 
-/// The walls of a box, seen counter-clockwise from inside: floor, ceiling, and four walls.
+/// The walls of a box, seen counterclockwise from inside: floor, ceiling, and four walls.
 const WALLS: [[usize; 4]; 6] =
     [[0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5], [0, 2, 6, 4], [1, 5, 7, 3]];
 
@@ -28,11 +28,11 @@ fn obj(folder: &Path, corners: &[[f64; 3]], walls: &[[usize; 4]], lit: bool) -> 
     let mut text = String::from("mtllib room.mtl\n");
     corners.iter().for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
     for (number, wall) in walls.iter().enumerate() {
-        let material = if lit && number == 0 { "lamp" } else { "grey" };
+        let material = if lit && number == 0 { "lamp" } else { "gray" };
         let [a, b, c, d] = wall.map(|corner| corner + 1);
         text += &format!("o wall{number}\nusemtl {material}\nf {a} {b} {c} {d}\n");
     }
-    let materials = "newmtl grey\nKd .5 .4 .3\nnewmtl lamp\nKd 0 0 0\nKe 2 1 0\n";
+    let materials = "newmtl gray\nKd .5 .4 .3\nnewmtl lamp\nKd 0 0 0\nKe 2 1 0\n";
     std::fs::write(folder.join("room.mtl"), materials).unwrap();
     std::fs::write(folder.join("room.obj"), text).unwrap();
     folder.join("room.obj")
@@ -111,7 +111,7 @@ fn a_closed_room_is_counted_and_found_closed() {
     assert!((info.area - 94.0).abs() < 1e-9);
     assert!((info.largest_triangle - 10.0 / 94.0).abs() < 1e-9);
     let names: Vec<_> = info.materials.iter().map(|m| (m.name.as_str(), m.triangles, m.two_sided)).collect();
-    assert_eq!(names, [("grey", 10, true), ("lamp", 2, true)]);
+    assert_eq!(names, [("gray", 10, true), ("lamp", 2, true)]);
     assert_eq!(info.materials[0].reflectance, [0.5, 0.4, 0.3]);
     let pi = std::f64::consts::PI;
     let power = [40.0 * pi, 20.0 * pi, 0.0];
@@ -138,7 +138,7 @@ fn what_leaves_through_a_missing_wall_is_the_view_factor_to_it() {
     let info = inspect(&obj(folder.path(), &corners([1.0; 3]), &WALLS[..5], true)).unwrap();
     // By reciprocity, of what leaves the five walls a fifth would arrive at the sixth.
     close(info.lines.from_fronts.escaped, 0.2);
-    // From the floor to a wall at a right angle: Howell's catalogue, C-14.
+    // From the floor to a wall at a right angle: Howell's catalog, C-14.
     close(info.lines.from_emitters.unwrap().escaped, 0.200_04);
     // A line through a cube passes two of its six sides.
     close(info.lines.global.odd, 1.0 / 3.0);
@@ -209,8 +209,8 @@ fn units_places_and_planes_are_looked_at() {
         info.findings.join("; ")
     };
     assert_eq!(scaled(1.0), "");
-    assert!(scaled(1000.0).contains("looks like millimetres"));
-    assert!(scaled(100.0).contains("looks like centimetres"));
+    assert!(scaled(1000.0).contains("looks like millimeters"));
+    assert!(scaled(100.0).contains("looks like centimeters"));
     assert!(scaled(0.001).contains("wrong scale"));
 
     let far = room(true, |corners, _| corners.iter_mut().for_each(|corner| corner[0] += 1e5));
@@ -236,7 +236,7 @@ fn units_places_and_planes_are_looked_at() {
 }
 
 #[test]
-fn colours_of_corners_and_textures_are_counted() {
+fn colors_of_corners_and_textures_are_counted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.obj");
     let obj = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\nf 4 5 6\n";

@@ -33,7 +33,7 @@ fn problems(lamps: &str) -> String {
 
 #[test]
 fn all_kinds_of_lights_are_understood() {
-    let (down, grey) = (-DVec3::Y, Rgb::splat);
+    let (down, gray) = (-DVec3::Y, Rgb::splat);
     let light = |kind| SceneLight::Light(Light { name: String::new(), kind });
     let position = DVec3::new(1.0, 2.0, 3.0);
     let point = |intensity, spread| light(LightKind::Point { position, intensity, spread });
@@ -51,12 +51,12 @@ fn all_kinds_of_lights_are_understood() {
         [&found[..2], &found[3..]].concat(),
         [
             point(Rgb::new(3.0, 2.0, 1.0), Spread::Isotropic),
-            point(grey(2.0 / std::f64::consts::PI), Spread::Lambertian { axis: down }),
-            light(LightKind::Distant { direction: down, irradiance: grey(7.0) }),
+            point(gray(2.0 / std::f64::consts::PI), Spread::Lambertian { axis: down }),
+            light(LightKind::Distant { direction: down, irradiance: gray(7.0) }),
             SceneLight::Panel {
                 corner: DVec3::Y,
                 edges: [DVec3::X * 2.0, DVec3::Z * 3.0],
-                exitance: grey(2.0)
+                exitance: gray(2.0)
             },
             SceneLight::Sky(sky),
         ]
@@ -69,8 +69,8 @@ fn all_kinds_of_lights_are_understood() {
         unreachable!("{:?}", found[2]);
     };
     assert!((inner - 0.5).abs() < 1e-15 && outer.abs() < 1e-15);
-    assert_eq!(lamps("Environment(radiance: 3)"), [SceneLight::Sky(Sky::everywhere(grey(3.0)).unwrap())]);
-    let uniform = Sky::new(DVec3::Z, SkyModel::Uniform, grey(2.0), Rgb::ZERO).unwrap();
+    assert_eq!(lamps("Environment(radiance: 3)"), [SceneLight::Sky(Sky::everywhere(gray(3.0)).unwrap())]);
+    let uniform = Sky::new(DVec3::Z, SkyModel::Uniform, gray(2.0), Rgb::ZERO).unwrap();
     assert_eq!(lamps("Sky(up: (0, 0, 1), horizontal: 2)"), [SceneLight::Sky(uniform)]);
 }
 
@@ -83,7 +83,7 @@ fn mistakes_are_reported_with_their_places() {
         Point(position: (1, 2, 3), intensity: 1, power: 1),
         Point(position: (1, 2, 3), intensity: -1, spread: Spot(axis: (0, 0, 0), inner: 10, outer: 20)),
         Point(position: (1, 2, 3), intensity: 1, spread: Spot(axis: (0, 0, 1), inner: 30, outer: 20)),
-        Point(position: (1, 2, 3), intensity: 1, spread: Wide, colour: 1)"
+        Point(position: (1, 2, 3), intensity: 1, spread: Wide, color: 1)"
     ));
     insta::assert_snapshot!(problems(
         "Distant(direction: (0, 0, 0), irradiance: (1, 2)),

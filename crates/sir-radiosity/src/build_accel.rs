@@ -16,7 +16,7 @@ pub fn build_accel(scene: &Scene) -> Result<Accel, AccelError> {
         scene.triangles().iter().map(|triangle| triangle.vertices.map(|v| v.0)).collect();
     let options = match Opacities::of(scene) {
         Some(opacities) => {
-            let is_transparent = scene.triangle_ids().map(|t| scene.lets_light_through(t)).collect();
+            let is_transparent = scene.triangle_ids().map(|t| scene.is_transparent(t)).collect();
             Options::default().opacity(is_transparent, SceneOpacity(opacities))
         }
         None => Options::default(),

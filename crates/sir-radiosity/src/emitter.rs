@@ -105,7 +105,7 @@ pub(crate) fn point_on_surface(
     stream: &mut Stream,
 ) -> DVec3 {
     let mut point = point_on_triangle(stream.point()).point(part);
-    if scene.lets_light_through(triangle) {
+    if scene.is_transparent(triangle) {
         let corners = scene.corners(triangle);
         for _ in 0..TRIES {
             if stream.unit() < scene.opacity_at(triangle, Barycentric::of(point, corners)) {

@@ -2,7 +2,7 @@
 //!
 //! A run of few lines is right on average, so the mean of `k` runs with independent random numbers is right, too, and its
 //! variance can be told without any assumption about what happens within a run: `Σ(x − mean)²/(k (k − 1))`. What the
-//! errors of a single run leave out, such as noise that a patch inherits from its neighbours, is in there.
+//! errors of a single run leave out, such as noise that a patch inherits from its neighbors, is in there.
 //!
 //! The spread of few runs is itself uncertain: with `k` of them the deviation from the truth over the standard error
 //! follows Student's t distribution of `k − 1` degrees of freedom. With fewer than [`MIN_REPEATS`] the variance is therefore the mean of

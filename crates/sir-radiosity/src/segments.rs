@@ -15,7 +15,7 @@ pub enum End {
     Side(SideId, TriangleId),
 }
 
-/// A part of a line between two neighbouring surfaces.
+/// A part of a line between two neighboring surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     /// The end nearer to the origin of the line.

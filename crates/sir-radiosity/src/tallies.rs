@@ -65,7 +65,7 @@ impl PatchTallies {
     pub(crate) fn new(sides: usize, workers: usize, least: usize, unit: SquareUnit) -> Self {
         let affordable = workers * sides * size_of::<Record>() <= AFFORDABLE;
         let copies = if affordable { workers.max(1) } else { workers.clamp(1, least) };
-        let records = sir_accel::collect_in_large_pages((0..sides * copies).map(|_| Record::default()));
+        let records = sir_accel::collect_in_huge_pages((0..sides * copies).map(|_| Record::default()));
         Self { records, sides, unit, shared: copies < workers }
     }
 

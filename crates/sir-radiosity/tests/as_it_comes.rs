@@ -1,10 +1,10 @@
-//! Geometry as it comes, against exact answers: surfaces that coincide and go through each other, walls of a single sheet, millimetres
-//! and kilometres, places far from the origin, a ground under a room.
+//! Geometry as it comes, against exact answers: surfaces that coincide and go through each other, walls of a single sheet, millimeters
+//! and kilometers, places far from the origin, a ground under a room.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
 
 mod common;
 
-use common::{Estimate, batches, grey, received, runs, scene, shoot};
+use common::{Estimate, batches, gray, received, runs, scene, shoot};
 use glam::{DQuat, DVec3};
 use sir_geom::shapes::{Facing, cuboid, quad};
 use sir_geom::{Material, MaterialId, SceneBuilder, Side, Sides};
@@ -19,9 +19,9 @@ fn model(builder: SceneBuilder, subdivision: Subdivision) -> Model {
     Model::new(scene(builder), subdivision).unwrap()
 }
 
-/// A grey surface that is alike on both sides, emission included.
+/// A gray surface that is alike on both sides, emission included.
 fn both(m: f64, rho: f64) -> Material {
-    Material { back_emits: true, ..grey(m, rho).with_sides(Sides::Both) }
+    Material { back_emits: true, ..gray(m, rho).with_sides(Sides::Both) }
 }
 
 /// A share of the lines, within four standard errors of a binomial variable.
@@ -68,9 +68,9 @@ fn the_light_of_boxes_in_each_other_is_that_of_their_union() {
     let lines = 400_000;
     for turn in [DQuat::IDENTITY, DQuat::from_axis_angle(v(1.0, 2.0, 0.5).normalize(), 0.7)] {
         let mut b = SceneBuilder::new();
-        let black = b.add_material(grey(0.0, 0.0));
+        let black = b.add_material(gray(0.0, 0.0));
         cuboid(&mut b, DVec3::splat(-6.0), DVec3::splat(6.0), [black; 6], Facing::Inward);
-        let lamp = b.add_material(grey(1.0, 0.0));
+        let lamp = b.add_material(gray(1.0, 0.0));
         turned_box(&mut b, turn, DVec3::ZERO, v(2.0, 1.0, 1.0), lamp);
         turned_box(&mut b, turn, v(1.0, 0.0, 0.0), v(3.0, 1.0, 1.0), lamp);
         // Right through both, in the plane of no face.
@@ -105,7 +105,7 @@ fn a_decal_covers_what_is_below_and_changes_nothing_else() {
     let (m, rho) = (1.0, 0.6);
     for decal_last in [true, false] {
         let mut b = SceneBuilder::new();
-        let [walls, floor, decal] = [0; 3].map(|_| b.add_material(grey(m, rho)));
+        let [walls, floor, decal] = [0; 3].map(|_| b.add_material(gray(m, rho)));
         let square = |b: &mut SceneBuilder| {
             let corners = [v(0.25, 0.25, 0.0), v(0.75, 0.25, 0.0), v(0.75, 0.75, 0.0), v(0.25, 0.75, 0.0)];
             quad(b, corners, decal);
@@ -153,9 +153,9 @@ fn a_wall_of_one_sheet_lets_nothing_through() {
             for turn in [DQuat::IDENTITY, DQuat::from_axis_angle(v(1.0, 2.0, 0.5).normalize(), 0.7)] {
                 let mut b = SceneBuilder::new();
                 let at = |p: DVec3| turn * p;
-                let halves = [0; 2].map(|_| b.add_material(grey(0.0, 0.8)));
-                let sheet = b.add_material(grey(0.0, 0.8).with_sides(sides));
-                let lamp = b.add_material(grey(10.0, 0.0));
+                let halves = [0; 2].map(|_| b.add_material(gray(0.0, 0.8)));
+                let sheet = b.add_material(gray(0.0, 0.8).with_sides(sides));
+                let lamp = b.add_material(gray(10.0, 0.0));
                 let x = [0.0, 2.0, 4.0];
                 for half in 0..2 {
                     let (l, r) = (x[half], x[half + 1]);
@@ -210,7 +210,7 @@ fn furnished(scale: f64, offset: DVec3) -> Model {
     let mut b = SceneBuilder::new();
     let at = |p: DVec3| offset + scale * p;
     let [white, red, lamp] =
-        [(0.0, 0.8), (0.0, 0.4), (5.0, 0.0)].map(|(m, rho)| b.add_material(grey(m, rho)));
+        [(0.0, 0.8), (0.0, 0.4), (5.0, 0.0)].map(|(m, rho)| b.add_material(gray(m, rho)));
     cuboid(
         &mut b,
         at(DVec3::ZERO),
@@ -245,14 +245,14 @@ fn deviation(model: &Model, found: &Solution, expected: &Solution) -> f64 {
 /// multiplied by a power of two; else the same but for rounding, which may also cut a flat side of the convex hull along its other
 /// diagonal, and then some of the lines are others.
 #[test]
-fn millimetres_and_kilometres() {
+fn millimetres_and_kilometers() {
     let model = furnished(1.0, DVec3::ZERO);
-    let metres = solve(&model);
+    let meters = solve(&model);
     for scale in [1024.0, 1.0 / 1024.0, 1_048_576.0] {
-        assert_eq!(solve(&furnished(scale, DVec3::ZERO)).irradiance, metres.irradiance, "{scale}");
+        assert_eq!(solve(&furnished(scale, DVec3::ZERO)).irradiance, meters.irradiance, "{scale}");
     }
     for scale in [1e-3, 1e3, 1e6, 1e-6, 0.0254] {
-        let off = deviation(&model, &solve(&furnished(scale, DVec3::ZERO)), &metres);
+        let off = deviation(&model, &solve(&furnished(scale, DVec3::ZERO)), &meters);
         println!("scale {scale}: {off:e}");
         assert!(off < 5e-3, "{scale}: {off}");
     }
@@ -288,10 +288,10 @@ fn a_room_on_a_wide_ground_is_as_tight_as_one_without() {
     // With a floor of its own in the plane of the ground, or on the ground alone.
     for own_floor in [true, false] {
         let mut b = SceneBuilder::new();
-        let outside = b.add_material(grey(0.0, 0.5));
+        let outside = b.add_material(gray(0.0, 0.5));
         ground(&mut b, outside);
         // Walls are single sheets with two sides; only the insides emit.
-        let wall = b.add_material(grey(m, rho).with_sides(Sides::Both));
+        let wall = b.add_material(gray(m, rho).with_sides(Sides::Both));
         let size = v(4.0, 3.0, 2.5);
         let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
         let mut faces = vec![
@@ -348,7 +348,7 @@ fn a_wall_turned_outside_is_a_matter_of_sides() {
     let (m, rho) = (1.0, 0.6);
     for sides in [Sides::Both, Sides::Front] {
         let mut b = SceneBuilder::new();
-        let material = Material { back_emits: true, ..grey(m, rho).with_sides(sides) };
+        let material = Material { back_emits: true, ..gray(m, rho).with_sides(sides) };
         let [wall, turned] = [0; 2].map(|_| b.add_material(material.clone()));
         let max = DVec3::ONE;
         let open = [turned, wall, wall, wall, wall, wall];

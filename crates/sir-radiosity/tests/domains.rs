@@ -4,7 +4,7 @@
 mod common;
 
 use common::{
-    Estimate, add_polygon, batches_in, case, domains, grey, multipath_in, per_face, radiosities, reference,
+    Estimate, add_polygon, batches_in, case, domains, gray, multipath_in, per_face, radiosities, reference,
     shoot,
 };
 use glam::DVec3;
@@ -34,7 +34,7 @@ fn plates_have_their_exact_radiosities_in_all_domains() {
     ];
     let mut b = SceneBuilder::new();
     for (k, surface) in plates["geometry"]["surfaces"].as_array().unwrap().iter().enumerate() {
-        let m = b.add_material(grey(exitance[k], reflectance[k]));
+        let m = b.add_material(gray(exitance[k], reflectance[k]));
         add_polygon(&mut b, surface, m);
     }
     let model = per_face(b);

@@ -6,14 +6,14 @@
 //! of gifts were random too. And who got more than usual passes it on to all but itself: what it gets later is
 //! less than usual, so that for equal view factors `F` a deviation shrinks by `1 + ρF`.
 //!
-//! Batches correct the number of lines that meet a patch, but not what a patch sends on: its neighbours inherit that noise, which
+//! Batches correct the number of lines that meet a patch, but not what a patch sends on: its neighbors inherit that noise, which
 //! the stated errors leave out. It shows where little other noise is left, as in a furnace of high reflectance.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
 
 mod common;
 
-use common::{TRANSPORTS, grey, scene, shoot};
+use common::{TRANSPORTS, gray, scene, shoot};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
@@ -36,7 +36,7 @@ fn furnace(subdivision: Subdivision) -> Model {
 
 /// One face glows.
 fn lamp(subdivision: Subdivision) -> Model {
-    cube(grey(0.0, 0.8), grey(1.0, 0.8), subdivision)
+    cube(gray(0.0, 0.8), gray(1.0, 0.8), subdivision)
 }
 
 /// How far results lie from their mean over all seeds, in units of the errors that the runs state: root mean square

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Estimate, TRANSPORTS, add_polygon, add_sphere, case, grey, per_face, reference, runs};
+use common::{Estimate, TRANSPORTS, add_polygon, add_sphere, case, gray, per_face, reference, runs};
 use glam::DVec3;
 use serde_json::Value;
 use sir_geom::shapes::Facing;
@@ -75,7 +75,7 @@ fn concentric_spheres() {
         let mut b = SceneBuilder::new();
         for (k, facing) in [(1, Facing::Outward), (2, Facing::Inward)] {
             let of = |what: &str| number(&inputs[format!("{what}{k}")]);
-            let m = b.add_material(grey(of("M"), of("rho")));
+            let m = b.add_material(gray(of("M"), of("rho")));
             add_sphere(&mut b, number(&radii[format!("r{k}")]), 1, facing, &[(180, m)]);
         }
         let model = per_face(b);
@@ -102,7 +102,7 @@ fn sphere_interior_with_uneven_emission() {
             .iter()
             .map(|s| {
                 let inputs = &c["inputs"][s["name"].as_str().unwrap()];
-                let material = b.add_material(grey(number(&inputs["M"]), number(&inputs["rho"])));
+                let material = b.add_material(gray(number(&inputs["M"]), number(&inputs["rho"])));
                 (number(&s["polar_angle_deg"][1]) as u32, material)
             })
             .collect();
@@ -130,7 +130,7 @@ fn boxes_with_one_patch_per_face() {
         let mut b = SceneBuilder::new();
         for s in surfaces {
             let inputs = &c["inputs"][s["name"].as_str().unwrap()];
-            let m = b.add_material(grey(number(&inputs["M"]), number(&inputs["rho"])));
+            let m = b.add_material(gray(number(&inputs["M"]), number(&inputs["rho"])));
             add_polygon(&mut b, s, m);
         }
         let model = per_face(b);
@@ -150,8 +150,8 @@ fn boxes_with_one_patch_per_face() {
 #[test]
 fn an_open_scene_books_what_escapes() {
     let mut b = SceneBuilder::new();
-    let floor = b.add_material(grey(1.0, 0.0));
-    let wall = b.add_material(grey(0.0, 0.0));
+    let floor = b.add_material(gray(1.0, 0.0));
+    let wall = b.add_material(gray(0.0, 0.0));
     let c = |x, y, z| DVec3::new(x, y, z);
     let quads = [
         ([c(0., 0., 0.), c(1., 0., 0.), c(1., 1., 0.), c(0., 1., 0.)], floor),

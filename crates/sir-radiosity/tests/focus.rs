@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Estimate, grey, scene};
+use common::{Estimate, gray, scene};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{BoundingBox, Light, LightKind, Material, Rgb, SceneBuilder, Sky, SkyModel};
@@ -13,12 +13,12 @@ use sir_radiosity::{
     BatchSettings, Batches, FirstShot, Model, Shot, ShotSettings, Transported, run_stage, sources,
 };
 
-/// A black square metre in the middle of a black ground of 60 × 60 m, a hand above it, under a sky and the sun. A
+/// A black square meter in the middle of a black ground of 60 × 60 m, a hand above it, under a sky and the sun. A
 /// speck high above a corner of the ground, which nearly covers no sky, makes the box of the scene high: of the lines through the
 /// focus, which reaches as high, not nearly all meet the square.
 fn square() -> (Model, Focus, f64) {
     let mut b = SceneBuilder::new();
-    let [small, wide, speck] = [0; 3].map(|_| b.add_material(grey(0.0, 0.0)));
+    let [small, wide, speck] = [0; 3].map(|_| b.add_material(gray(0.0, 0.0)));
     let at = |half: f64, z: f64| {
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(half * x, half * y, z))
     };

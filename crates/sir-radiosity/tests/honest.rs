@@ -8,7 +8,7 @@
 
 mod common;
 
-use common::{batches, grey, replicas, scene, shoot, shoot_again};
+use common::{batches, gray, replicas, scene, shoot, shoot_again};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
@@ -58,7 +58,7 @@ fn furnace() -> Exact {
 fn lamp_in_a_sphere() -> Exact {
     let reflectance = 0.6;
     let mut b = SceneBuilder::new();
-    let [wall, lamp] = [0.0, 10.0].map(|exitance| b.add_material(grey(exitance, reflectance)));
+    let [wall, lamp] = [0.0, 10.0].map(|exitance| b.add_material(gray(exitance, reflectance)));
     shapes::sphere(&mut b, DVec3::ZERO, 1.0, 3, Facing::Inward, |to| if to.z > 0.9 { lamp } else { wall });
     let model = Model::new(scene(b), Subdivision::PerTriangle).unwrap();
     let power: Rgb =

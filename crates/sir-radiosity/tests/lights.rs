@@ -6,7 +6,7 @@ mod common;
 
 use std::f64::consts::PI;
 
-use common::{batches, grey, received, shoot};
+use common::{batches, gray, received, shoot};
 use glam::DVec3;
 use sir_geom::shapes::{Facing, cuboid, quad};
 use sir_geom::{Light, LightKind, Rgb, SceneBuilder, Sky, SkyModel, Spread};
@@ -24,9 +24,9 @@ fn model(builder: SceneBuilder, subdivision: Subdivision) -> Model {
     Model::new(builder.build().unwrap().scene, subdivision).unwrap()
 }
 
-/// A rectangle from `corner`, seen counter-clockwise from where `a × b` points, of a black material of its own.
+/// A rectangle from `corner`, seen counterclockwise from where `a × b` points, of a black material of its own.
 fn rectangle(builder: &mut SceneBuilder, corner: DVec3, a: DVec3, b: DVec3) {
-    let material = builder.add_material(grey(0.0, 0.0));
+    let material = builder.add_material(gray(0.0, 0.0));
     quad(builder, [corner, corner + a, corner + a + b, corner + b], material);
 }
 
@@ -97,7 +97,7 @@ fn cie_5_2_a_lambertian_point_over_a_plane() {
     assert!((nearest.1 / 111.11 - 1.0).abs() < 0.1, "{nearest:?}");
 }
 
-/// An integral over a triangle, by the centres of 32² congruent parts.
+/// An integral over a triangle, by the centers of 32² congruent parts.
 fn integral([a, b, c]: [DVec3; 3], f: impl Fn(DVec3) -> f64) -> f64 {
     let n = 32;
     let at = |i: f64, k: f64| f(a + (b - a) * (i / f64::from(n)) + (c - a) * (k / f64::from(n)));
@@ -120,7 +120,7 @@ fn integral([a, b, c]: [DVec3; 3], f: impl Fn(DVec3) -> f64) -> f64 {
 fn cie_5_4_an_isotropic_point_in_a_room() {
     let (size, lamp) = (DVec3::new(4.0, 4.0, 3.0), DVec3::new(1.0, 2.5, 1.25));
     let mut b = SceneBuilder::new();
-    let faces = [0; 6].map(|_| b.add_material(grey(0.0, 0.0)));
+    let faces = [0; 6].map(|_| b.add_material(gray(0.0, 0.0)));
     cuboid(&mut b, DVec3::ZERO, size, faces, Facing::Inward);
     b.add_light(point(lamp, 10_000.0 / (4.0 * PI), Spread::Isotropic));
     let model = model(b, Subdivision::PerTriangle);
@@ -210,7 +210,7 @@ fn open_squares_get_what_the_sky_sends() {
     }
 }
 
-/// 5.4: of the flux of a uniform sky through the open roof, or through a hole of a square metre in it, the floor gets what the view
+/// 5.4: of the flux of a uniform sky through the open roof, or through a hole of a square meter in it, the floor gets what the view
 /// factor says, and the walls the rest.
 #[test]
 fn cie_5_4_sky_through_a_roof_opening() {
@@ -247,7 +247,7 @@ fn cie_5_4_sky_through_a_roof_opening() {
 fn a_furnace_with_a_point_light() {
     let (rho, power) = (0.8, 100.0);
     let mut b = SceneBuilder::new();
-    let walls = b.add_material(grey(0.0, rho));
+    let walls = b.add_material(gray(0.0, rho));
     cuboid(&mut b, DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0), [walls; 6], Facing::Inward);
     b.add_light(point(DVec3::new(0.5, 0.5, 0.4), power / (4.0 * PI), Spread::Isotropic));
     let model = model(b, Subdivision::Patches(200));

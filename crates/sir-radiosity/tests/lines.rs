@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{add_polygon, case, domains, grey, per_face, reference};
+use common::{add_polygon, case, domains, gray, per_face, reference};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{SceneBuilder, Sides};
@@ -38,12 +38,12 @@ fn facing_counts(model: &Model, domain: &Domain, lines: u64) -> Vec<Vec<u64>> {
 }
 
 /// Crossings counted per side agree with the forecast `N · 2A/S`, on both sides of two-sided surfaces: the sum of
-/// squared normalised deviations is χ²-distributed.
+/// squared normalized deviations is χ²-distributed.
 #[test]
 fn counted_crossings_agree_with_the_forecast() {
     let mut b = SceneBuilder::new();
-    let one = b.add_material(grey(1.0, 0.5));
-    let two = b.add_material(grey(0.0, 0.5).with_sides(Sides::Both));
+    let one = b.add_material(gray(1.0, 0.5));
+    let two = b.add_material(gray(0.0, 0.5).with_sides(Sides::Both));
     shapes::cuboid(&mut b, DVec3::ZERO, DVec3::new(4.0, 3.0, 5.0), [one; 6], Facing::Inward);
     shapes::cuboid(&mut b, DVec3::new(1.0, 0.5, 1.0), DVec3::new(1.5, 2.0, 3.0), [two; 6], Facing::Outward);
     shapes::sphere(&mut b, DVec3::new(3.0, 1.0, 2.0), 0.7, 2, Facing::Outward, |_| one);
@@ -72,7 +72,7 @@ fn view_factors_of_a_cube() {
     let exact = reference("radiosity-exact.json");
     let cube = &case(&exact, "RE-08")["geometry"]["surfaces"];
     let mut b = SceneBuilder::new();
-    let m = b.add_material(grey(1.0, 0.5));
+    let m = b.add_material(gray(1.0, 0.5));
     for surface in cube.as_array().unwrap() {
         add_polygon(&mut b, surface, m);
     }
@@ -113,7 +113,7 @@ fn view_factors_of_concentric_spheres() {
         let radius = |k: &str| c["geometry"]["parameters"][k].as_f64().unwrap();
         let mut b = SceneBuilder::new();
         for (k, facing) in [("r1", Facing::Outward), ("r2", Facing::Inward)] {
-            let m = b.add_material(grey(1.0, 0.5));
+            let m = b.add_material(gray(1.0, 0.5));
             common::add_sphere(&mut b, radius(k), 1, facing, &[(180, m)]);
         }
         let model = per_face(b);

@@ -6,7 +6,7 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use common::{TRANSPORTS, grey, scene, shoot, shoot_again};
+use common::{TRANSPORTS, gray, scene, shoot, shoot_again};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder, Side, Sides};
@@ -17,8 +17,8 @@ use sir_radiosity::{Model, Quanta};
 fn room(subdivision: Subdivision) -> Model {
     let mut b = SceneBuilder::new();
     let walls = b.add_material(Material::diffuse("", Rgb::new(0.8, 0.7, 0.5)));
-    let lamp = b.add_material(grey(50.0, 0.3));
-    let dark = b.add_material(grey(0.0, 0.1));
+    let lamp = b.add_material(gray(50.0, 0.3));
+    let dark = b.add_material(gray(0.0, 0.1));
     let sheet = b.add_material(Material::diffuse("", Rgb::new(0.2, 0.5, 0.7)).with_sides(Sides::Both));
     shapes::cuboid(&mut b, DVec3::ZERO, DVec3::splat(3.0), [walls; 6], Facing::Inward);
     let (min, max) = (DVec3::new(1.4, 2.8, 1.4), DVec3::new(1.6, 2.9, 1.6));

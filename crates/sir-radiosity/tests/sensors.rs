@@ -6,7 +6,7 @@ mod common;
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use common::{batches, grey, shoot};
+use common::{batches, gray, shoot};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Light, LightKind, Material, Rgb, SceneBuilder, Sides, Sky, SkyModel, Spread};
@@ -63,9 +63,9 @@ fn assert_exact(what: &str, sensors: &Gatherer<'_>, cases: &[(Sensor, f64)], lar
     println!("{what}: {:.1} ms per point", 1e3 * start.elapsed().as_secs_f64() / cases.len() as f64);
 }
 
-/// The test room of CIE 171:2006, 4 by 4 by 3 metres, black, without a ceiling.
+/// The test room of CIE 171:2006, 4 by 4 by 3 meters, black, without a ceiling.
 fn black_room(builder: &mut SceneBuilder) {
-    let black = builder.add_material(grey(0.0, 0.0));
+    let black = builder.add_material(gray(0.0, 0.0));
     for corners in [
         [v(0., 0., 0.), v(4., 0., 0.), v(4., 4., 0.), v(0., 4., 0.)],
         [v(0., 0., 0.), v(0., 0., 3.), v(4., 0., 3.), v(4., 0., 0.)],
@@ -77,7 +77,7 @@ fn black_room(builder: &mut SceneBuilder) {
     }
 }
 
-/// A square metre in the middle of the ceiling, seen from below.
+/// A square meter in the middle of the ceiling, seen from below.
 const OPENING: [DVec3; 4] = [v(1.5, 2.5, 3.), v(2.5, 2.5, 3.), v(2.5, 1.5, 3.), v(1.5, 1.5, 3.)];
 
 /// The points of CIE 171:2006 on the wall `y = 0` and on the floor.
@@ -94,7 +94,7 @@ fn a_thousand_lamps_are_measured_as_one_by_one() {
     let mut b = SceneBuilder::new();
     black_room(&mut b);
     let brightness: Vec<f64> = (0..9).map(|k| 100.0 + 200.0 * f64::from(k)).chain([80_000.0]).collect();
-    let lamps: Vec<_> = brightness.iter().map(|m| b.add_material(grey(*m, 0.0))).collect();
+    let lamps: Vec<_> = brightness.iter().map(|m| b.add_material(gray(*m, 0.0))).collect();
     let edge = 1.0 / f64::from(CELLS);
     let mut cells = Vec::new();
     for i in 0..CELLS * CELLS {
@@ -122,7 +122,7 @@ fn a_thousand_lamps_are_measured_as_one_by_one() {
 fn a_luminous_square_is_measured_to_a_thousandth() {
     let mut b = SceneBuilder::new();
     black_room(&mut b);
-    let lamp = b.add_material(grey(1000.0 * PI, 0.0));
+    let lamp = b.add_material(gray(1000.0 * PI, 0.0));
     shapes::quad(&mut b, OPENING, lamp);
     let model = model(b);
     let cases: Vec<_> = points().map(|s| (s, 1000.0 * PI * factor(&s, &OPENING))).collect();
@@ -136,7 +136,7 @@ fn a_luminous_square_is_measured_to_a_thousandth() {
 fn lights_without_a_surface_are_exact() {
     let mut b = SceneBuilder::new();
     black_room(&mut b);
-    let black = b.add_material(grey(0.0, 0.0).with_sides(Sides::Both));
+    let black = b.add_material(gray(0.0, 0.0).with_sides(Sides::Both));
     shapes::quad(&mut b, [v(3., 3., 1.), v(4., 3., 1.), v(4., 4., 1.), v(3., 4., 1.)], black);
     let kind = LightKind::Point {
         position: v(2.0, 2.0, 3.0),
@@ -154,7 +154,7 @@ fn lights_without_a_surface_are_exact() {
         [(0.0, 0.0, 111.111_111_111), (0.5, 0.5, 99.722_991_689_8), (1.0, 0.5, 85.663_295_657_3)]
     {
         let measured = sensors.measure(0, &at(v(2.0 + x, 2.0 + y, 0.0), DVec3::Z));
-        // The sun stands over the wall at x = 0, which shades the first 9/4 metres of the floor.
+        // The sun stands over the wall at x = 0, which shades the first 9/4 meters of the floor.
         let exact = point + if x > 0.25 { 40.0 } else { 0.0 };
         // Sensors are lifted by 30 µm.
         assert!((measured.irradiance.x / exact - 1.0).abs() < 3e-5, "{measured:?}, exact {exact}");
@@ -169,7 +169,7 @@ fn lights_without_a_surface_are_exact() {
 fn the_sky_is_measured_through_an_opening() {
     let mut b = SceneBuilder::new();
     black_room(&mut b);
-    let black = b.add_material(grey(0.0, 0.0));
+    let black = b.add_material(gray(0.0, 0.0));
     let [a, c, d, e] = OPENING;
     let corners = [v(0., 4., 3.), v(4., 4., 3.), v(4., 0., 3.), v(0., 0., 3.)];
     for quad in [
@@ -193,8 +193,8 @@ fn the_sky_is_measured_through_an_opening() {
 fn an_obstruction_hides_a_wall_that_emits_or_reflects() {
     for emits in [true, false] {
         let mut b = SceneBuilder::new();
-        let black = b.add_material(grey(0.0, 0.0));
-        let wall = b.add_material(if emits { grey(100.0, 0.0) } else { grey(0.0, 0.5) });
+        let black = b.add_material(gray(0.0, 0.0));
+        let wall = b.add_material(if emits { gray(100.0, 0.0) } else { gray(0.0, 0.5) });
         shapes::quad(&mut b, [v(4., 4., 0.), v(4., 4., 3.), v(0., 4., 3.), v(0., 4., 0.)], wall);
         shapes::quad(&mut b, [v(0., 0., 0.), v(4., 0., 0.), v(4., 2.5, 0.), v(0., 2.5, 0.)], black);
         shapes::quad(&mut b, [v(4., 2.5, 0.), v(4., 2.5, 1.), v(0., 2.5, 1.), v(0., 2.5, 0.)], black);
@@ -219,7 +219,7 @@ fn an_obstruction_hides_a_wall_that_emits_or_reflects() {
 #[test]
 fn in_a_furnace_the_irradiance_is_the_same_everywhere() {
     let mut b = SceneBuilder::new();
-    let m = b.add_material(grey(3.0, 0.5));
+    let m = b.add_material(gray(3.0, 0.5));
     shapes::cuboid(&mut b, DVec3::ZERO, v(4.0, 4.0, 3.0), [m; 6], Facing::Inward);
     let model = model(b);
     let positions = [v(2.0, 2.0, 1.5), v(1.0, 3.0, 0.0), v(1e-4, 2.0, 0.0), v(0.001, 0.002, 0.0)];
@@ -232,8 +232,8 @@ fn in_a_furnace_the_irradiance_is_the_same_everywhere() {
 #[test]
 fn many_and_close_emitters_are_measured_well() {
     let mut b = SceneBuilder::new();
-    let faint = b.add_material(grey(1.0, 0.0));
-    let bright = b.add_material(grey(1000.0, 0.0));
+    let faint = b.add_material(gray(1.0, 0.0));
+    let bright = b.add_material(gray(1000.0, 0.0));
     let mut lamps = Vec::new();
     for i in 0..2500 {
         let (x, y) = (f64::from(i % 50) - 24.5, f64::from(i / 50) - 24.5);
@@ -303,7 +303,7 @@ fn backs_are_black() {
 fn standard_errors_are_honest() {
     let mut b = SceneBuilder::new();
     black_room(&mut b);
-    let lamp = b.add_material(grey(100.0, 0.3));
+    let lamp = b.add_material(gray(100.0, 0.3));
     shapes::quad(&mut b, OPENING.map(|p| p - DVec3::Z), lamp);
     b.set_sky(Sky::new(DVec3::Z, SkyModel::Overcast, Rgb::splat(20.0), Rgb::ZERO).unwrap());
     let model = model(b);
@@ -332,7 +332,7 @@ fn rms_of_deviations(runs: &[Measurement]) -> f64 {
 #[test]
 fn errors_of_patches_are_passed_on() {
     let mut b = SceneBuilder::new();
-    let (white, floor) = (b.add_material(grey(0.0, 0.7)), b.add_material(grey(0.0, 0.3)));
+    let (white, floor) = (b.add_material(gray(0.0, 0.7)), b.add_material(gray(0.0, 0.3)));
     shapes::cuboid(
         &mut b,
         DVec3::ZERO,
@@ -340,7 +340,7 @@ fn errors_of_patches_are_passed_on() {
         [white, white, white, white, floor, white],
         Facing::Inward,
     );
-    let lamp = b.add_material(grey(1000.0, 0.0));
+    let lamp = b.add_material(gray(1000.0, 0.0));
     shapes::quad(&mut b, OPENING.map(|p| p - 0.1 * DVec3::Z), lamp);
     let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(600)).unwrap();
     for (position, direction) in [(v(1.0, 1.3, 0.75), DVec3::Z), (v(0.3, 0.3, 1.0), DVec3::X)] {
@@ -364,7 +364,7 @@ fn errors_of_patches_are_passed_on() {
 fn an_aim_saves_rays() {
     let mut b = SceneBuilder::new();
     black_room(&mut b);
-    let lamp = b.add_material(grey(1000.0, 0.0));
+    let lamp = b.add_material(gray(1000.0, 0.0));
     shapes::quad(&mut b, OPENING, lamp);
     let model = model(b);
     let solution = uniform(&model, 0.0);

@@ -5,14 +5,14 @@ mod common;
 
 use common::{Estimate, TRANSPORTS, runs, scene, shoot_again};
 use glam::{DVec3, Vec2};
-use sir_geom::{ColourMap, Material, Rgb, SceneBuilder, Side, Texture, TextureMap, Wrap};
+use sir_geom::{ColorMap, Material, Rgb, SceneBuilder, Side, Texture, TextureMap, Wrap};
 use sir_mesh::Subdivision;
 use sir_radiosity::{Emitter, Model, sources};
 
 /// Bright and dark texels, and what 8-bit sRGB has near the linear value .2.
 const DARK: [u8; 4] = [0, 0, 0, 255];
 const WHITE: [u8; 4] = [255; 4];
-const GREY: [u8; 4] = [124, 124, 124, 255];
+const GRAY: [u8; 4] = [124, 124, 124, 255];
 
 /// An irregular pattern of two texels.
 fn pattern([one, other]: [[u8; 4]; 2]) -> Texture {
@@ -23,13 +23,13 @@ fn pattern([one, other]: [[u8; 4]; 2]) -> Texture {
 /// A cube whose walls emit where they do not reflect: `M = 1 − ρ`, so that `B = E = 1` everywhere.
 fn complementary_cube(subdivision: Subdivision) -> Model {
     let mut b = SceneBuilder::new();
-    let grey = Texture::new(1, 1, vec![GREY]).unwrap().mean_colour().x;
+    let gray = Texture::new(1, 1, vec![GRAY]).unwrap().mean_color().x;
     let reflectance = b.add_texture(pattern([WHITE, DARK]));
-    let exitance = b.add_texture(pattern([GREY, WHITE]));
+    let exitance = b.add_texture(pattern([GRAY, WHITE]));
     let map = |texture| TextureMap { texture, wrap: [Wrap::Repeat, Wrap::Mirror], coordinates: 0 };
     let material = b.add_material(Material {
-        reflectance_map: Some(ColourMap { map: map(reflectance), factor: Rgb::splat(1.0 - grey) }),
-        exitance_map: Some(ColourMap { map: map(exitance), factor: Rgb::ONE }),
+        reflectance_map: Some(ColorMap { map: map(reflectance), factor: Rgb::splat(1.0 - gray) }),
+        exitance_map: Some(ColorMap { map: map(exitance), factor: Rgb::ONE }),
         ..Material::diffuse("", Rgb::splat(0.5)).emitting(Rgb::splat(0.5))
     });
     for axis in 0..3 {

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Estimate, TRANSPORTS, grey, scene, shoot};
+use common::{Estimate, TRANSPORTS, gray, scene, shoot};
 use glam::{DVec3, Vec2};
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, MaterialId, Opacity, Rgb, SceneBuilder, Sides, Texture, TextureMap, Wrap};
@@ -28,7 +28,7 @@ fn across(b: &mut SceneBuilder, x: f64, material: MaterialId) {
 fn a_furnace_with_partitions_that_have_gaps() {
     let (m, rho) = (1.0, 0.6);
     let mut b = SceneBuilder::new();
-    let walls = b.add_material(grey(m, rho));
+    let walls = b.add_material(gray(m, rho));
     shapes::cuboid(&mut b, DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0), [walls; 6], Facing::Inward);
     // Two texels in five are open.
     let texel = |i: u32| [0, 0, 0, if i.wrapping_mul(7) % 5 < 2 { 20 } else { 240 }];
@@ -40,7 +40,7 @@ fn a_furnace_with_partitions_that_have_gaps() {
         Opacity { factor: 0.0, ..Opacity::default() },
     ];
     for (opacity, x) in opacities.into_iter().zip([0.5, 1.1, 1.5]) {
-        let both = grey(m, rho).with_sides(Sides::Both);
+        let both = gray(m, rho).with_sides(Sides::Both);
         let material = b.add_material(Material { opacity, back_emits: true, ..both });
         across(&mut b, x, material);
     }
@@ -82,10 +82,10 @@ fn a_furnace_with_partitions_that_have_gaps() {
 fn a_veil_dims_what_is_behind_it() {
     const LINES: u64 = 400_000;
     let mut b = SceneBuilder::new();
-    let lamp = b.add_material(grey(1.0, 0.0));
-    let black = b.add_material(grey(0.0, 0.0));
+    let lamp = b.add_material(gray(1.0, 0.0));
+    let black = b.add_material(gray(0.0, 0.0));
     let opacity = Opacity { factor: 0.3, ..Opacity::default() };
-    let veil = b.add_material(Material { opacity, ..grey(0.0, 0.0).with_sides(Sides::Both) });
+    let veil = b.add_material(Material { opacity, ..gray(0.0, 0.0).with_sides(Sides::Both) });
     let square = |z: f64| [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec3::new(x, y, z));
     shapes::quad(&mut b, square(0.0), lamp);
     let [p, q, r, s] = square(1.0);

@@ -13,7 +13,7 @@ use sir_radiosity::{
     ViewFactorLines, ViewFactorSettings, ViewFactorTask, ViewFactors,
 };
 
-/// Opposite and adjacent faces of a cube (Howell, catalogue of configuration factors, C-11 and C-14).
+/// Opposite and adjacent faces of a cube (Howell, catalog of configuration factors, C-11 and C-14).
 const OPPOSITE: f64 = 0.199_824_895_698_387;
 const ADJACENT: f64 = 0.200_043_776_075_403;
 

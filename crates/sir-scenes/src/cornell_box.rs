@@ -1,12 +1,12 @@
 //! The Cornell box, as measured by the Cornell University Program of Computer Graphics.
 //!
 //! All figures are from its page "Cornell Box Data" (<https://www.graphics.cornell.edu/online/box/data.html>, now at
-//! <https://bowers.cornell.edu/computer-graphics/data>), where lengths are millimetres.
+//! <https://bowers.cornell.edu/computer-graphics/data>), where lengths are millimeters.
 //!
-//! # Colours
+//! # Colors
 //!
-//! The published colours are spectra. A band `c` of a reflectance is here the measured reflectance averaged over
-//! the wavelengths with the weight `S(λ) c̄(λ)`, `S` being the lamp's own spectrum and `c̄` the band's colour-matching
+//! The published colors are spectra. A band `c` of a reflectance is here the measured reflectance averaged over
+//! the wavelengths with the weight `S(λ) c̄(λ)`, `S` being the lamp's own spectrum and `c̄` the band's color-matching
 //! function: this makes the light that a wall reflects of the direct light exact in every band, where a neutral
 //! light as the weight would make none exact.
 //!
@@ -65,7 +65,7 @@ const OPENING: [[f64; 3]; 4] =
 const CEILING: [[f64; 3]; 4] =
     [[556.0, 548.8, 0.0], [556.0, 548.8, 559.2], [0.0, 548.8, 559.2], [0.0, 548.8, 0.0]];
 
-/// Walls with an even colour \[mm\]: floor, back, right and left as seen by the camera.
+/// Walls with an even color \[mm\]: floor, back, right and left as seen by the camera.
 const WALLS: [(Paint, [[f64; 3]; 4]); 4] = [
     (Paint::White, [[552.8, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 559.2], [549.6, 0.0, 559.2]]),
     (Paint::White, [[549.6, 0.0, 559.2], [0.0, 0.0, 559.2], [0.0, 548.8, 559.2], [556.0, 548.8, 559.2]]),
@@ -86,11 +86,11 @@ enum Paint {
     Red,
 }
 
-/// The Cornell box with its two blocks, in metres, open at the front (`z = 0`), with the camera of the published
+/// The Cornell box with its two blocks, in meters, open at the front (`z = 0`), with the camera of the published
 /// pictures. The red wall is on the left of the picture.
 ///
 /// The ceiling has an opening in which the lamp lies flush, so that no surface covers another. Materials are `white`,
-/// `green`, `red` and `lamp`. See the source of this module for where the colours come from.
+/// `green`, `red` and `lamp`. See the source of this module for where the colors come from.
 ///
 /// # Errors
 ///
@@ -158,7 +158,7 @@ fn reflectance(spectrum: &[f64; 76]) -> Rgb {
     round_to(reflected / integrate(lamp()), 1e4).clamp(Rgb::ZERO, Rgb::ONE)
 }
 
-/// Radiance of the lamp, half adapted to its own colour.
+/// Radiance of the lamp, half adapted to its own color.
 fn lamp_radiance() -> Rgb {
     let equal_energy = || wavelengths().map(|_| 1.0);
     let bands = integrate(lamp()) / integrate(equal_energy());
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_what_they_are_called() {
+    fn colors_are_what_they_are_called() {
         let [white, green, red] = ["white", "green", "red"].map(|n| material(n).reflectance);
         assert!(white.abs_diff_eq(Rgb::splat(0.74), 0.02), "{white}");
         assert!(green.y > 3.0 * green.x && green.x > green.z && green.z > 0.0, "{green}");
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn lamp_keeps_the_luminance_and_half_of_the_colour() {
+    fn lamp_keeps_the_luminance_and_half_of_the_color() {
         let radiance = material("lamp").exitance / std::f64::consts::PI;
         assert!(radiance.abs_diff_eq(Rgb::new(14.59, 11.92, 6.15), 0.03), "{radiance}");
     }

@@ -11,7 +11,7 @@ use sir_geom::{Built, Camera, Material, Rgb, SceneBuilder, SceneError, shapes, s
 ///
 /// # Errors
 ///
-/// If `edge` is zero or a colour is negative or not finite.
+/// If `edge` is zero or a color is negative or not finite.
 pub fn furnace(edge: f64, reflectance: Rgb, exitance: Rgb) -> Result<Built, SceneError> {
     let mut b = SceneBuilder::new();
     let wall = b.add_material(Material::diffuse("glowing wall", reflectance).emitting(exitance));
@@ -46,7 +46,7 @@ pub struct SphereShell {
 ///
 /// # Errors
 ///
-/// If a radius is zero or a colour is negative or not finite.
+/// If a radius is zero or a color is negative or not finite.
 pub fn concentric_spheres(inner: SphereShell, outer: SphereShell, level: u32) -> Result<Built, SceneError> {
     let mut b = SceneBuilder::new();
     for (name, shell, facing) in

@@ -189,17 +189,17 @@ fn document(scene: &Scene, geometry: &Geometry) -> Value {
     root
 }
 
-/// What the emitted radiance is divided by so that it becomes a colour: its largest band, but not less than one.
+/// What the emitted radiance is divided by so that it becomes a color: its largest band, but not less than one.
 fn strength(material: &Material) -> f32 {
     (material.exitance.max_element() / std::f64::consts::PI).max(1.0) as f32
 }
 
 fn material(material: &Material) -> Value {
-    let colour = material.reflectance.as_vec3().extend(1.0).to_array().map(short);
+    let color = material.reflectance.as_vec3().extend(1.0).to_array().map(short);
     let mut value = json!({
         "name": material.name,
         "pbrMetallicRoughness": {
-            "baseColorFactor": colour,
+            "baseColorFactor": color,
             "metallicFactor": 0.0,
             "roughnessFactor": 1.0,
         },

@@ -11,7 +11,7 @@
 //!   and to be computed by many processors.
 //! * [`museum_stairs`] is a large hall full of sculpture, likewise to be looked at.
 //!
-//! All lengths are metres, `y` is up, and no scene has light that can leave it, but for the Cornell box, which is open
+//! All lengths are meters, `y` is up, and no scene has light that can leave it, but for the Cornell box, which is open
 //! at the front.
 
 mod airplane_cabin;

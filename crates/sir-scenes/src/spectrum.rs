@@ -9,7 +9,7 @@ pub(crate) fn wavelengths() -> impl Iterator<Item = f64> {
 
 /// `∫ spectrum · r̄, ḡ, b̄ dλ`, up to the width of a step, for a spectrum given at [`wavelengths`].
 pub(crate) fn integrate(spectrum: impl Iterator<Item = f64>) -> Rgb {
-    wavelengths().zip(spectrum).map(|(nm, value)| value * colour_matching(nm)).sum()
+    wavelengths().zip(spectrum).map(|(nm, value)| value * color_matching(nm)).sum()
 }
 
 /// `∫ spectrum · ȳ dλ`, in the same unit as [`integrate`].
@@ -17,9 +17,9 @@ pub(crate) fn luminance(spectrum: impl Iterator<Item = f64>) -> f64 {
     wavelengths().zip(spectrum).map(|(nm, value)| value * observer(nm)[1]).sum()
 }
 
-/// Response of the three bands to a wavelength \[nm\]. Bands have negative lobes, where a pure spectral colour lies
+/// Response of the three bands to a wavelength \[nm\]. Bands have negative lobes, where a pure spectral color lies
 /// outside what three primaries can make.
-fn colour_matching(nm: f64) -> Rgb {
+fn color_matching(nm: f64) -> Rgb {
     let [x, y, z] = observer(nm);
     // XYZ to linear Rec. 709 with the white D65 (IEC 61966-2-1 primaries, four digits).
     Rgb::new(
@@ -32,8 +32,8 @@ fn colour_matching(nm: f64) -> Rgb {
 /// The CIE 1931 standard observer `x̄, ȳ, z̄` as the sums of piecewise Gaussian lobes fitted by Wyman, Sloan and Shirley,
 /// Journal of Computer Graphics Techniques 2 (2), 2013, table 1.
 fn observer(nm: f64) -> [f64; 3] {
-    let lobe = |height: f64, centre: f64, below: f64, above: f64| {
-        let t = (nm - centre) * if nm < centre { below } else { above };
+    let lobe = |height: f64, center: f64, below: f64, above: f64| {
+        let t = (nm - center) * if nm < center { below } else { above };
         height * (-0.5 * t * t).exp()
     };
     [
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn observer_is_normalised_and_peaks_where_the_eye_does() {
+    fn observer_is_normalized_and_peaks_where_the_eye_does() {
         let [x, y, z] = [0, 1, 2].map(|i| 4.0 * wavelengths().map(|nm| observer(nm)[i]).sum::<f64>());
         // The tables of the standard sum to 106.9 for each of the three.
         for sum in [x, y, z] {

@@ -24,9 +24,9 @@ impl BoundingBox {
         )
     }
 
-    /// Centre of the box.
+    /// Center of the box.
     #[must_use]
-    pub fn centre(&self) -> DVec3 {
+    pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
 
@@ -65,7 +65,7 @@ impl BoundingBox {
     pub fn meets(&self, line: &Line) -> bool {
         let half = 0.5 * self.size();
         let along = line.direction.abs();
-        let across = (line.origin - self.centre()).cross(line.direction).abs();
+        let across = (line.origin - self.center()).cross(line.direction).abs();
         across.x <= half.y * along.z + half.z * along.y
             && across.y <= half.z * along.x + half.x * along.z
             && across.z <= half.x * along.y + half.y * along.x
@@ -75,15 +75,15 @@ impl BoundingBox {
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundingSphere {
-    /// Centre.
-    pub centre: DVec3,
+    /// Center.
+    pub center: DVec3,
     /// Radius.
     pub radius: f64,
 }
 
 impl BoundingSphere {
     /// A sphere around all points that is at most a few per cent larger than the smallest one (Ritter 1990),
-    /// or the sphere about the centre of their box where that is smaller; `None` if there are no points.
+    /// or the sphere about the center of their box where that is smaller; `None` if there are no points.
     #[must_use]
     pub fn of(points: &[DVec3]) -> Option<Self> {
         let first = *points.first()?;
@@ -94,20 +94,20 @@ impl BoundingSphere {
         };
         let a = farthest(first);
         let b = farthest(a);
-        let mut ritter = Self { centre: 0.5 * (a + b), radius: 0.5 * a.distance(b) };
+        let mut ritter = Self { center: 0.5 * (a + b), radius: 0.5 * a.distance(b) };
         for &p in points {
-            let d = p.distance(ritter.centre);
+            let d = p.distance(ritter.center);
             if d > ritter.radius {
                 let radius = 0.5 * (ritter.radius + d);
-                ritter.centre += (p - ritter.centre) * ((d - radius) / d);
+                ritter.center += (p - ritter.center) * ((d - radius) / d);
                 ritter.radius = radius;
             }
         }
         let around =
-            |centre: DVec3| points.iter().map(|p| p.distance_squared(centre)).fold(0.0, f64::max).sqrt();
-        ritter.radius = around(ritter.centre);
-        let centre = BoundingBox::of(points.iter().copied())?.centre();
-        let boxed = Self { centre, radius: around(centre) };
+            |center: DVec3| points.iter().map(|p| p.distance_squared(center)).fold(0.0, f64::max).sqrt();
+        ritter.radius = around(ritter.center);
+        let center = BoundingBox::of(points.iter().copied())?.center();
+        let boxed = Self { center, radius: around(center) };
         let mut best = if boxed.radius < ritter.radius { boxed } else { ritter };
         // Room for rounding: every point is strictly inside.
         best.radius *= 1.0 + 1e-9;
@@ -131,7 +131,7 @@ mod tests {
             (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))).collect();
         let s = BoundingSphere::of(&corners).unwrap();
         assert!((s.radius - 0.75f64.sqrt()).abs() < 1e-8, "{s:?}");
-        assert!(corners.iter().all(|c| c.distance(s.centre) < s.radius));
+        assert!(corners.iter().all(|c| c.distance(s.center) < s.radius));
     }
 
     /// The nearest point of a segment to a box is sought step by step, which is sure but where a line only just meets or misses.

@@ -3,7 +3,7 @@
 /// One side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Side {
-    /// The side from which the corners run counter-clockwise.
+    /// The side from which the corners run counterclockwise.
     Front,
     /// The other one.
     Back,

@@ -1,4 +1,4 @@
-//! CIE 171, 5.8: a closed cube with an isotropic point light in its centre.
+//! CIE 171, 5.8: a closed cube with an isotropic point light in its center.
 
 use std::f64::consts::PI;
 
@@ -20,7 +20,7 @@ use crate::trial::{Quantity, Sample, Trial};
 /// Patches and lines of a run for the averages of faces. Those are right whatever the patches, since all faces are alike.
 const AVERAGES: (u64, u64) = (2_400, 800_000);
 
-/// Cells along an edge and lines of a run for the light at points. Cells are a tenth of a metre in the middle of a face and
+/// Cells along an edge and lines of a run for the light at points. Cells are a tenth of a meter in the middle of a face and
 /// smaller towards its edges; half of the lines are global, and meet each cell some two hundred times.
 const POINTS: (u32, u64) = (48, 3_200_000);
 

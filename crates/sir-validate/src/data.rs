@@ -64,28 +64,52 @@ pub(crate) struct Surface {
     pub(crate) shape: Shape,
 }
 
-/// What a surface looks like; lengths in metres.
+/// What a surface looks like; lengths in meters.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Shape {
-    /// Corners counter-clockwise seen from the active side.
+    /// Corners counterclockwise seen from the active side.
     Polygon { vertices: Vec<[f64; 3]> },
     /// Active on the side to which the normal points.
-    Disc { centre: [f64; 3], normal: [f64; 3], radius: f64 },
+    Disc {
+        #[serde(rename = "centre")]
+        center: [f64; 3],
+        normal: [f64; 3],
+        radius: f64,
+    },
     /// The same with a hole.
-    Annulus { centre: [f64; 3], normal: [f64; 3], inner_radius: f64, outer_radius: f64 },
+    Annulus {
+        #[serde(rename = "centre")]
+        center: [f64; 3],
+        normal: [f64; 3],
+        inner_radius: f64,
+        outer_radius: f64,
+    },
     /// All of a sphere.
-    Sphere { centre: [f64; 3], radius: f64, active_side: ActiveSide },
+    Sphere {
+        #[serde(rename = "centre")]
+        center: [f64; 3],
+        radius: f64,
+        active_side: ActiveSide,
+    },
     /// The part of a sphere between two angles from the axis.
     SphericalZone {
-        centre: [f64; 3],
+        #[serde(rename = "centre")]
+        center: [f64; 3],
         radius: f64,
         axis: [f64; 3],
         polar_angle_deg: [f64; 2],
         active_side: ActiveSide,
     },
     /// The curved surface of a cylinder.
-    Cylinder { base_centre: [f64; 3], axis: [f64; 3], radius: f64, length: f64, active_side: ActiveSide },
+    Cylinder {
+        #[serde(rename = "base_centre")]
+        base_center: [f64; 3],
+        axis: [f64; 3],
+        radius: f64,
+        length: f64,
+        active_side: ActiveSide,
+    },
 }
 
 /// The side of a curved surface that takes part.

@@ -28,7 +28,7 @@ pub(crate) fn factors(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
         quantities.push(Quantity::new(name, exact));
     }
     let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
-        let scene = scene(&surfaces, |_| Paint::grey(0.0, 0.0), effort.segments(SEGMENTS))?;
+        let scene = scene(&surfaces, |_| Paint::gray(0.0, 0.0), effort.segments(SEGMENTS))?;
         let model = Model::new(scene, Subdivision::PerTriangle)?;
         // Every surface has a material of its own, and a triangle: the numbers of groups are those of surfaces.
         let grouping = Grouping::by_material(&model.scene);

@@ -52,7 +52,7 @@ pub(crate) fn of_openings(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> 
                 Ok(black(&surfaces, |surface| if surface.name == opening.name { 1.0 } else { 0.0 }))
             }
         };
-        // Through each square metre comes a flux of 1.
+        // Through each square meter comes a flux of 1.
         let flux = if is_roof { 16.0 } else { 1.0 };
         let shares = answers.iter().map(|(name, share)| (name.clone(), share * flux)).collect();
         trials.push(trial(case, Some(&opening.name), shares, flux, build));

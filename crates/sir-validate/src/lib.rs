@@ -35,7 +35,7 @@
 //! ```
 
 mod bench;
-mod catalogue;
+mod catalog;
 mod check;
 mod cube;
 mod data;

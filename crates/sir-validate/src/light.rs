@@ -19,7 +19,7 @@ pub(crate) struct Paint {
 
 impl Paint {
     /// The same in all bands.
-    pub(crate) fn grey(exitance: f64, reflectance: f64) -> Self {
+    pub(crate) fn gray(exitance: f64, reflectance: f64) -> Self {
         Self { exitance: Rgb::splat(exitance), reflectance: Rgb::splat(reflectance) }
     }
 }

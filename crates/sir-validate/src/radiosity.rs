@@ -110,7 +110,7 @@ pub(crate) fn surfaces(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     for surface in &surfaces {
         let light = inputs.of(&surface.name);
         let light = *case.need("M and rho of each surface", light.as_ref())?;
-        paints.push(Paint::grey(light.exitance, light.reflectance));
+        paints.push(Paint::gray(light.exitance, light.reflectance));
         let exact = values.of(&surface.name);
         let [b, e] = *case.need("B and E of each surface", exact.as_ref())?;
         quantities.push(Quantity::new(format!("B {}", surface.name), b));
@@ -200,7 +200,7 @@ mod tests {
         let [_, exact] = values.of("zone 1").unwrap();
         let paint = |i: usize| {
             let light = inputs.of(&surfaces[i].name).unwrap();
-            Paint::grey(light.exitance, light.reflectance)
+            Paint::gray(light.exitance, light.reflectance)
         };
         let model = per_face(scene(&surfaces, paint, segments).unwrap()).unwrap();
         let run = |seed| {

@@ -12,7 +12,7 @@ use crate::shape::SEGMENTS;
 
 /// A scene of these surfaces, black, of which some emit an exitance.
 pub(crate) fn black(surfaces: &[&Surface], exitance: impl Fn(&Surface) -> f64) -> SceneBuilder {
-    builder(surfaces, |i| Paint::grey(exitance(surfaces[i]), 0.0), SEGMENTS)
+    builder(surfaces, |i| Paint::gray(exitance(surfaces[i]), 0.0), SEGMENTS)
 }
 
 /// Adds a point light of this flux: isotropic, or Lambertian if it has an axis.

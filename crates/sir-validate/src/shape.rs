@@ -29,24 +29,24 @@ pub(crate) fn add(builder: &mut SceneBuilder, shape: &Shape, material: MaterialI
                 vertices.iter().map(|&v| builder.add_vertex(DVec3::from_array(v))).collect();
             builder.add_polygon(&corners, material);
         }
-        Shape::Disc { centre, normal, radius } => {
-            revolve(builder, centre, normal, &[(0.0, radius), (0.0, 0.0)], material, segments);
+        Shape::Disc { center, normal, radius } => {
+            revolve(builder, center, normal, &[(0.0, radius), (0.0, 0.0)], material, segments);
         }
-        Shape::Annulus { centre, normal, inner_radius, outer_radius } => {
+        Shape::Annulus { center, normal, inner_radius, outer_radius } => {
             let profile = [(0.0, outer_radius), (0.0, inner_radius)];
-            revolve(builder, centre, normal, &profile, material, segments);
+            revolve(builder, center, normal, &profile, material, segments);
         }
-        Shape::Sphere { centre, radius, active_side } => {
+        Shape::Sphere { center, radius, active_side } => {
             let profile = facing(active_side, arc(radius, [0.0, 180.0], segments));
-            revolve(builder, centre, [0.0, 0.0, 1.0], &profile, material, segments);
+            revolve(builder, center, [0.0, 0.0, 1.0], &profile, material, segments);
         }
-        Shape::SphericalZone { centre, radius, axis, polar_angle_deg, active_side } => {
+        Shape::SphericalZone { center, radius, axis, polar_angle_deg, active_side } => {
             let profile = facing(active_side, arc(radius, polar_angle_deg, segments));
-            revolve(builder, centre, axis, &profile, material, segments);
+            revolve(builder, center, axis, &profile, material, segments);
         }
-        Shape::Cylinder { base_centre, axis, radius, length, active_side } => {
+        Shape::Cylinder { base_center, axis, radius, length, active_side } => {
             let profile = facing(active_side, vec![(0.0, radius), (length, radius)]);
-            revolve(builder, base_centre, axis, &profile, material, segments);
+            revolve(builder, base_center, axis, &profile, material, segments);
         }
     }
 }
@@ -75,20 +75,20 @@ fn facing(side: ActiveSide, mut profile: Vec<Station>) -> Vec<Station> {
 /// Turns a profile about an axis. Fronts are to the right of the profile, the axis being to its left if it goes along with it.
 fn revolve(
     builder: &mut SceneBuilder,
-    centre: [f64; 3],
+    center: [f64; 3],
     axis: [f64; 3],
     profile: &[Station],
     material: MaterialId,
     segments: u32,
 ) {
-    let (centre, axis) = (DVec3::from_array(centre), DVec3::from_array(axis).normalize_or_zero());
+    let (center, axis) = (DVec3::from_array(center), DVec3::from_array(axis).normalize_or_zero());
     let (x, y) = axis.any_orthonormal_pair();
     let step = 2.0 * PI / f64::from(segments);
     // A regular polygon of circumradius ρ has the area ½ n ρ² sin(2π/n).
     let outside = (step / step.sin()).sqrt();
     let at = |(height, radius): Station, segment: u32| {
         let (sin, cos) = (step * f64::from(segment % segments)).sin_cos();
-        centre + axis * height + (x * cos + y * sin) * (radius * outside)
+        center + axis * height + (x * cos + y * sin) * (radius * outside)
     };
     for ends in profile.windows(2) {
         let (a, b) = (ends[0], ends[1]);
@@ -119,26 +119,26 @@ mod tests {
         b.build().unwrap().scene
     }
 
-    const CENTRE: [f64; 3] = [1.0, 2.0, 3.0];
+    const CENTER: [f64; 3] = [1.0, 2.0, 3.0];
 
     #[test]
     fn areas_are_those_of_the_smooth_shapes() {
         let (normal, active_side) = ([0.6, 0.0, 0.8], ActiveSide::Outside);
         let zone = |polar_angle_deg| Shape::SphericalZone {
-            centre: CENTRE,
+            center: CENTER,
             radius: 2.0,
             axis: normal,
             polar_angle_deg,
             active_side,
         };
         for (shape, exact) in [
-            (Shape::Disc { centre: CENTRE, normal, radius: 2.0 }, 4.0 * PI),
-            (Shape::Annulus { centre: CENTRE, normal, inner_radius: 1.0, outer_radius: 2.0 }, 3.0 * PI),
-            (Shape::Sphere { centre: CENTRE, radius: 2.0, active_side }, 16.0 * PI),
+            (Shape::Disc { center: CENTER, normal, radius: 2.0 }, 4.0 * PI),
+            (Shape::Annulus { center: CENTER, normal, inner_radius: 1.0, outer_radius: 2.0 }, 3.0 * PI),
+            (Shape::Sphere { center: CENTER, radius: 2.0, active_side }, 16.0 * PI),
             (zone([0.0, 60.0]), 4.0 * PI),
             (zone([60.0, 105.0]), 8.0 * PI * (0.5 - 105f64.to_radians().cos())),
             (
-                Shape::Cylinder { base_centre: CENTRE, axis: normal, radius: 2.0, length: 3.0, active_side },
+                Shape::Cylinder { base_center: CENTER, axis: normal, radius: 2.0, length: 3.0, active_side },
                 12.0 * PI,
             ),
         ] {
@@ -152,12 +152,12 @@ mod tests {
         for (active_side, sign) in [(ActiveSide::Inside, -1.0), (ActiveSide::Outside, 1.0)] {
             let axis = [0.0, 0.6, 0.8];
             for shape in [
-                Shape::Sphere { centre: CENTRE, radius: 2.0, active_side },
-                Shape::Cylinder { base_centre: CENTRE, axis, radius: 2.0, length: 3.0, active_side },
+                Shape::Sphere { center: CENTER, radius: 2.0, active_side },
+                Shape::Cylinder { base_center: CENTER, axis, radius: 2.0, length: 3.0, active_side },
             ] {
                 let scene = scene(&shape);
                 for t in scene.triangle_ids() {
-                    let middle = scene.corners(t).iter().sum::<DVec3>() / 3.0 - DVec3::from_array(CENTRE);
+                    let middle = scene.corners(t).iter().sum::<DVec3>() / 3.0 - DVec3::from_array(CENTER);
                     let away = match shape {
                         Shape::Cylinder { .. } => middle.reject_from_normalized(DVec3::from_array(axis)),
                         _ => middle,
@@ -168,8 +168,8 @@ mod tests {
         }
         let normal = [0.0, 0.6, 0.8];
         for shape in [
-            Shape::Disc { centre: CENTRE, normal, radius: 1.0 },
-            Shape::Annulus { centre: CENTRE, normal, inner_radius: 1.0, outer_radius: 2.0 },
+            Shape::Disc { center: CENTER, normal, radius: 1.0 },
+            Shape::Annulus { center: CENTER, normal, inner_radius: 1.0, outer_radius: 2.0 },
         ] {
             let scene = scene(&shape);
             assert!(scene.triangle_ids().all(|t| scene.normal(t).dot(DVec3::from_array(normal)) > 0.999_999));

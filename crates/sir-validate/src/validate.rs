@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 
 use crate::bench::{Bench, Watcher};
-use crate::catalogue::plan;
+use crate::catalog::plan;
 use crate::data::{Case, Reference};
 use crate::effort::Effort;
 use crate::error::ValidateError;

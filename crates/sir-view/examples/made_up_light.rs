@@ -27,9 +27,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut irradiance = Vec::with_capacity(mesh.side_count());
     mesh.for_each_side(|triangle, patch, _, _| {
         let corners = mesh.patch_corners(triangle, patch).map(|c| c.point(scene.corners(triangle)));
-        let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let center = (corners[0] + corners[1] + corners[2]) / 3.0;
         let upward = 0.6 + 0.4 * scene.normal(triangle).y;
-        irradiance.push(Rgb::new(1.0, 0.95, 0.85) * upward * (-0.2 * centre.z).exp());
+        irradiance.push(Rgb::new(1.0, 0.95, 0.85) * upward * (-0.2 * center.z).exp());
     });
     let error = vec![Rgb::ZERO; mesh.side_count()];
 

@@ -9,7 +9,7 @@ use crate::tone::rgb;
 /// How bright a picture is made.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Exposure {
-    /// So that the typical brightness of what is seen, lamps apart, becomes a middle grey.
+    /// So that the typical brightness of what is seen, lamps apart, becomes a middle gray.
     #[default]
     Auto,
     /// Radiance \[W/(m² sr)\] times this factor is the linear value on the screen, as long as that is below one
@@ -17,7 +17,7 @@ pub enum Exposure {
     Factor(f64),
 }
 
-/// The linear value that the typical radiance gets: a little more than the photographer's grey card (0.18),
+/// The linear value that the typical radiance gets: a little more than the photographer's gray card (0.18),
 /// because walls are brighter than that.
 const MIDDLE: f64 = 0.26;
 

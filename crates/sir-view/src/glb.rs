@@ -1,6 +1,6 @@
-//! The lit scene as one GLB file, for viewers and modelling programs.
+//! The lit scene as one GLB file, for viewers and modeling programs.
 //!
-//! glTF 2.0 (Khronos 2021). The light is in the vertex colours, and `KHR_materials_unlit` tells viewers to show them
+//! glTF 2.0 (Khronos 2021). The light is in the vertex colors, and `KHR_materials_unlit` tells viewers to show them
 //! as they are. The unclamped radiosity is in the attribute `_RADIOSITY`.
 
 use std::io::Write;
@@ -27,7 +27,7 @@ const UNSIGNED_INT: u32 = 5125;
 /// * `COLOR_0`: linear Rec. 709 in `[0, 1]`, exposure and tone curve applied;
 /// * `_RADIOSITY`: radiosity `B` \[W/m²\] in three linear bands, as computed;
 ///
-/// and the given cameras. Textures are in the colours of the vertices, each the mean over about a patch; surfaces with gaps are whole,
+/// and the given cameras. Textures are in the colors of the vertices, each the mean over about a patch; surfaces with gaps are whole,
 /// but for patches that are all gap. `up` is the direction that becomes the file's +y, as glTF wants it: the node that holds
 /// everything turns it there, while the positions in the file are those of the scene.
 ///
@@ -76,12 +76,12 @@ impl Contents {
         let mut order: Vec<TriangleId> = scene.triangle_ids().collect();
         order.sort_by_key(|&t| scene.triangle(t).material);
         // For whom vertices were last written, and their numbers: for all triangles of a material, or for one with a texture,
-        // since its neighbour may have another colour where they meet.
+        // since its neighbor may have another color where they meet.
         let mut numbers = vec![None; display.vertices().len()];
         for of_material in order.chunk_by(|&s, &t| scene.triangle(s).material == scene.triangle(t).material) {
             let material = scene.material(of_material[0]);
             let mark = self.materials.len() as u32;
-            let (mut positions, mut colours, mut radiosities) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut positions, mut colors, mut radiosities) = (Vec::new(), Vec::new(), Vec::new());
             let mut indices: Vec<u32> = Vec::new();
             for piece in of_material.iter().flat_map(|&t| display.pieces_of(t)) {
                 let t = piece.triangle;
@@ -106,7 +106,7 @@ impl Contents {
                                 display.radiosity_of(&piece, e)
                             };
                             positions.push(position.as_vec3());
-                            colours.push(tone_map(factor / std::f64::consts::PI * b).as_vec3());
+                            colors.push(tone_map(factor / std::f64::consts::PI * b).as_vec3());
                             radiosities.push(b.as_vec3());
                             numbers[v as usize] = Some((owner, positions.len() as u32 - 1));
                             positions.len() as u32 - 1
@@ -121,7 +121,7 @@ impl Contents {
             let primitive = json!({
                 "attributes": {
                     "POSITION": self.add_vectors(&positions, true),
-                    "COLOR_0": self.add_vectors(&colours, false),
+                    "COLOR_0": self.add_vectors(&colors, false),
                     "_RADIOSITY": self.add_vectors(&radiosities, false),
                 },
                 "indices": self.add_indices(&indices),

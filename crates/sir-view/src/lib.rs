@@ -11,7 +11,7 @@
 //! * **To look at.** [`DisplayMesh`] turns constant patches into a smooth mesh, once, and pictures ([`render`],
 //!   [`write_png`], [`write_exr`]) and the model for viewers ([`write_glb`]) both show that mesh. What makes such a
 //!   mesh look wrong is well known (Cohen and Wallace 1993, chapter 8), and each cause has its remedy here. Cracks:
-//!   all vertices on a common edge are shared. Colours that run: irradiance is interpolated, and reflectance is
+//!   all vertices on a common edge are shared. Colors that run: irradiance is interpolated, and reflectance is
 //!   applied afterwards. Light that creeps around corners or through walls: which surfaces continue each other
 //!   is decided around each edge, and not by looking at normals alone. Bands: dithering.
 //! * **To measure.** EXR files and the attribute `_RADIOSITY` of GLB files are linear and not clamped, and a
@@ -38,8 +38,8 @@
 //! use sir_view::{DisplayMesh, Exposure, PictureSettings, default_camera, render};
 //!
 //! let mut builder = SceneBuilder::new();
-//! let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)));
-//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [grey; 6], Facing::Inward);
+//! let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));
+//! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [gray; 6], Facing::Inward);
 //! let scene = builder.build()?.scene;
 //! let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01))?;
 //!

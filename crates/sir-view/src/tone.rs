@@ -5,28 +5,28 @@ use sir_geom::Rgb;
 /// Where compression begins.
 const SHOULDER: f64 = 0.5;
 
-/// How fast compressed colours fade to white.
+/// How fast compressed colors fade to white.
 const FADING: f64 = 0.1;
 
-/// Maps linear colours, exposure applied, to linear colours in `[0, 1]`.
+/// Maps linear colors, exposure applied, to linear colors in `[0, 1]`.
 ///
-/// The curve acts on the largest band `x` and scales the others with it, so colours keep their hue: it is `x` up
-/// to `s = ½`, and above that `1 − (1 − s)²/(x + 1 − 2s)`, which goes on smoothly and reaches 1 at infinity. Colours
+/// The curve acts on the largest band `x` and scales the others with it, so colors keep their hue: it is `x` up
+/// to `s = ½`, and above that `1 − (1 − s)²/(x + 1 − 2s)`, which goes on smoothly and reaches 1 at infinity. Colors
 /// that are compressed much fade to white. The form is that of the Khronos PBR neutral tone mapper (2024), with an
 /// earlier shoulder, so that walls near lamps keep their shading, and without its offset for gloss.
 #[must_use]
-pub fn tone_map(colour: Rgb) -> Rgb {
-    let colour = colour.max(Rgb::ZERO);
-    let peak = colour.max_element();
+pub fn tone_map(color: Rgb) -> Rgb {
+    let color = color.max(Rgb::ZERO);
+    let peak = color.max_element();
     if peak <= SHOULDER {
-        return colour;
+        return color;
     }
     if !peak.is_finite() {
         return Rgb::ONE;
     }
     let compressed = 1.0 - (1.0 - SHOULDER) * (1.0 - SHOULDER) / (peak + 1.0 - 2.0 * SHOULDER);
     let kept = 1.0 / (1.0 + FADING * (peak - compressed));
-    Rgb::splat(compressed).lerp(colour * (compressed / peak), kept)
+    Rgb::splat(compressed).lerp(color * (compressed / peak), kept)
 }
 
 /// The sRGB code value in `[0, 1]` of a linear value (IEC 61966-2-1).

@@ -47,7 +47,7 @@ pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3) -> Ca
     }
     let fallback = || Camera {
         name: String::new(),
-        eye: display.scene.bounding_box().centre(),
+        eye: display.scene.bounding_box().center(),
         forward: DVec3::X,
         up,
         projection: sir_geom::Projection::Perspective { vertical_fov: FIELD },
@@ -78,10 +78,10 @@ fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
     // Horizontal axes: those of the scene, if up is one of them.
     let east = if up.x.abs() < 0.9 { DVec3::X.reject_from(up) } else { DVec3::Z.reject_from(up) }.normalize();
     let north = up.cross(east);
-    let (centre, size) = (scene.bounding_box().centre(), scene.bounding_box().size());
+    let (center, size) = (scene.bounding_box().center(), scene.bounding_box().size());
     let extent = |axis: DVec3| axis.abs().dot(size);
     let at = |e: f64, n: f64, u: f64| {
-        centre
+        center
             + (e - 0.5) * extent(east) * east
             + (n - 0.5) * extent(north) * north
             + (u - 0.5) * extent(up) * up
@@ -96,7 +96,7 @@ fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
         for e in ACROSS {
             for n in ACROSS {
                 let eye = at(e, n, height);
-                add(eye, centre + (eye - centre).dot(up) * 0.5 * up);
+                add(eye, center + (eye - center).dot(up) * 0.5 * up);
                 for k in 0..TURNS {
                     add(eye, eye + turned(k) - 0.1 * up);
                 }
@@ -107,12 +107,12 @@ fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
     for (axis, size) in
         [(east, extent(east)), (-east, extent(east)), (north, extent(north)), (-north, extent(north))]
     {
-        add(centre + (0.5 * size + 0.5 * extent(up) / (0.5 * FIELD).tan()) * axis, centre);
+        add(center + (0.5 * size + 0.5 * extent(up) / (0.5 * FIELD).tan()) * axis, center);
     }
     let distance = scene.bounding_sphere().radius / (0.5 * FIELD).sin();
     for k in 0..TURNS {
         for height in [0.0, 0.35] {
-            add(centre + distance * (turned(k) + height * up).normalize(), centre);
+            add(center + distance * (turned(k) + height * up).normalize(), center);
         }
     }
     cameras

@@ -14,12 +14,12 @@ const NOISE: f64 = 0.08;
 /// A sheet of 2 m by 1 m.
 fn sheet() -> (Scene, PatchMesh) {
     let mut builder = SceneBuilder::new();
-    let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)).with_sides(Sides::Front));
+    let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)).with_sides(Sides::Front));
     let corner = |x: f64, y: f64| DVec3::new(x, y, 0.0);
     shapes::quad(
         &mut builder,
         [corner(0.0, 0.0), corner(2.0, 0.0), corner(2.0, 1.0), corner(0.0, 1.0)],
-        grey,
+        gray,
     );
     let scene = builder.build().unwrap().scene;
     let mesh = PatchMesh::new(&scene, Subdivision::Patches(20_000)).unwrap();
@@ -45,7 +45,7 @@ fn noisy(scene: &Scene, mesh: &PatchMesh, real: impl Fn(DVec3) -> f64) -> [Vec<f
     all
 }
 
-fn grey(values: &[f64]) -> Vec<Rgb> {
+fn gray(values: &[f64]) -> Vec<Rgb> {
     values.iter().map(|&x| Rgb::splat(x)).collect()
 }
 
@@ -65,7 +65,7 @@ fn even_light_becomes_even_and_a_slope_stays() {
     let (scene, mesh) = sheet();
     for slope in [0.0, 0.5] {
         let [x, real, computed, errors] = noisy(&scene, &mesh, |p| 3.0 + slope * p.x);
-        let (computed, errors) = (grey(&computed), grey(&errors));
+        let (computed, errors) = (gray(&computed), gray(&errors));
         let display = DisplayMesh::new(&scene, &mesh, &computed);
         let before = deviation(&x, &real, &computed);
         let after = deviation(&x, &real, &display.denoise(&errors, 2));
@@ -77,7 +77,7 @@ fn even_light_becomes_even_and_a_slope_stays() {
 fn the_border_of_a_shadow_stays() {
     let (scene, mesh) = sheet();
     let [x, real, computed, errors] = noisy(&scene, &mesh, |p| if p.x < 1.0 { 1.0 } else { 3.0 });
-    let (computed, errors) = (grey(&computed), grey(&errors));
+    let (computed, errors) = (gray(&computed), gray(&errors));
     let shown = DisplayMesh::new(&scene, &mesh, &computed).denoise(&errors, 2);
     assert!(deviation(&x, &real, &shown) < 0.25 * deviation(&x, &real, &computed));
     let near_border = |x: &f64| (x - 1.0).abs() < 0.1;
@@ -90,7 +90,7 @@ fn the_border_of_a_shadow_stays() {
 fn nothing_moves_beyond_three_standard_errors_on_any_number_of_threads() {
     let (scene, mesh) = sheet();
     let [_, _, computed, errors] = noisy(&scene, &mesh, |p| 1.0 + 5.0 * p.x * p.x);
-    let (computed, errors) = (grey(&computed), grey(&errors));
+    let (computed, errors) = (gray(&computed), gray(&errors));
     let display = DisplayMesh::new(&scene, &mesh, &computed);
     let shown = display.denoise(&errors, 1);
     assert_eq!(shown, display.denoise(&errors, 3));
@@ -104,7 +104,7 @@ fn nothing_moves_beyond_three_standard_errors_on_any_number_of_threads() {
 fn what_is_known_exactly_is_shown_as_it_is() {
     let (scene, mesh) = sheet();
     let [_, _, computed, _] = noisy(&scene, &mesh, |p| 1.0 + p.x);
-    let computed = grey(&computed);
+    let computed = gray(&computed);
     let shown = DisplayMesh::new(&scene, &mesh, &computed).denoise(&vec![Rgb::ZERO; computed.len()], 2);
     assert_eq!(shown, computed);
 }
@@ -116,8 +116,8 @@ fn a_patch_that_no_line_has_met_takes_the_light_around_it() {
     // Two grains in the mean: many patches have none.
     let grains = |x: f64| (2.0 + 2.0 * (x / 2.0 - 1.0) / NOISE).round().max(0.0);
     let counts: Vec<f64> = computed.iter().map(|&x| grains(x)).collect();
-    let values = grey(&counts);
-    let own = grey(&counts.iter().map(|n| n.sqrt()).collect::<Vec<_>>());
+    let values = gray(&counts);
+    let own = gray(&counts.iter().map(|n| n.sqrt()).collect::<Vec<_>>());
     assert!(counts.iter().filter(|&&n| n == 0.0).count() > 500 && errors.len() == counts.len());
     let shown = DisplayMesh::new(&scene, &mesh, &values).denoise(&own, 2);
     assert!(shown.iter().all(|e| e.x > 0.5), "{:?}", shown.iter().map(|e| e.x).fold(f64::INFINITY, f64::min));
@@ -127,23 +127,23 @@ fn a_patch_that_no_line_has_met_takes_the_light_around_it() {
 fn what_is_too_small_to_know_shows_the_light_beyond_its_edges() {
     // A lit floor with a tiny box on it, whose faces no line has met, and a wall that is large enough to be dark.
     let mut builder = SceneBuilder::new();
-    let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)).with_sides(Sides::Front));
+    let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)).with_sides(Sides::Front));
     let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     shapes::quad(
         &mut builder,
         [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(1.0, 1.0, 0.0), at(0.0, 1.0, 0.0)],
-        grey,
+        gray,
     );
     shapes::quad(
         &mut builder,
         [at(1.0, 0.0, 0.0), at(1.0, 0.0, 1.0), at(1.0, 1.0, 1.0), at(1.0, 1.0, 0.0)],
-        grey,
+        gray,
     );
     let tiny = |x: f64, z: f64| at(x, 1.0, z);
     shapes::quad(
         &mut builder,
         [tiny(0.0, 0.0), tiny(0.002, 0.0), tiny(0.002, 0.002), tiny(0.0, 0.002)],
-        grey,
+        gray,
     );
     let scene = builder.build().unwrap().scene;
     let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01)).unwrap();
@@ -165,13 +165,13 @@ fn what_is_too_small_to_know_shows_the_light_beyond_its_edges() {
     });
 }
 
-/// Of a grain of coloured light, a band may be nothing; it may be less than nothing where more was sent than there was.
+/// Of a grain of colored light, a band may be nothing; it may be less than nothing where more was sent than there was.
 #[test]
 fn bands_without_light_do_no_harm() {
     let (scene, mesh) = sheet();
     let [_, _, computed, errors] = noisy(&scene, &mesh, |p| 1.0 + p.x);
-    let mut computed = grey(&computed);
-    let errors = grey(&errors);
+    let mut computed = gray(&computed);
+    let errors = gray(&errors);
     for (i, e) in computed.iter_mut().enumerate() {
         match i % 50 {
             0 => e.z = 0.0,

@@ -17,8 +17,8 @@ fn scene(build: impl FnOnce(&mut SceneBuilder, MaterialId)) -> Scene {
 
 fn scene_with(sides: Sides, build: impl FnOnce(&mut SceneBuilder, MaterialId)) -> Scene {
     let mut builder = SceneBuilder::new();
-    let grey = builder.add_material(Material::diffuse("grey", Rgb::splat(0.5)).with_sides(sides));
-    build(&mut builder, grey);
+    let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)).with_sides(sides));
+    build(&mut builder, gray);
     builder.build().unwrap().scene
 }
 

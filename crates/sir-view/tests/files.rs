@@ -49,10 +49,10 @@ fn a_glb_holds_the_light_by_material() {
         let material = primitive.material().name().unwrap().to_owned();
         let reader = primitive.reader(|_| Some(blob));
         let positions: Vec<[f32; 3]> = reader.read_positions().unwrap().collect();
-        let colours: Vec<[f32; 3]> = reader.read_colors(0).unwrap().into_rgb_f32().collect();
+        let colors: Vec<[f32; 3]> = reader.read_colors(0).unwrap().into_rgb_f32().collect();
         let radiosity = primitive.get(&gltf::Semantic::Extras("RADIOSITY".to_owned())).unwrap();
-        assert_eq!([positions.len(), colours.len()], [radiosity.count(); 2]);
-        assert!(colours.iter().flatten().all(|c| (0.0..=1.0).contains(c)));
+        assert_eq!([positions.len(), colors.len()], [radiosity.count(); 2]);
+        assert!(colors.iter().flatten().all(|c| (0.0..=1.0).contains(c)));
         let view = radiosity.view().unwrap();
         let bytes = &blob[view.offset()..view.offset() + view.length()];
         let values: Vec<f32> =
@@ -93,7 +93,7 @@ fn tables_add_up_and_have_a_row_for_each_side() {
         assert!((normals.length() - 1.0).abs() < 1e-9, "five faces and a sheet: {normals}");
         for r in &rows {
             assert!((r.normal.length() - 1.0).abs() < 1e-12);
-            assert!(r.centre.cmpge(DVec3::ZERO).all() && r.centre.cmple(DVec3::ONE).all());
+            assert!(r.center.cmpge(DVec3::ZERO).all() && r.center.cmple(DVec3::ONE).all());
             let lamp = r.triangle / 2 == 3;
             assert!(if lamp {
                 r.radiosity == Rgb::splat(100.0)
@@ -105,7 +105,7 @@ fn tables_add_up_and_have_a_row_for_each_side() {
     }
     let faces = table(&scene, Subdivision::PerFace).rows;
     assert_eq!(faces.len(), 7);
-    assert!(faces[0].centre.distance(DVec3::new(0.0, 0.5, 0.5)) < 1e-12);
+    assert!(faces[0].center.distance(DVec3::new(0.0, 0.5, 0.5)) < 1e-12);
     assert_eq!(faces[2].normal, -faces[3].normal);
 }
 

@@ -191,7 +191,7 @@ fn picture_of_strips(mut builder: SceneBuilder, strips: &[(f64, f64, MaterialId)
 }
 
 #[test]
-fn edges_between_colours_are_neither_darker_nor_brighter_than_both() {
+fn edges_between_colors_are_neither_darker_nor_brighter_than_both() {
     let mut builder = SceneBuilder::new();
     let paints = [Rgb::new(0.6, 0.3, 0.1), Rgb::new(0.5, 0.6, 0.7), Rgb::splat(0.001)];
     let paints = paints.map(|p| builder.add_material(Material::diffuse("paint", p)));

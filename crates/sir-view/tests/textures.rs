@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec2, Vec4};
 use sir_geom::{
-    Camera, ColourMap, Material, MaterialId, Opacity, Projection, Rgb, Scene, SceneBuilder, Sky, Texture,
+    Camera, ColorMap, Material, MaterialId, Opacity, Projection, Rgb, Scene, SceneBuilder, Sky, Texture,
     TextureId, TextureMap, Wrap,
 };
 use sir_mesh::{PatchMesh, Subdivision};
@@ -71,9 +71,9 @@ fn a_texture_is_seen_within_a_patch() {
     let lamps = two(&mut b, WHITE, BLACK);
     let material = Material {
         reflectance: Rgb::splat(0.25),
-        reflectance_map: Some(ColourMap { map: stripes, factor: Rgb::new(0.5, 0.4, 0.2) }),
+        reflectance_map: Some(ColorMap { map: stripes, factor: Rgb::new(0.5, 0.4, 0.2) }),
         exitance: Rgb::splat(3.0 * PI),
-        exitance_map: Some(ColourMap { map: lamps, factor: Rgb::splat(6.0 * PI) }),
+        exitance_map: Some(ColorMap { map: lamps, factor: Rgb::splat(6.0 * PI) }),
         ..Material::diffuse("m", Rgb::splat(0.25))
     };
     let m = b.add_material(material);
@@ -82,7 +82,7 @@ fn a_texture_is_seen_within_a_patch() {
     for (of_errors, lamp) in [(false, 6.0), (true, 0.0)] {
         let picture = picture(&scene, Subdivision::PerFace, 16, 1, of_errors);
         for row in picture.radiance.chunks(16) {
-            // Between the middles of texels colours are interpolated, and beyond them with the image's repetition: in the
+            // Between the middles of texels colors are interpolated, and beyond them with the image's repetition: in the
             // middles of the stripes, columns 3 and 4, 11 and 12, they are nearly pure.
             assert_near(row[4], [lamp; 3], 0.13 * (lamp + 1.0));
             assert_near(row[12], [0.5, 0.4, 0.2], 0.13 * (lamp + 1.0));
@@ -92,12 +92,12 @@ fn a_texture_is_seen_within_a_patch() {
     }
 }
 
-/// Stripes far finer than a pixel are an even grey, not speckles.
+/// Stripes far finer than a pixel are an even gray, not speckles.
 #[test]
 fn fine_textures_are_blurred() {
     let mut b = SceneBuilder::new();
     let stripes = two(&mut b, BLACK, WHITE);
-    let reflectance_map = Some(ColourMap { map: stripes, factor: Rgb::splat(0.8) });
+    let reflectance_map = Some(ColorMap { map: stripes, factor: Rgb::splat(0.8) });
     let m = b.add_material(Material { reflectance_map, ..Material::diffuse("m", Rgb::splat(0.4)) });
     square(&mut b, 0.0, m, 100.0);
     let scene = b.build().unwrap().scene;
@@ -151,8 +151,8 @@ fn gaps_show_what_is_behind_in_proportion() {
 fn tables_have_the_means_of_patches() {
     let mut b = SceneBuilder::new();
     let factor = Rgb::new(0.5, 0.4, 0.2);
-    let reflectance_map = Some(ColourMap { map: two(&mut b, BLACK, WHITE), factor });
-    let exitance_map = Some(ColourMap { map: two(&mut b, WHITE, BLACK), factor: Rgb::splat(6.0) });
+    let reflectance_map = Some(ColorMap { map: two(&mut b, BLACK, WHITE), factor });
+    let exitance_map = Some(ColorMap { map: two(&mut b, WHITE, BLACK), factor: Rgb::splat(6.0) });
     let m = Material::diffuse("m", 0.5 * factor).emitting(Rgb::splat(3.0));
     let m = b.add_material(Material { reflectance_map, exitance_map, ..m });
     square(&mut b, 0.0, m, 1.0);
@@ -162,22 +162,22 @@ fn tables_have_the_means_of_patches() {
     let table = Table::new(&scene, &mesh, &[e; 8], &[0.1 * e; 8]);
     for row in &table.rows {
         let (radiosity, error) =
-            if row.centre.x < 0.5 { (Rgb::splat(6.0), Rgb::ZERO) } else { (factor * e, 0.1 * factor * e) };
+            if row.center.x < 0.5 { (Rgb::splat(6.0), Rgb::ZERO) } else { (factor * e, 0.1 * factor * e) };
         assert!(
             (row.radiosity - radiosity).length() < 1e-6 && (row.error - error).length() < 1e-6,
             "{row:?}"
         );
         assert!((row.area - 0.125).abs() < 1e-12);
     }
-    assert_eq!(table.rows.iter().filter(|row| row.centre.x < 0.5).count(), 4);
+    assert_eq!(table.rows.iter().filter(|row| row.center.x < 0.5).count(), 4);
 }
 
-/// Half of the square is open: what is left has its own colour, in a table, and the mesh is without the patches that are all gap.
+/// Half of the square is open: what is left has its own color, in a table, and the mesh is without the patches that are all gap.
 #[test]
-fn gaps_have_no_colour() {
+fn gaps_have_no_color() {
     let mut b = SceneBuilder::new();
     let image = two(&mut b, WHITE, [0, 0, 0, 0]);
-    let reflectance_map = Some(ColourMap { map: image, factor: Rgb::splat(0.6) });
+    let reflectance_map = Some(ColorMap { map: image, factor: Rgb::splat(0.6) });
     let opacity = Opacity { factor: 1.0, map: Some(image), cutoff: Some(0.5) };
     let leaf = Material { reflectance_map, opacity, ..Material::diffuse("leaf", Rgb::splat(0.3)) };
     let m = b.add_material(leaf);
@@ -212,9 +212,9 @@ fn exported(display: &DisplayMesh<'_>) -> Vec<(DVec3, Rgb)> {
     vertices
 }
 
-/// Colours at corners that rise along x, and which do not fit together where the two triangles meet.
+/// Colors at corners that rise along x, and which do not fit together where the two triangles meet.
 #[test]
-fn vertices_of_a_mesh_have_the_colour_of_their_place() {
+fn vertices_of_a_mesh_have_the_color_of_their_place() {
     let mut b = SceneBuilder::new();
     let m = b.add_material(Material::diffuse("m", Rgb::splat(0.8)));
     let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];

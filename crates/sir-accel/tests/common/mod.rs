@@ -16,7 +16,7 @@ pub(crate) fn mesh(scene: &Scene) -> (&[DVec3], Vec<[u32; 3]>) {
 /// Transparent triangles of a scene, and their opacity.
 pub(crate) fn options(scene: &Scene) -> Options {
     let Some(opacities) = Opacities::of(scene) else { return Options::default() };
-    let is_transparent = scene.triangle_ids().map(|t| scene.lets_light_through(t)).collect();
+    let is_transparent = scene.triangle_ids().map(|t| scene.is_transparent(t)).collect();
     Options::default().opacity(is_transparent, move |t, p| opacities.at(t, p).unwrap_or(1.0))
 }
 
@@ -51,7 +51,7 @@ fn pick(count: usize, s: &mut Stream) -> usize {
 
 fn any_origin(scene: &Scene, s: &mut Stream) -> DVec3 {
     let sphere = scene.bounding_sphere();
-    sphere.centre + sphere.radius * unit_vector(s.point())
+    sphere.center + sphere.radius * unit_vector(s.point())
 }
 
 fn through(origin: DVec3, target: DVec3) -> Option<Line> {

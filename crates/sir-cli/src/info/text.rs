@@ -42,7 +42,7 @@ fn overview(info: &Info) -> String {
         row(
             "place",
             &format!(
-                "({min}) to ({max}), its centre {} m from the origin",
+                "({min}) to ({max}), its center {} m from the origin",
                 length(info.distance_from_origin)
             ),
         ),
@@ -58,7 +58,7 @@ fn textures(info: &Info) -> String {
     }
     let [images, texels, triangles] = [images, texels, triangles].map(|n| grouped(n as u64));
     format!(
-        "{images} images with {texels} texels; {triangles} triangles have them, or colours at their corners"
+        "{images} images with {texels} texels; {triangles} triangles have them, or colors at their corners"
     )
 }
 

@@ -178,7 +178,7 @@ mod tests {
             "a.obj --error 0.1 --relative 2",
             "a.obj --lines 0",
             "a.obj --lines 1e99",
-            "a.obj --by colour",
+            "a.obj --by color",
             "a.obj --sides none",
             "a.obj --force",
             "a.obj --threads 0",

@@ -32,13 +32,13 @@ use crate::warning::Built;
 /// Each format has a cargo feature, `gltf` and `obj`; both are on by default. With neither, this crate needs no decoder of images
 /// and no reader of JSON.
 ///
-/// Textures are kept as they are, up to 2²⁸ texels in all; triangles without coordinates have their mean linear colours. Only materials that a triangle uses are taken in. What the
+/// Textures are kept as they are, up to 2²⁸ texels in all; triangles without coordinates have their mean linear colors. Only materials that a triangle uses are taken in. What the
 /// file has beyond a scene is passed over with one warning per kind.
 ///
 /// # glTF 2.0
 ///
 /// The default scene, else the first one, else all nodes; triangles in the order of a walk through the nodes,
-/// parents before children. Base colour, times the colours of vertices, is the reflectance, also of metals and unlit materials, its alpha the opacity as `alphaMode` says; the emitted colour times its strength
+/// parents before children. Base color, times the colors of vertices, is the reflectance, also of metals and unlit materials, its alpha the opacity as `alphaMode` says; the emitted color times its strength
 /// is a radiance `L`, which gives the exitance `π L`. Groups have the names of nodes, or else of meshes. Cameras and punctual lights
 /// (`KHR_lights_punctual`) are taken in; the numbers of the latter, in cd and lx, are taken for W/sr and W/m², their range is ignored. Buffers and images may be embedded
 /// or lie in files in the scene's folder or below it.
@@ -46,7 +46,7 @@ use crate::warning::Built;
 /// # OBJ
 ///
 /// Triangles in the order of the faces, polygons cut into fans from their first corner, or into other triangles where that would be wrong. `Kd` times
-/// `map_Kd` and the colours of vertices, taken for sRGB, is the reflectance; `Ke` times `map_Ke` a radiance that gives the exitance `π Ke`; `d` (else
+/// `map_Kd` and the colors of vertices, taken for sRGB, is the reflectance; `Ke` times `map_Ke` a radiance that gives the exitance `π Ke`; `d` (else
 /// `1 − Tr`) times the alpha, or brightness, of `map_d` the opacity. Groups have the
 /// names in `o` and `g` statements, of which the last before a face counts.
 ///

@@ -9,14 +9,14 @@ use crate::builder::SceneBuilder;
 use crate::color::Rgb;
 use crate::load::notes::Notes;
 use crate::material::Opacity;
-use crate::texture::{ColourMap, Texture, TextureId, TextureMap, Wrap};
+use crate::texture::{ColorMap, Texture, TextureId, TextureMap, Wrap};
 
 /// The kind of warning about textures of which nothing is known.
-pub(super) const UNREADABLE: &str = "textures cannot be read, and their colour factor alone is used";
+pub(super) const UNREADABLE: &str = "textures cannot be read, and their color factor alone is used";
 
 /// The kind of warning about textures for which there is no room.
 const TOO_MANY: &str =
-    "textures are beyond the 268 million texels of a scene, and were replaced by their mean colours";
+    "textures are beyond the 268 million texels of a scene, and were replaced by their mean colors";
 
 /// The most memory for a decoded image, in bytes.
 const MAX_MEMORY: u64 = 512 << 20;
@@ -37,8 +37,8 @@ const EXPANSION: u64 = 2200;
 pub(super) struct Image {
     /// Its texels, unless they are all alike or there is no room for them.
     texels: Option<TextureId>,
-    /// The means of colour and alpha.
-    colour: Rgb,
+    /// The means of color and alpha.
+    color: Rgb,
     alpha: f64,
     /// Whether alpha is the same everywhere.
     even_alpha: bool,
@@ -94,7 +94,7 @@ impl Images {
         let is_even = texels.iter().all(|texel| *texel == texels[0]);
         let even_alpha = texels.iter().all(|texel| texel[3] == texels[0][3]);
         let count = texels.len() as u64;
-        let (colour, alpha) = (texture.mean_colour(), texture.mean_alpha());
+        let (color, alpha) = (texture.mean_color(), texture.mean_alpha());
         let fits = count <= self.room;
         if !is_even && !fits {
             notes.name(TOO_MANY, name);
@@ -103,7 +103,7 @@ impl Images {
             self.room -= count;
             builder.add_texture(texture)
         });
-        Image { texels, colour, alpha, even_alpha }
+        Image { texels, color, alpha, even_alpha }
     }
 }
 
@@ -134,11 +134,11 @@ impl Layer {
     }
 }
 
-/// A colour, times the mean of an image if there is one; and what it is from place to place.
-pub(super) fn colour(factor: Rgb, layer: Option<&Layer>) -> (Rgb, Option<ColourMap>) {
-    let mean = layer.map_or(Rgb::ONE, |layer| layer.image.colour);
+/// A color, times the mean of an image if there is one; and what it is from place to place.
+pub(super) fn color(factor: Rgb, layer: Option<&Layer>) -> (Rgb, Option<ColorMap>) {
+    let mean = layer.map_or(Rgb::ONE, |layer| layer.image.color);
     let map = layer.and_then(Layer::map).filter(|_| factor != Rgb::ZERO);
-    (factor * mean, map.map(|map| ColourMap { map, factor }))
+    (factor * mean, map.map(|map| ColorMap { map, factor }))
 }
 
 /// An opacity, times the alpha of an image if there is one.
@@ -236,24 +236,24 @@ mod tests {
             found.push(images.add(texture, "halves", &mut builder, &mut notes));
         }
         assert_eq!(found[0].texels, Some(TextureId::new(0)));
-        assert_eq!((found[1].texels, found[1].colour, found[1].alpha), (None, Rgb::X / 2.0, 0.5));
+        assert_eq!((found[1].texels, found[1].color, found[1].alpha), (None, Rgb::X / 2.0, 0.5));
         assert!(images.decode(&halves()).unwrap_err().contains("billion"));
         // Where the mask cannot be kept, there is a surface: whether half of it is more than the threshold says nothing.
         let layer = Layer { image: found[1], wrap: [Wrap::Repeat; 2], coordinates: 0 };
         assert_eq!(opacity(0.5, Some(&layer), Some(0.4)).factor, 0.5);
         assert_eq!(opacity(0.5, Some(&layer), None).factor, 0.25);
-        assert_eq!(colour(Rgb::ONE, Some(&layer)), (Rgb::X / 2.0, None));
+        assert_eq!(color(Rgb::ONE, Some(&layer)), (Rgb::X / 2.0, None));
     }
 
     #[test]
-    fn images_of_one_colour_need_no_texels() {
+    fn images_of_one_color_need_no_texels() {
         let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
         let mut images = Images::default();
         let texture = images.decode(&png(&RgbaImage::from_pixel(64, 64, Rgba([255, 0, 0, 51])))).unwrap();
         let image = images.add(texture, "", &mut builder, &mut notes);
         let mut sets = Vec::new();
         let layer = Layer::new(image, [Wrap::Repeat; 2], (), &mut sets);
-        assert_eq!(colour(Rgb::splat(0.5), Some(&layer)), (Rgb::X / 2.0, None));
+        assert_eq!(color(Rgb::splat(0.5), Some(&layer)), (Rgb::X / 2.0, None));
         assert_eq!(opacity(0.5, Some(&layer), None), Opacity { factor: 0.1, ..Opacity::default() });
         assert!(sets.is_empty() && images.room == MAX_TEXELS);
     }

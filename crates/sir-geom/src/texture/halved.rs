@@ -5,7 +5,7 @@ use crate::texture::image::{Texture, srgb_to_linear};
 
 impl Texture {
     /// The image at half its size, rounded down, but at least one texel wide and high. Each texel has the mean, in linear
-    /// colour, of what it covers; if colours count `by_alpha`, the mean weighted by alpha, as far as there is any. Colours are rounded to
+    /// color, of what it covers; if colors count `by_alpha`, the mean weighted by alpha, as far as there is any. Colors are rounded to
     /// 8 bits of sRGB: good enough to look at, not to compute with.
     #[must_use]
     pub fn halved(&self, by_alpha: bool) -> Self {
@@ -17,15 +17,15 @@ impl Texture {
                 for (y, height) in rows.by(row) {
                     for (x, width) in columns.by(column) {
                         let [r, g, b, alpha] = self.texels[y * self.width as usize + x];
-                        let colour = Rgb::from_array([r, g, b].map(srgb_to_linear));
+                        let color = Rgb::from_array([r, g, b].map(srgb_to_linear));
                         let alpha = width * height * f64::from(alpha);
-                        plain += width * height * colour;
-                        weighted += alpha * colour;
+                        plain += width * height * color;
+                        weighted += alpha * color;
                         alphas += alpha;
                     }
                 }
-                let colour = if by_alpha && alphas > 0.0 { weighted / alphas } else { plain };
-                let [r, g, b] = colour.to_array().map(linear_to_srgb);
+                let color = if by_alpha && alphas > 0.0 { weighted / alphas } else { plain };
+                let [r, g, b] = color.to_array().map(linear_to_srgb);
                 texels.push([r, g, b, alphas.round() as u8]);
             }
         }
@@ -88,7 +88,7 @@ mod tests {
         let board = Texture::new(4, 4, board.collect()).unwrap();
         let half = board.halved(false);
         assert_eq!((half.size(), half.texels()), ([2, 2], &[[188, 188, 188, 128]; 4][..]));
-        assert_eq!(board.halved(true).texels(), [[255, 255, 255, 128]; 4], "what is open has no colour");
+        assert_eq!(board.halved(true).texels(), [[255, 255, 255, 128]; 4], "what is open has no color");
         // Five in two: two and a half each.
         let row = [0, 0, 255, 0, 0].map(|v| [v, 0, 0, 255]);
         let half = Texture::new(5, 1, row.to_vec()).unwrap().halved(true);
@@ -100,12 +100,12 @@ mod tests {
     fn the_smallest_image_has_nearly_the_mean() {
         let texels = (0..7 * 300).map(|i: u32| [(i * 37 % 256) as u8, (i * 101 % 251) as u8, 9, 255]);
         let texture = Texture::new(7, 300, texels.collect()).unwrap();
-        let mean = texture.mean_colour();
+        let mean = texture.mean_color();
         let mut smaller = texture;
         while smaller.size() != [1, 1] {
             smaller = smaller.halved(false);
         }
         // Half a step of sRGB, from rounding, for some of the levels.
-        assert!((smaller.mean_colour() / mean - 1.0).abs().max_element() < 0.02);
+        assert!((smaller.mean_color() / mean - 1.0).abs().max_element() < 0.02);
     }
 }

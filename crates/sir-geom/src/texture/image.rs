@@ -12,7 +12,7 @@ typed_index!(
     TextureId
 );
 
-/// An image: colours in 8-bit sRGB and 8 linear bits of alpha.
+/// An image: colors in 8-bit sRGB and 8 linear bits of alpha.
 ///
 /// Coordinates are those of glTF: `(0, 0)` is the upper left corner of the image and `(1, 1)` the lower right. A texel fills its
 /// square evenly, so that the mean over an area is well defined; only pictures interpolate between texels.
@@ -32,7 +32,7 @@ pub enum Wrap {
     Repeat,
     /// The image again, every other time its mirror image.
     Mirror,
-    /// The colour of the nearest edge.
+    /// The color of the nearest edge.
     Clamp,
 }
 
@@ -47,9 +47,9 @@ pub struct TextureMap {
     pub coordinates: u8,
 }
 
-/// A texture whose colours are multiplied by a factor.
+/// A texture whose colors are multiplied by a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColourMap {
+pub struct ColorMap {
     /// The texture.
     pub map: TextureMap,
     /// The factor, in the unit of the product.
@@ -76,15 +76,15 @@ impl Texture {
         [self.width, self.height]
     }
 
-    /// Texels `[red, green, blue, alpha]`, row by row from the top: colours in sRGB, alpha linear.
+    /// Texels `[red, green, blue, alpha]`, row by row from the top: colors in sRGB, alpha linear.
     #[must_use]
     pub fn texels(&self) -> &[[u8; 4]] {
         &self.texels
     }
 
-    /// The mean linear colour, alpha ignored.
+    /// The mean linear color, alpha ignored.
     #[must_use]
-    pub fn mean_colour(&self) -> Rgb {
+    pub fn mean_color(&self) -> Rgb {
         // Whole numbers add up to the same sum in any order.
         let mut histogram = [[0u64; 3]; 256];
         for texel in &self.texels {
@@ -106,17 +106,17 @@ impl Texture {
         sum as f64 / (255.0 * self.texels.len() as f64)
     }
 
-    /// Linear colour at a place, interpolated between the four texels around it.
+    /// Linear color at a place, interpolated between the four texels around it.
     #[must_use]
-    pub fn colour_at(&self, place: DVec2, wrap: [Wrap; 2]) -> Rgb {
+    pub fn color_at(&self, place: DVec2, wrap: [Wrap; 2]) -> Rgb {
         let p = self.in_texels(place) - 0.5;
         let (corner, part) = (p.floor(), p - p.floor());
         let corner = corner.as_ivec2();
-        let colour = |x: i32, y: i32| {
+        let color = |x: i32, y: i32| {
             let [r, g, b, _] = self.texel(corner.wrapping_add(IVec2::new(x, y)), wrap);
             Rgb::new(srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b))
         };
-        let row = |y: i32| colour(0, y).lerp(colour(1, y), part.x);
+        let row = |y: i32| color(0, y).lerp(color(1, y), part.x);
         row(0).lerp(row(1), part.y)
     }
 
@@ -202,10 +202,10 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_is_taken_of_linear_colours() {
+    fn the_mean_is_taken_of_linear_colors() {
         let texels = (0..8).map(|i| if i % 4 < 1 { [255, 0, 128, 0] } else { [0, 0, 128, 255] });
         let texture = Texture::new(4, 2, texels.collect()).unwrap();
-        let mean = texture.mean_colour();
+        let mean = texture.mean_color();
         assert!((mean - Rgb::new(0.25, 0.0, 0.215_860_500_113_899_26)).length() < 1e-14, "{mean}");
         assert_eq!(texture.mean_alpha(), 0.75);
     }
@@ -219,11 +219,11 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_interpolated_between_the_middles_of_texels() {
+    fn colors_are_interpolated_between_the_middles_of_texels() {
         let texture = Texture::new(2, 1, vec![[0, 0, 0, 0], [255, 255, 255, 255]]).unwrap();
         for (u, repeated, clamped) in [(0.25, 0.0, 0.0), (0.5, 0.5, 0.5), (0.75, 1.0, 1.0), (1.0, 0.5, 1.0)] {
             for (wrap, expected) in [(Wrap::Repeat, repeated), (Wrap::Clamp, clamped)] {
-                let found = texture.colour_at(DVec2::new(u, 0.3), [wrap; 2]);
+                let found = texture.color_at(DVec2::new(u, 0.3), [wrap; 2]);
                 assert!((found - Rgb::splat(expected)).length() < 1e-14, "{u} {wrap:?}: {found}");
             }
         }

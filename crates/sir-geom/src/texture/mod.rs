@@ -6,5 +6,5 @@ mod sums;
 
 #[cfg(feature = "obj")]
 pub(crate) use image::srgb_to_linear_at;
-pub use image::{ColourMap, Texture, TextureId, TextureMap, Wrap};
+pub use image::{ColorMap, Texture, TextureId, TextureMap, Wrap};
 pub use sums::{TextureMean, TextureSums};

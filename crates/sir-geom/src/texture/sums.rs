@@ -18,8 +18,8 @@ const MOST_TEXELS: f64 = 65_536.0;
 /// What a texture is over an area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureMean {
-    /// Mean linear colour of what is there: texels count by their weight.
-    pub colour: Rgb,
+    /// Mean linear color of what is there: texels count by their weight.
+    pub color: Rgb,
     /// Mean weight.
     pub weight: f64,
 }
@@ -74,7 +74,7 @@ impl<'a> TextureSums<'a> {
         self.finish(self.weighted_mean(corners.map(|corner| self.texture.in_texels(corner))))
     }
 
-    /// Colours times weights, and weights.
+    /// Colors times weights, and weights.
     fn weighted_mean(&self, corners: [DVec2; 3]) -> DVec4 {
         let edges = [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]));
         let length = |&(a, b): &(DVec2, DVec2)| (b - a).abs().element_sum();
@@ -111,10 +111,10 @@ impl<'a> TextureSums<'a> {
 
     fn finish(&self, mean: DVec4) -> TextureMean {
         let weight = mean.w.clamp(0.0, 1.0);
-        // Where nothing is, any colour will do.
+        // Where nothing is, any color will do.
         let of = [mean, self.whole].into_iter().find(|mean| mean.w > 1e-9);
-        let colour = of.map_or(Rgb::ZERO, |mean| (mean.truncate() / mean.w).clamp(Rgb::ZERO, Rgb::ONE));
-        TextureMean { colour, weight }
+        let color = of.map_or(Rgb::ZERO, |mean| (mean.truncate() / mean.w).clamp(Rgb::ZERO, Rgb::ONE));
+        TextureMean { color, weight }
     }
 
     fn value(&self, [r, g, b, alpha]: [u8; 4]) -> DVec4 {
@@ -222,7 +222,7 @@ mod tests {
                 count += 1.0;
             }
         }
-        TextureMean { colour: sum / weights, weight: weights / count }
+        TextureMean { color: sum / weights, weight: weights / count }
     }
 
     #[test]
@@ -231,8 +231,8 @@ mod tests {
             let texture = image(width, height);
             let sums = TextureSums::new(&texture, [Wrap::Repeat; 2], |_| 1.0);
             let [lower, upper] =
-                [DVec2::Y, DVec2::X].map(|third| sums.mean([DVec2::ZERO, DVec2::ONE, third]).colour);
-            let mean = texture.mean_colour();
+                [DVec2::Y, DVec2::X].map(|third| sums.mean([DVec2::ZERO, DVec2::ONE, third]).color);
+            let mean = texture.mean_color();
             assert!((0.5 * (lower + upper) - mean).length() < 1e-12, "{width} x {height}");
             let alpha = TextureSums::new(&texture, [Wrap::Clamp; 2], |alpha| alpha);
             let weights = [DVec2::Y, DVec2::X].map(|c| alpha.mean([DVec2::ZERO, DVec2::ONE, c]).weight);
@@ -241,28 +241,28 @@ mod tests {
     }
 
     #[test]
-    fn a_single_texel_and_a_single_point_have_their_own_colour() {
+    fn a_single_texel_and_a_single_point_have_their_own_color() {
         let texture = image(5, 4);
         let sums = TextureSums::new(&texture, [Wrap::Repeat; 2], |_| 1.0);
         let [r, g, b, _] = texture.texels()[5 + 3];
-        let colour = Rgb::new(srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b));
+        let color = Rgb::new(srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b));
         let at = |x: f64, y: f64| DVec2::new(x / 5.0 - 7.0, y / 4.0 + 3.0);
         for corners in [
             [at(3.1, 1.1), at(3.9, 1.2), at(3.4, 1.95)],
             [at(3.1, 1.5), at(3.5, 1.5), at(3.9, 1.5)],
             [at(3.5, 1.5); 3],
         ] {
-            assert!((sums.mean(corners).colour - colour).length() < 1e-9, "{corners:?}");
+            assert!((sums.mean(corners).color - color).length() < 1e-9, "{corners:?}");
         }
     }
 
     #[test]
-    fn cut_out_texels_do_not_colour_what_is_left() {
+    fn cut_out_texels_do_not_color_what_is_left() {
         let texels = (0..64).map(|i| if i % 2 == 0 { [255, 0, 0, 255] } else { [0, 255, 0, 10] }).collect();
         let texture = Texture::new(8, 8, texels).unwrap();
         let sums = TextureSums::new(&texture, [Wrap::Repeat; 2], |alpha| f64::from(u8::from(alpha >= 0.5)));
         let mean = sums.mean([DVec2::ZERO, DVec2::new(2.0, 0.0), DVec2::new(0.0, 1.0)]);
-        assert!((mean.colour - Rgb::X).length() < 1e-9 && (mean.weight - 0.5).abs() < 0.05, "{mean:?}");
+        assert!((mean.color - Rgb::X).length() < 1e-9 && (mean.weight - 0.5).abs() < 0.05, "{mean:?}");
     }
 
     #[test]
@@ -272,8 +272,8 @@ mod tests {
         for corner in [DVec2::NAN, DVec2::INFINITY, DVec2::splat(1e300), DVec2::splat(-1e30), DVec2::X * 1e12]
         {
             let mean = sums.mean([corner, DVec2::X, DVec2::Y]);
-            assert!((mean.colour - texture.mean_colour()).length() < 1e-12, "{corner}");
-            assert!(sums.mean([corner; 3]).colour.is_finite());
+            assert!((mean.color - texture.mean_color()).length() < 1e-12, "{corner}");
+            assert!(sums.mean([corner; 3]).color.is_finite());
         }
     }
 
@@ -291,10 +291,10 @@ mod tests {
             prop_assume!(area > 0.2);
             let mean = TextureSums::new(&texture, wrap, |alpha| alpha).mean(corners);
             let expected = sampled(&texture, wrap, corners, 400);
-            // What is clear has no colour.
+            // What is clear has no color.
             prop_assume!(expected.weight > 0.02);
             prop_assert!((mean.weight - expected.weight).abs() < 4e-3, "{} {}", mean.weight, expected.weight);
-            prop_assert!((mean.colour - expected.colour).length() < 8e-3, "{} {}", mean.colour, expected.colour);
+            prop_assert!((mean.color - expected.color).length() < 8e-3, "{} {}", mean.color, expected.color);
         }
     }
 }

@@ -51,12 +51,12 @@ fn accessors_without_data_are_small_all_together() {
     let with = |count: usize, primitives: usize| {
         let mut gltf = Gltf::triangle();
         for _ in 0..primitives {
-            let [positions, colours] = ["VEC3", "VEC4"].map(|kind| {
+            let [positions, colors] = ["VEC3", "VEC4"].map(|kind| {
                 let accessors = gltf.json["accessors"].as_array_mut().unwrap();
                 accessors.push(json!({"componentType": 5126, "type": kind, "count": count}));
                 accessors.len() - 1
             });
-            gltf.primitive(json!({"attributes": {"POSITION": positions, "COLOR_0": colours}, "mode": 5}));
+            gltf.primitive(json!({"attributes": {"POSITION": positions, "COLOR_0": colors}, "mode": 5}));
         }
         gltf.glb()
     };
@@ -208,8 +208,8 @@ fn long_and_strange_names_do_not_flood_the_screen() {
     refused(&[("a.glb", &gltf.glb())], &["material", "exitance"]);
 }
 
-/// A PNG image of two colours, which a single one cannot stand for.
-fn two_colours() -> Vec<u8> {
+/// A PNG image of two colors, which a single one cannot stand for.
+fn two_colors() -> Vec<u8> {
     encoded(image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([255 * x as u8, 80, 9])))
 }
 
@@ -249,7 +249,7 @@ fn a_dense_strip_with_all_that_corners_can_have() {
         "emissiveFactor": [1, 1, 1],
         "alphaMode": "BLEND",
     }));
-    let view = gltf.view(&two_colours());
+    let view = gltf.view(&two_colors());
     gltf.json["images"] = json!([{"bufferView": view, "mimeType": "image/png"}]);
     gltf.json["textures"] = json!([{"source": 0}]);
     let turn = |i: f32| [i.cos(), i.sin(), 0.3 * i];
@@ -258,15 +258,15 @@ fn a_dense_strip_with_all_that_corners_can_have() {
     let bytes: Vec<u8> = (0..=255).collect();
     let places = gltf.accessor(&bytes.repeat(2), 5121, "VEC2", 256);
     let others = gltf.accessor(&bytes.repeat(2), 5121, "VEC2", 256);
-    let colours = gltf.accessor(&bytes.repeat(4), 5121, "VEC4", 256);
-    for accessor in [places, others, colours] {
+    let colors = gltf.accessor(&bytes.repeat(4), 5121, "VEC4", 256);
+    for accessor in [places, others, colors] {
         gltf.json["accessors"][accessor]["normalized"] = json!(true);
     }
     const INDICES: usize = 1_050_000;
     let indices: Vec<u8> = (0..INDICES).map(|i| (i % 251) as u8).collect();
     let indices = gltf.accessor(&indices, 5121, "SCALAR", INDICES);
     gltf.json["meshes"][0]["primitives"] = json!([{
-        "attributes": {"POSITION": positions, "TEXCOORD_0": places, "TEXCOORD_1": others, "COLOR_0": colours},
+        "attributes": {"POSITION": positions, "TEXCOORD_0": places, "TEXCOORD_1": others, "COLOR_0": colors},
         "indices": indices, "mode": 5, "material": 0,
     }]);
     let built = load_hostile(&[("a.glb", &gltf.glb())]).unwrap();

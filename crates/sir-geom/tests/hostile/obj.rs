@@ -135,7 +135,7 @@ fn broken_libraries_name_their_line() {
 fn huge_numbers_are_written_short() {
     let _alone = alone();
     let obj = triangle("mtllib a.mtl\nusemtl m");
-    let mtl = |colour: &str| format!("newmtl m\nKd {colour}\n");
+    let mtl = |color: &str| format!("newmtl m\nKd {color}\n");
     refused(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl("-1e297 0 0").as_bytes())], &["(-1e297, 0.0, 0.0)"]);
     let built = load_hostile(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl("1e297 0 0").as_bytes())]).unwrap();
     assert!(warnings(&built).concat().contains("reflects 1.0e297 of"), "{:?}", built.warnings);

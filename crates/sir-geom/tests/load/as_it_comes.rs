@@ -193,7 +193,7 @@ fn concave_polygons_have_their_area_and_one_front() {
         assert!((scene.total_area() - 5.0).abs() < 1e-9, "from corner {first}: {}", scene.total_area());
         assert!(scene.triangle_ids().all(|t| scene.normal(t).dot(right.cross(up)) > 0.999_999));
         assert!(scene.triangles().iter().all(|t| t.face == scene.triangles()[0].face));
-        assert_eq!(warnings(&built), ["1 faces have no known material, and are made grey"]);
+        assert_eq!(warnings(&built), ["1 faces have no known material, and are made gray"]);
     }
 }
 

@@ -48,7 +48,7 @@ pub(crate) fn chain(error: &dyn std::error::Error) -> String {
     text
 }
 
-/// A PNG image of one colour.
+/// A PNG image of one color.
 pub(crate) fn png(rgb: [u8; 3]) -> Vec<u8> {
     encoded(image::RgbImage::from_pixel(3, 2, image::Rgb(rgb)))
 }

@@ -230,9 +230,9 @@ fn what_is_ignored_is_named_once() {
             "1 glTF extensions describe gloss, which diffuse surfaces lack, and were ignored: KHR_materials_sheen",
             "1 glTF extensions have no meaning here and were ignored: EXT_mine",
             "1 skinned meshes are read in the pose of their nodes",
-            "1 mesh primitives have no material, and are made grey",
+            "1 mesh primitives have no material, and are made gray",
             "2 mesh primitives have morph targets, and are read in their basic shape",
-            "2 mesh primitives have more than one set of colours, of which the first is used",
+            "2 mesh primitives have more than one set of colors, of which the first is used",
         ]
     );
 }

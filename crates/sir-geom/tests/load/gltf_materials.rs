@@ -38,10 +38,10 @@ fn two_sided_materials_emit_from_both_sides() {
 }
 
 #[test]
-fn the_default_material_is_grey_with_a_warning() {
+fn the_default_material_is_gray_with_a_warning() {
     let built = Gltf::triangle().load().unwrap();
     assert_eq!(built.scene.materials()[0].reflectance, DVec3::splat(0.5));
-    assert_eq!(warnings(&built), ["1 mesh primitives have no material, and are made grey"]);
+    assert_eq!(warnings(&built), ["1 mesh primitives have no material, and are made gray"]);
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn a_reference_to_an_absent_texture_is_an_error() {
 }
 
 #[test]
-fn impossible_colours_are_refused() {
+fn impossible_colors_are_refused() {
     let gltf = Gltf::with_material(json!({"pbrMetallicRoughness": {"baseColorFactor": [-1, 0, 0, 1]}}));
     let error = crate::files::chain(&gltf.load().unwrap_err());
     assert!(error.contains("reflectance") && error.contains("s"), "{error}");

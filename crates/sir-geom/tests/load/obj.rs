@@ -40,7 +40,7 @@ fn faces_are_read_however_they_are_written() {
 }
 
 #[test]
-fn vertices_may_carry_colours_weights_and_comments() {
+fn vertices_may_carry_colors_weights_and_comments() {
     let built = read("\u{feff}v 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nv\t1.0e0 +1 .0 0.5 # corner\nf 1 2 3", "");
     assert_eq!(corners(&built.scene), [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]]);
 }
@@ -88,7 +88,7 @@ fn groups_are_named_by_the_last_object_or_group() {
 
 #[test]
 fn materials_have_reflectance_and_emission() {
-    let mtl = "# lib\nnewmtl my lamp # its name\n\tKd\t0.1 0.2 0.3 # grey\n\tKe 1 2 3\nKs 1 1 1\nnewmtl flat\nkd 0.4\n";
+    let mtl = "# lib\nnewmtl my lamp # its name\n\tKd\t0.1 0.2 0.3 # gray\n\tKe 1 2 3\nKs 1 1 1\nnewmtl flat\nkd 0.4\n";
     let built = read(&format!("mtllib a.mtl\n{SQUARE}usemtl my lamp\nf 1 2 3\nusemtl\tflat\nf 1 3 4\n"), mtl);
     let [lamp, flat] = built.scene.materials() else { panic!("{:?}", built.scene.materials()) };
     assert_eq!((&*lamp.name, lamp.reflectance), ("my lamp", DVec3::new(0.1, 0.2, 0.3)));
@@ -141,12 +141,12 @@ fn missing_libraries_and_materials_are_warnings() {
         warnings(&built),
         [
             "1 material libraries cannot be read: absent.mtl",
-            "2 materials are in no library, and are made grey: gone, too",
-            "3 faces have no known material, and are made grey",
+            "2 materials are in no library, and are made gray: gone, too",
+            "3 faces have no known material, and are made gray",
         ]
     );
-    let [grey] = built.scene.materials() else { panic!("{:?}", built.scene.materials()) };
-    assert_eq!((grey.reflectance, grey.sides), (DVec3::splat(0.5), Sides::Both));
+    let [gray] = built.scene.materials() else { panic!("{:?}", built.scene.materials()) };
+    assert_eq!((gray.reflectance, gray.sides), (DVec3::splat(0.5), Sides::Both));
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn textures_count_with_their_mean() {
     assert_eq!(c.reflectance, DVec3::splat(0.3));
     let texts = warnings(&built);
     assert!(
-        texts[0].starts_with("1 textures cannot be read, and their colour factor alone is used: absent.png")
+        texts[0].starts_with("1 textures cannot be read, and their color factor alone is used: absent.png")
     );
     assert!(
         matches!(&built.warnings[1..], [Warning::ClampedReflectance { material, .. }] if material == "b")

@@ -1,4 +1,4 @@
-//! Textures, masks and colours of vertices, in both formats.
+//! Textures, masks and colors of vertices, in both formats.
 
 use glam::{DVec2, DVec3};
 use image::{Rgba, RgbaImage};
@@ -19,7 +19,7 @@ fn floats(numbers: &[f32]) -> Vec<u8> {
     numbers.iter().flat_map(|x| x.to_le_bytes()).collect()
 }
 
-/// A triangle over the upper left texel, with a base colour texture and whatever else the material has.
+/// A triangle over the upper left texel, with a base color texture and whatever else the material has.
 fn textured(info: &Value, material: &Value) -> Gltf {
     let mut whole = json!({"pbrMetallicRoughness": {"baseColorTexture": info}});
     for (name, value) in material.as_object().unwrap() {
@@ -42,9 +42,9 @@ fn places(scene: &Scene) -> [DVec2; 3] {
 
 /// The mean reflectance of the first triangle.
 fn mean(scene: &Scene) -> Rgb {
-    let colour = scene.materials()[0].reflectance_map.unwrap();
-    let (texture, corners) = scene.texture_on(TriangleId(0), &colour.map).unwrap();
-    colour.factor * TextureSums::new(texture, colour.map.wrap, |_| 1.0).mean(corners).colour
+    let color = scene.materials()[0].reflectance_map.unwrap();
+    let (texture, corners) = scene.texture_on(TriangleId(0), &color.map).unwrap();
+    color.factor * TextureSums::new(texture, color.map.wrap, |_| 1.0).mean(corners).color
 }
 
 fn near(a: Rgb, b: Rgb) -> bool {
@@ -146,7 +146,7 @@ fn without_coordinates_there_is_the_mean_and_a_warning() {
     assert_eq!(built.scene.opacity_at(TriangleId(0), middle), 1.0);
     assert_eq!(
         warnings(&built),
-        ["1 mesh primitives lack coordinates for a texture, and have its mean colour"]
+        ["1 mesh primitives lack coordinates for a texture, and have its mean color"]
     );
 }
 
@@ -174,7 +174,7 @@ fn alpha_counts_as_its_mode_says() {
 }
 
 #[test]
-fn colours_of_vertices_multiply_and_are_linear() {
+fn colors_of_vertices_multiply_and_are_linear() {
     let half = |alpha: f32| floats(&[1.0, 0.5, 0.0, alpha].repeat(3));
     let bytes = [255, 51, 0, 51].repeat(3);
     for (data, component, kind, expected, alpha) in [
@@ -185,9 +185,9 @@ fn colours_of_vertices_multiply_and_are_linear() {
         for mode in ["OPAQUE", "BLEND"] {
             let mut gltf = Gltf::with_material(json!({"alphaMode": mode,
                 "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]}}));
-            let colours = gltf.accessor(&data, component, kind, 3);
-            gltf.json["accessors"][colours]["normalized"] = json!(component != 5126);
-            gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colours);
+            let colors = gltf.accessor(&data, component, kind, 3);
+            gltf.json["accessors"][colors]["normalized"] = json!(component != 5126);
+            gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
             let built = gltf.load().unwrap();
             let middle = Barycentric { v: 0.25, w: 0.5 };
             assert!(near(built.scene.reflectance_at(TriangleId(0), middle), expected), "{kind}");
@@ -211,7 +211,7 @@ fn broken_coordinates_are_errors_that_name_their_primitive() {
 }
 
 #[test]
-fn unlit_and_glossy_materials_reflect_their_colour() {
+fn unlit_and_glossy_materials_reflect_their_color() {
     let unlit = Gltf::with_material(json!({"name": "sky", "extensions": {"KHR_materials_unlit": {}},
         "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 0, 1]}}))
     .load()
@@ -272,7 +272,7 @@ fn obj_values_stay_with_their_faces_when_materials_alternate() {
     let first = |t: u32| built.scene.texture_on(TriangleId(t), &map).map(|(_, corners)| corners[0]);
     let found: Vec<_> = (0..5).map(first).collect();
     assert_eq!(found, [Some(DVec2::new(0.0, 1.0)), None, Some(DVec2::new(0.5, 0.5)), None, None]);
-    assert_eq!(warnings(&built), ["1 faces lack coordinates for a texture, and have its mean colour"]);
+    assert_eq!(warnings(&built), ["1 faces lack coordinates for a texture, and have its mean color"]);
 }
 
 #[test]
@@ -302,19 +302,19 @@ fn obj_masks_are_alpha_or_brightness() {
     let text = format!("{SQUARE}usemtl a\nf 1/1 2/2 3/3\n");
     let alpha = obj(&text, "newmtl a\nmap_Kd t.png\nmap_d t.png\nd 0.5\n");
     let material = &alpha.scene.materials()[0];
-    assert_eq!(material.opacity.map, material.reflectance_map.map(|colour| colour.map));
+    assert_eq!(material.opacity.map, material.reflectance_map.map(|color| color.map));
     assert_eq!((material.opacity.factor, alpha.scene.textures().len()), (0.5, 1));
-    let grey =
+    let gray =
         encoded(RgbaImage::from_fn(2, 1, |x, _| Rgba([51 * x as u8, 51 * x as u8, 51 * x as u8, 255])));
     let files: [(&str, &[u8]); 3] =
-        [("a.obj", text.as_bytes()), ("a.mtl", b"newmtl a\nKd 1 0 0\nmap_d t.png\n"), ("t.png", &grey)];
+        [("a.obj", text.as_bytes()), ("a.mtl", b"newmtl a\nKd 1 0 0\nmap_d t.png\n"), ("t.png", &gray)];
     let bright = load_from("a.obj", &files).unwrap().scene;
     let [texture] = bright.textures() else { panic!("{:?}", bright.textures()) };
     assert_eq!(texture.texels().iter().map(|texel| texel[3]).collect::<Vec<_>>(), [0, 51]);
 }
 
 #[test]
-fn obj_colours_of_vertices_are_decoded() {
+fn obj_colors_of_vertices_are_decoded() {
     let text = "v 0 0 0 1 0.5 0\nv 1 0 0 1 0.5 0\nv 1 1 0 1 0.5 0\nv 0 1 0\nf 1 2 3\nf 2 3 4\n";
     let built = obj(text, "");
     let at = |t: u32| built.scene.reflectance_at(TriangleId(t), Barycentric { v: 0.0, w: 1.0 });

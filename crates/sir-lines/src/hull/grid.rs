@@ -34,7 +34,7 @@ pub(super) fn winding(a: DVec3, b: DVec3, c: DVec3) -> [i128; 3] {
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }
 
-/// Six times the volume of a tetrahedron, exactly: positive if the triangle runs counter-clockwise seen from `p`.
+/// Six times the volume of a tetrahedron, exactly: positive if the triangle runs counterclockwise seen from `p`.
 pub(super) fn volume([a, b, c]: [DVec3; 3], p: DVec3) -> i128 {
     let (n, d) = (winding(a, b, c), whole(p - a));
     n[0] * d[0] + n[1] * d[1] + n[2] * d[2]

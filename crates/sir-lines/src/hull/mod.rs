@@ -36,7 +36,7 @@ impl ConvexHull {
         Some(Self { facets: facets.into_iter().map(|corners| corners.map(at)).collect() })
     }
 
-    /// Triangles, counter-clockwise seen from outside. Those in the same plane are not made one, and some may be as narrow
+    /// Triangles, counterclockwise seen from outside. Those in the same plane are not made one, and some may be as narrow
     /// as rounding allows.
     #[must_use]
     pub fn facets(&self) -> &[[DVec3; 3]] {

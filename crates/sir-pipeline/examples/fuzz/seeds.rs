@@ -179,7 +179,7 @@ const OBJ: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0 # c\nv 1 1 0\nv 0 1 0 1 1 1\nv
     f 1/1/1 2/1 3//1\ng x\ns 1\nf -4 -3 -2 -1\nl 1 2 3\np 1\nusemtl b\nf 1/1 2/-1 \\\n 5/1\nf 2 3 5\n";
 const MTL: &str = "# m\nnewmtl a\nKd 0.5 0.5 0.5\nKe 1 1 1\nNs 10\nmap_Kd -s 1 1 1 t.png\nd 0.5\nnewmtl b\nKd 0.5\nTr 0.1\nmap_d t.png\nmap_Ke t.png\n";
 
-/// A PNG image of one grey pixel.
+/// A PNG image of one gray pixel.
 const PNG: &[u8] = &[
     0x89, b'P', b'N', b'G', 13, 10, 26, 10, 0, 0, 0, 13, b'I', b'H', b'D', b'R', 0, 0, 0, 1, 0, 0, 0, 1, 8,
     0, 0, 0, 0, 0x3a, 0x7e, 0x9b, 0x55, 0, 0, 0, 10, b'I', b'D', b'A', b'T', 0x78, 0x9c, 0x63, 0x68, 0, 0, 0,

@@ -14,7 +14,7 @@ use crate::run::save::{is_denoised, settings};
 /// Bytes per side of what pictures and lit meshes are made from: measured on two million sides, rounded up.
 const DISPLAY_BYTES: usize = 200;
 
-/// Bytes per pixel of the largest picture: a ray's colours while it is drawn and when it is done, and its file.
+/// Bytes per pixel of the largest picture: a ray's colors while it is drawn and when it is done, and its file.
 const PIXEL_BYTES: usize = 2 * 24 + 16;
 
 /// Says how much memory a run will take, and refuses what this machine does not have.

@@ -25,10 +25,10 @@ fn unit(info: &Info) -> Option<String> {
     let height = size.dot(info.up.into());
     // A room is about as high as wide; a landscape is flat.
     let room = info.dominant.is_none() && height > 0.05 * size.max_element();
-    let lengths = "powers and distances of lights are meant in metres";
+    let lengths = "powers and distances of lights are meant in meters";
     match size.max_element() {
         _ if room && height > 100.0 => {
-            let unit = if height > 1000.0 { "millimetres" } else { "centimetres" };
+            let unit = if height > 1000.0 { "millimeters" } else { "centimeters" };
             Some(format!(
                 "a height of {} m: if this is a room, it looks like {unit}; {lengths}",
                 length(height)
@@ -36,7 +36,7 @@ fn unit(info: &Info) -> Option<String> {
         }
         most if most > 1000.0 => Some(format!("an extent of {} m; {lengths}", length(most))),
         most if most < 0.05 => Some(format!(
-            "an extent of {} m: looks like kilometres or a wrong scale; {lengths}",
+            "an extent of {} m: looks like kilometers or a wrong scale; {lengths}",
             length(most)
         )),
         _ => None,
@@ -220,7 +220,7 @@ fn panel(info: &Info) -> String {
     // Their cross product points down.
     let (a, b) = if up == DVec3::Z { (DVec3::Y, DVec3::X) } else { (DVec3::X, DVec3::Z) };
     let (a, b) = (0.25 * a * size, 0.25 * b * size);
-    let corner = room.centre() + 0.4 * up * size - 0.5 * (a + b);
+    let corner = room.center() + 0.4 * up * size - 0.5 * (a + b);
     let [corner, a, b] =
         [corner, a, b].map(|v| format!("({}, {}, {})", length(v.x), length(v.y), length(v.z)));
     format!("Light([Panel(corner: {corner}, edges: ({a}, {b}), power: 1000)])")

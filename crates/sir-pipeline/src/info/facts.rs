@@ -32,7 +32,7 @@ pub struct Info {
     pub largest_triangle: f64,
     /// Where the scene is \[m\].
     pub extent: Extent,
-    /// Distance of its centre from the origin \[m\].
+    /// Distance of its center from the origin \[m\].
     pub distance_from_origin: f64,
     /// Upwards: +y in glTF, guessed in OBJ.
     pub up: [f64; 3],
@@ -59,11 +59,11 @@ pub struct Info {
 /// Images, and what has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Textures {
-    /// Those that could be read and are not of a single colour.
+    /// Those that could be read and are not of a single color.
     pub images: usize,
     /// Texels of all together.
     pub texels: usize,
-    /// Triangles that differ from their material or from place to place, because of a texture or colours at their corners.
+    /// Triangles that differ from their material or from place to place, because of a texture or colors at their corners.
     pub triangles: usize,
 }
 

@@ -57,7 +57,7 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         area,
         largest_triangle: largest / area,
         extent,
-        distance_from_origin: extent.centre().length(),
+        distance_from_origin: extent.center().length(),
         up: up(path, scene).into(),
         materials: materials(scene),
         groups: groups(scene),

@@ -42,7 +42,7 @@ pub struct Global {
     pub met: u64,
     /// Of these, the share that crosses an odd number of triangles: zero if all surfaces are closed.
     pub odd: f64,
-    /// Of the stretches between neighbouring crossings, the share with a front at one end and a back at the other: zero if the
+    /// Of the stretches between neighboring crossings, the share with a front at one end and a back at the other: zero if the
     /// winding of closed surfaces is consistent.
     pub mixed: f64,
     /// Of the crossings, the share that coincides with the next one, on a parallel triangle with other corners.

@@ -26,9 +26,9 @@ impl Extent {
         DVec3::from(self.max) - DVec3::from(self.min)
     }
 
-    /// Its centre \[m\].
+    /// Its center \[m\].
     #[must_use]
-    pub fn centre(&self) -> DVec3 {
+    pub fn center(&self) -> DVec3 {
         DVec3::from(self.min).midpoint(self.max.into())
     }
 }

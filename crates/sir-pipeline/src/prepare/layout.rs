@@ -163,11 +163,11 @@ mod tests {
     fn a_plane_stays_in_the_room_and_out_of_the_furniture() {
         let (model, plane) = (room(), Plane { height: 0.3, spacing: 0.1, border: 0.0, up: None });
         let count = |plane: &Plane| plane.layout(&model, DVec3::Y).map(|layout| layout.sensors.len());
-        // 8 m² without the square metre of the table; on and above its top, all.
+        // 8 m² without the square meter of the table; on and above its top, all.
         assert_eq!(count(&plane), Ok(700));
         assert_eq!(count(&Plane { height: 0.7, ..plane }), Ok(800));
         assert_eq!(count(&Plane { height: 1.0, ..plane }), Ok(800));
-        // Half a metre from the outline: 1.5 by 2 m and 1.5 by 0.5 m, without the table.
+        // Half a meter from the outline: 1.5 by 2 m and 1.5 by 0.5 m, without the table.
         assert_eq!(count(&Plane { border: 0.5, ..plane }), Ok(275));
         for bad in
             [Plane { height: 2.5, ..plane }, Plane { border: 1.5, ..plane }, Plane { spacing: 1e-3, ..plane }]

@@ -177,7 +177,7 @@ pub struct BalanceReport {
 pub struct OutputReport {
     /// Its path in the run directory.
     pub path: String,
-    /// `image`, `gltf`, `table`, `sensors` (a table of them) or `map` (of sensors, in false colours).
+    /// `image`, `gltf`, `table`, `sensors` (a table of them) or `map` (of sensors, in false colors).
     pub kind: String,
     /// Its size.
     pub bytes: u64,

@@ -1,4 +1,4 @@
-//! What sensors write: a table, and a picture in false colours.
+//! What sensors write: a table, and a picture in false colors.
 
 use std::fs;
 use std::io::{self, Write};

@@ -22,6 +22,6 @@ mod tests {
         let fields = ["patches", "max_area"];
         assert_eq!(did_you_mean("patch", &fields), Some("did you mean `patches`?".into()));
         assert_eq!(did_you_mean("MaxArea", &fields).as_deref(), Some("did you mean `max_area`?"));
-        assert_eq!(did_you_mean("colour", &fields), None);
+        assert_eq!(did_you_mean("color", &fields), None);
     }
 }

@@ -6,7 +6,7 @@ use super::{problems, stages};
 fn unknown_names_and_fields() {
     insta::assert_snapshot!(stages(&[
         r#"Laod(path: "room.obj"),"#,
-        r#"Load(path: "room.obj", side: Front, colour: 1),"#,
+        r#"Load(path: "room.obj", side: Front, color: 1),"#,
         r#"Firstshot(lines: 10),"#,
         r#"FirstShot(line: 10),"#,
         r#"Render,"#,
@@ -23,15 +23,15 @@ fn unknown_names_and_fields() {
     error: unknown field `side` in `Load`
      --> x.ron:3:24
       |
-    3 | Load(path: "room.obj", side: Front, colour: 1),
+    3 | Load(path: "room.obj", side: Front, color: 1),
       |                        ^^^^
       |
       = help: did you mean `sides`?
 
-    error: unknown field `colour` in `Load`
+    error: unknown field `color` in `Load`
      --> x.ron:3:37
       |
-    3 | Load(path: "room.obj", side: Front, colour: 1),
+    3 | Load(path: "room.obj", side: Front, color: 1),
       |                                     ^^^^^^
       |
       = help: `Load` has the fields `path` and `sides`

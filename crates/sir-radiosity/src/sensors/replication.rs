@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use sir_accel::{Hit, Ray, Tracer};
 use sir_geom::{Line, Rgb, TriangleId};
-use sir_lines::{EvenPoints, Stream, cosine_direction};
+use sir_lines::{R2Sequence, Stream, cosine_direction};
 use sir_mesh::SideId;
 
 use crate::model::Model;
@@ -18,8 +18,8 @@ const RAYS: u64 = 1024;
 /// A set of evenly spread rays, and what they have brought so far.
 #[derive(Clone, Debug)]
 pub(super) struct Replication {
-    hemisphere: EvenPoints,
-    aimed: EvenPoints,
+    hemisphere: R2Sequence,
+    aimed: R2Sequence,
     rays: u64,
     /// Sums over the rays, of which each way has the same number.
     direct: Rgb,
@@ -36,7 +36,7 @@ pub(super) type Gathered = (u64, Rgb);
 
 impl Replication {
     pub(super) fn new(stream: &mut Stream) -> Self {
-        let (hemisphere, aimed) = (EvenPoints::new(stream.point()), EvenPoints::new(stream.point()));
+        let (hemisphere, aimed) = (R2Sequence::new(stream.point()), R2Sequence::new(stream.point()));
         Self { hemisphere, aimed, rays: 0, direct: Rgb::ZERO, reflected: Rgb::ZERO }
     }
 

@@ -41,7 +41,7 @@ struct Node {
     end: u32,
     /// The second child; the first one follows the node itself.
     second: u32,
-    centre: DVec3,
+    center: DVec3,
     radius: f64,
     /// Sum of the normals, weighted by power.
     facing: DVec3,
@@ -95,7 +95,7 @@ impl Tree {
             start: range.start as u32,
             end: range.end as u32,
             second: 0,
-            centre: low.midpoint(high),
+            center: low.midpoint(high),
             radius: 0.5 * low.distance(high),
             facing,
             power,
@@ -130,8 +130,8 @@ impl Tree {
         exact: impl Fn(usize) -> f64,
     ) -> Vec<(Range<u32>, f64)> {
         let candidate = |node: usize| {
-            let Node { start, end, centre, radius, .. } = self.nodes[node];
-            let to = centre - origin;
+            let Node { start, end, center, radius, .. } = self.nodes[node];
+            let to = center - origin;
             let weight = match end - start {
                 1 => exact(self.order[start as usize] as usize),
                 _ => self.nodes[node].weight(to, normal),

@@ -76,8 +76,8 @@ pub(crate) fn add_sphere(
     }
 }
 
-/// A grey surface with exitance `m` and reflectance `rho`.
-pub(crate) fn grey(m: f64, rho: f64) -> Material {
+/// A gray surface with exitance `m` and reflectance `rho`.
+pub(crate) fn gray(m: f64, rho: f64) -> Material {
     Material::diffuse("", Rgb::splat(rho)).emitting(Rgb::splat(m))
 }
 

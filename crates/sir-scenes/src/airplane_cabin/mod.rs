@@ -28,7 +28,7 @@ use size::{AISLE, FIRST_ROW, FRONT, PITCH, REAR, ROWS, near};
 /// The cabin of an airliner with one aisle, 3.7 m wide and 27 m long, with 29 rows of six seats between two galleys. It is
 /// closed: no light leaves it.
 ///
-/// Cameras: `aisle` along the aisle from the rear, `row` from a seat toward its neighbours and the windows, and `galley`
+/// Cameras: `aisle` along the aisle from the rear, `row` from a seat toward its neighbors and the windows, and `galley`
 /// from the front over the seats.
 ///
 /// # Errors

@@ -12,7 +12,7 @@ use crate::model::pillow::Ends;
 use crate::model::{GAP, Model};
 use crate::random::Random;
 
-/// Sections seen from the side, counter-clockwise; the ends of each pair from outside in face each other \[m\].
+/// Sections seen from the side, counterclockwise; the ends of each pair from outside in face each other \[m\].
 const CUSHION: [[f64; 2]; 8] = [
     [0.02, 0.335],
     [0.12, 0.315],
@@ -59,22 +59,22 @@ const ARM_REST: [[f64; 2]; 8] = [
 ];
 
 /// Three seats side by side, the middle of the group's front on the origin, looking along `−z`. The middle one has
-/// colours of its own.
+/// colors of its own.
 ///
 /// Those `near` a camera are rounder.
 pub(super) fn group(palette: &Palette, random: &mut Random, near: bool) -> Model {
     let mut m = Model::default();
-    for (i, colours) in
-        [Colours::blue(palette), Colours::orange(palette), Colours::blue(palette)].iter().enumerate()
+    for (i, colors) in
+        [Colors::blue(palette), Colors::orange(palette), Colors::blue(palette)].iter().enumerate()
     {
         let z = (i as f64 - 1.0) * PLACE;
-        m.add_at(&cushion(colours, near), 0.0, 0.0, z);
+        m.add_at(&cushion(colors, near), 0.0, 0.0, z);
         // Most backs are upright, some are reclined a little.
         let lean = if random.unit() < 0.3 { random.between(0.02, 0.07) } else { 0.0 };
         let hinge = DAffine3::from_translation(PIVOT + DVec3::new(0.0, 0.0, z))
             * DAffine3::from_rotation_z(-lean)
             * DAffine3::from_translation(-PIVOT);
-        let mut upright = back(colours, near);
+        let mut upright = back(colors, near);
         upright.add_at(&back_things(palette, random), 0.0, 0.0, 0.0);
         m.add(&upright, hinge);
     }
@@ -92,7 +92,7 @@ pub(super) fn group(palette: &Palette, random: &mut Random, near: bool) -> Model
 }
 
 /// What is soft on a seat.
-struct Colours {
+struct Colors {
     seat: MaterialId,
     back: MaterialId,
     shoulder: MaterialId,
@@ -100,7 +100,7 @@ struct Colours {
     head: MaterialId,
 }
 
-impl Colours {
+impl Colors {
     fn blue(palette: &Palette) -> Self {
         Self {
             seat: palette.fabric,
@@ -122,21 +122,21 @@ impl Colours {
     }
 }
 
-fn cushion(colours: &Colours, near: bool) -> Model {
+fn cushion(colors: &Colors, near: bool) -> Model {
     let mut m = Model::default();
-    soft(&mut m, &CUSHION, HALF_BACK, 0.028, near, |_| colours.seat);
+    soft(&mut m, &CUSHION, HALF_BACK, 0.028, near, |_| colors.seat);
     m
 }
 
-fn back(colours: &Colours, near: bool) -> Model {
+fn back(colors: &Colors, near: bool) -> Model {
     let mut m = Model::default();
-    let colour = |k: Option<usize>| match k {
-        Some(0..3) => colours.behind,
-        Some(5 | 6) => colours.shoulder,
-        _ => colours.back,
+    let color = |k: Option<usize>| match k {
+        Some(0..3) => colors.behind,
+        Some(5 | 6) => colors.shoulder,
+        _ => colors.back,
     };
-    soft(&mut m, &BACK, HALF_BACK, 0.02, near, colour);
-    soft(&mut m, &HEAD, HALF_BACK - 0.022, 0.028, near, |_| colours.head);
+    soft(&mut m, &BACK, HALF_BACK, 0.02, near, color);
+    soft(&mut m, &HEAD, HALF_BACK - 0.022, 0.028, near, |_| colors.head);
     m
 }
 

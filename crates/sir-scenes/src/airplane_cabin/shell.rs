@@ -80,12 +80,12 @@ fn runner(m: &mut Model, palette: &Palette, z: &[f64]) {
             let [a, b, c, d] = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
             let (across, along) = (j as f64 + 0.5 - middle, (i % RUNNER_CELLS) as f64 + 0.5 - middle);
             let farther = across.abs() + along.abs() + 0.3;
-            let colour = |distance: f64| match distance {
+            let color = |distance: f64| match distance {
                 d if d < 1.0 => palette.runner_dot,
                 d if d < 2.0 => palette.runner_figure,
                 _ => palette.runner,
             };
-            let (inner, outer) = (colour(farther - 0.6), colour(farther));
+            let (inner, outer) = (color(farther - 0.6), color(farther));
             // The half that lies nearer the middle of the diamond comes first.
             let halves = match (across > 0.0, along > 0.0) {
                 (true, true) => [[a, b, d], [b, c, d]],
@@ -107,8 +107,8 @@ fn wall(m: &mut Model, palette: &Palette, random: &mut Random, wall: Wall) {
     let [low, _, high] = WINDOW_LINES;
     for (first, to) in [(0, low), (high, WALL_LINES.len() - 1)] {
         let at = |i: usize, j: usize| wall.at(z_at(i), WALL_LINES[first + j]);
-        let colour = |_, j: usize| if first + j == 0 { palette.dado } else { palette.panel };
-        m.sheet([last, to - first], at, colour);
+        let color = |_, j: usize| if first + j == 0 { palette.dado } else { palette.panel };
+        m.sheet([last, to - first], at, color);
     }
     for cell in 0..CELLS {
         let z = [0, 1, 2].map(|i| z_at(2 * cell + i));

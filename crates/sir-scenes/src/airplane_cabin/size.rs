@@ -3,8 +3,8 @@
 
 /// Radius of the round section of the side walls.
 pub(super) const RADIUS: f64 = 1.84;
-/// Height of the section's centre above the floor.
-pub(super) const CENTRE: f64 = 1.0;
+/// Height of the section's center above the floor.
+pub(super) const CENTER: f64 = 1.0;
 /// Distance of seat rows.
 pub(super) const PITCH: f64 = 0.79;
 /// Distance of windows: three in two rows of seats.
@@ -44,7 +44,7 @@ pub(super) const CEILING: [[f64; 2]; 6] =
 /// the windows' cells: grazing light would show every facet.
 pub(super) fn half_width(y: f64) -> f64 {
     let [low, _, high] = WINDOW_LINES;
-    let on_circle = |y: f64| (RADIUS * RADIUS - (y - CENTRE) * (y - CENTRE)).sqrt();
+    let on_circle = |y: f64| (RADIUS * RADIUS - (y - CENTER) * (y - CENTER)).sqrt();
     let next = WALL_LINES.iter().position(|&line| y < line).unwrap_or(WALL_LINES.len() - 1);
     let (a, b) = if (low + 1..=high).contains(&next) { (low, high) } else { (next.max(1) - 1, next.max(1)) };
     let (a, b) = (WALL_LINES[a], WALL_LINES[b]);

@@ -34,31 +34,31 @@ const SQUARENESS: f64 = 3.0;
 /// The cell of a wall around a window. `z` are the left edge, the middle and the right edge seen from inside.
 pub(super) fn window(m: &mut Model, palette: &Palette, random: &mut Random, wall: Wall, z: [f64; 3]) {
     let [low, middle, high] = WINDOW_LINES.map(|i| WALL_LINES[i]);
-    let [left, centre, right] = z;
+    let [left, center, right] = z;
     let around = [
         (right, middle),
         (right, high),
-        (centre, high),
+        (center, high),
         (left, high),
         (left, middle),
         (left, low),
-        (centre, low),
+        (center, low),
         (right, low),
         (right, middle),
     ]
     .map(|(z, y)| wall.at(z, y));
     // The wall is flat here.
-    let up = (wall.at(centre, high) - wall.at(centre, low)).normalize();
+    let up = (wall.at(center, high) - wall.at(center, low)).normalize();
     let outward = wall.side * up.cross(DVec3::Z);
     // Row `k` of the pane lies between the points `k` and `points / 2 − 1 − k` of a ring.
-    let round = near(wall.side, centre) || centre < ROUND_BEFORE;
+    let round = near(wall.side, center) || center < ROUND_BEFORE;
     let points = if round { 20 } else { 12 };
     let rings = RINGS.map(|[a, b, depth]| {
         (0..=points)
             .map(|i| {
                 let (sin, cos) = (((i % points) as f64 + 0.5) * TAU / points as f64).sin_cos();
                 let power = |x: f64| x.signum() * x.abs().powf(2.0 / SQUARENESS);
-                let on_wall = wall.at(centre + wall.side * a * power(cos), middle + b * power(sin));
+                let on_wall = wall.at(center + wall.side * a * power(cos), middle + b * power(sin));
                 on_wall + depth * outward
             })
             .collect::<Vec<_>>()

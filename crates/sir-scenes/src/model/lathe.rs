@@ -25,7 +25,7 @@ impl Model {
         }
     }
 
-    /// Adds a turned ring. `profile` lists (radius, height) counter-clockwise (up on the outside, down on the inside)
+    /// Adds a turned ring. `profile` lists (radius, height) counterclockwise (up on the outside, down on the inside)
     /// with radii above zero; `material` gets the number of the point at which a band begins.
     pub(crate) fn turned_ring(
         &mut self,

@@ -7,7 +7,7 @@ use crate::model::Model;
 
 impl Model {
     /// Adds a closed skin over rings of points. `point(i, j)` is the `j`-th of `columns` points of ring `i`,
-    /// counter-clockwise seen from the last ring; the ends are closed by fans around the middles of their rings.
+    /// counterclockwise seen from the last ring; the ends are closed by fans around the middles of their rings.
     pub(crate) fn loft(
         &mut self,
         rings: usize,

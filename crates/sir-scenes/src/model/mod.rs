@@ -1,4 +1,4 @@
-//! A small modelling kit: polygons that are put together into closed shapes.
+//! A small modeling kit: polygons that are put together into closed shapes.
 //!
 //! Rules that every shape keeps, so that a scene made of them has no light that leaks or is lost:
 //!
@@ -22,10 +22,10 @@ use sir_geom::{MaterialId, SceneBuilder};
 /// Distance between things that stand on or lean against each other \[m\].
 pub(crate) const GAP: f64 = 0.001;
 
-/// Positions are whole multiples of one part in this many of a metre.
+/// Positions are whole multiples of one part in this many of a meter.
 const STEPS_PER_METRE: f64 = 65536.0;
 
-/// Polygons with materials, counter-clockwise seen from their fronts.
+/// Polygons with materials, counterclockwise seen from their fronts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Model {
     polygons: Vec<(Vec<DVec3>, MaterialId)>,

@@ -20,7 +20,7 @@ pub(crate) struct Ends {
 }
 
 impl Model {
-    /// Adds a solid with the given counter-clockwise cross-section in the `xy` plane from `z = from` to `z = to`. Toward
+    /// Adds a solid with the given counterclockwise cross-section in the `xy` plane from `z = from` to `z = to`. Toward
     /// both ends the section shrinks along quarter circles.
     ///
     /// The section has an even number of points. The ends are strips between the first and the last, the second and
@@ -69,7 +69,7 @@ impl Model {
     }
 }
 
-/// A counter-clockwise polygon with all its edges moved inward by a distance.
+/// A counterclockwise polygon with all its edges moved inward by a distance.
 fn shrunk(polygon: &[[f64; 2]], distance: f64) -> Vec<DVec2> {
     let n = polygon.len();
     let point = |i: usize| DVec2::from_array(polygon[i % n]);

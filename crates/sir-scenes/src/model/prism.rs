@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::model::sheet::lines;
 
 impl Model {
-    /// Adds a solid with the given simple, counter-clockwise cross-section in the `xy` plane from `z = from` to
+    /// Adds a solid with the given simple, counterclockwise cross-section in the `xy` plane from `z = from` to
     /// `z = to`, in slices of at most `cell`.
     pub(crate) fn prism(
         &mut self,
@@ -30,7 +30,7 @@ impl Model {
     }
 }
 
-/// Cuts a simple counter-clockwise polygon into triangles of its corners, by cutting off one convex corner after the
+/// Cuts a simple counterclockwise polygon into triangles of its corners, by cutting off one convex corner after the
 /// other that holds no further corner (Meisters 1975, "Polygons have ears").
 fn cut_ears(polygon: &[[f64; 2]]) -> Vec<[usize; 3]> {
     let point = |i: usize| DVec2::from_array(polygon[i]);

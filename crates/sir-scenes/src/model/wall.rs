@@ -8,7 +8,7 @@ use sir_geom::MaterialId;
 use crate::model::Model;
 use crate::model::sheet::lines;
 
-/// A wall seen from inside: `u` metres from its left end, `v` above the floor, `w` behind its surface.
+/// A wall seen from inside: `u` meters from its left end, `v` above the floor, `w` behind its surface.
 #[derive(Clone, Copy)]
 pub(crate) struct Wall {
     pub(crate) left: DVec3,
@@ -20,7 +20,7 @@ impl Wall {
         self.left + u * self.right + v * DVec3::Y - w * self.right.cross(DVec3::Y)
     }
 
-    /// A half circle, counter-clockwise from its right end.
+    /// A half circle, counterclockwise from its right end.
     pub(crate) fn arc(self, [u, v, w]: [f64; 3], radius: f64, segments: usize) -> Vec<DVec3> {
         (0..=segments)
             .map(|i| {
@@ -31,7 +31,7 @@ impl Wall {
     }
 }
 
-/// Radii and numbers of segments of half circles from the given one down to the centre, a cell apart.
+/// Radii and numbers of segments of half circles from the given one down to the center, a cell apart.
 pub(crate) fn half_rings(radius: f64, segments: usize, cell: f64) -> Vec<(f64, usize)> {
     lines(radius, 0.0, -cell)
         .iter()
@@ -40,22 +40,22 @@ pub(crate) fn half_rings(radius: f64, segments: usize, cell: f64) -> Vec<(f64, u
 }
 
 impl Model {
-    /// Adds the sides of a recess: `edge` is its closed outline, counter-clockwise seen from the room, and `inward` leads
+    /// Adds the sides of a recess: `edge` is its closed outline, counterclockwise seen from the room, and `inward` leads
     /// to its bottom.
     pub(crate) fn recess(&mut self, edge: &[DVec3], inward: DVec3, material: MaterialId) {
         self.sheet([edge.len() - 1, 2], |i, j| edge[i] + 0.5 * j as f64 * inward, |_, _| material);
     }
 
-    /// Adds the area between half circles about one centre. A circle of radius zero is the centre itself.
+    /// Adds the area between half circles about one center. A circle of radius zero is the center itself.
     pub(crate) fn half_disc(
         &mut self,
         wall: Wall,
-        centre: [f64; 3],
+        center: [f64; 3],
         rings: &[(f64, usize)],
         material: MaterialId,
     ) {
         for pair in rings.windows(2) {
-            let [outer, inner] = [pair[0], pair[1]].map(|(r, segments)| wall.arc(centre, r, segments));
+            let [outer, inner] = [pair[0], pair[1]].map(|(r, segments)| wall.arc(center, r, segments));
             self.stitch(&outer, &inner, material);
         }
     }

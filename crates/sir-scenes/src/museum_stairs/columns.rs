@@ -47,7 +47,7 @@ pub(super) fn columns(palette: &Palette) -> Model {
     m
 }
 
-/// Mouldings on the walls where their colours change.
+/// Mouldings on the walls where their colors change.
 fn rails(m: &mut Model, palette: &Palette) {
     for z in bay_middles() {
         for side in [-1.0, 1.0] {

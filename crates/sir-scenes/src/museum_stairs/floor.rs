@@ -8,7 +8,7 @@ use crate::model::sheet::lines;
 use crate::museum_stairs::palette::Palette;
 use crate::museum_stairs::size::{CELL, EDGE, HALF_WIDTH, LENGTH, SOUTH_EDGE};
 
-/// Adds the floor: every cell is two triangles, of two colours where a lozenge has its edge.
+/// Adds the floor: every cell is two triangles, of two colors where a lozenge has its edge.
 pub(super) fn floor(m: &mut Model, palette: &Palette) {
     let (x, z) = (lines(-HALF_WIDTH, HALF_WIDTH, CELL), lines(0.0, LENGTH, CELL));
     for i in 0..z.len() - 1 {

@@ -17,7 +17,7 @@ use crate::museum_stairs::size::{
 /// Half the width of the beams \[m\].
 const BEAM: f64 = 0.24;
 
-/// How far the edge of the floor, with its mouldings, reaches under the balustrade, which hides the joint behind it \[m\].
+/// How far the edge of the floor, with its moldings, reaches under the balustrade, which hides the joint behind it \[m\].
 const LEDGE: f64 = 0.2;
 
 /// Floors, beams and balustrades.
@@ -26,7 +26,7 @@ pub(super) fn gallery(palette: &Palette) -> Model {
     floors(&mut m, palette);
     beams(&mut m, palette, [LOWER_BEAM, UNDER_GALLERY - GAP]);
     beams(&mut m, palette, [UPPER_BEAM, AISLE - GAP]);
-    edge_mouldings(&mut m, palette);
+    edge_moldings(&mut m, palette);
 
     let axis = EDGE + COLUMN;
     let floor = GALLERY + GAP;
@@ -73,7 +73,7 @@ fn floors(m: &mut Model, palette: &Palette) {
         };
         m.grid_block([&x, &y, &z], paint);
     }
-    // Where the stair arrives, there are no mouldings.
+    // Where the stair arrives, there are no moldings.
     for side in [-1.0, 1.0] {
         let (a, b) = (side * (EDGE + GAP), side * edge);
         m.block([a.min(b), y[0], GAP], [a.max(b), y[1], SIDE], CELL, palette.pale);
@@ -119,7 +119,7 @@ fn beams(m: &mut Model, palette: &Palette, [low, high]: [f64; 2]) {
 }
 
 /// Mouldings along the edge of the gallery's floor.
-fn edge_mouldings(m: &mut Model, palette: &Palette) {
+fn edge_moldings(m: &mut Model, palette: &Palette) {
     let y = UNDER_GALLERY;
     let out = 0.16;
     // (distance before the edge, height)

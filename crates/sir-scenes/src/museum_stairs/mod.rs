@@ -75,10 +75,10 @@ fn runner(palette: &Palette) -> Model {
     let mut z = vec![from];
     z.extend(lines(from + border, to - border, 0.6));
     z.push(to);
-    let colour = |_, p: DVec3| {
+    let color = |_, p: DVec3| {
         let edge = (half - p.x.abs()).min((p.z - from).min(to - p.z));
         if edge < border { palette.carpet_border } else { palette.carpet }
     };
-    m.grid_block([&x, &[GAP, 0.012], &z], colour);
+    m.grid_block([&x, &[GAP, 0.012], &z], color);
     m
 }

@@ -8,7 +8,7 @@ use crate::model::furnish::lamp;
 pub(super) struct Palette {
     /// Limestone of the building.
     pub(super) stone: MaterialId,
-    /// Paler limestone of mouldings and balusters.
+    /// Paler limestone of moldings and balusters.
     pub(super) pale: MaterialId,
     /// Red marble.
     pub(super) rosso: MaterialId,
@@ -36,7 +36,7 @@ pub(super) struct Palette {
     pub(super) clay: MaterialId,
     pub(super) glaze: MaterialId,
     pub(super) celadon: MaterialId,
-    /// Colours of the paintings.
+    /// Colors of the paintings.
     pub(super) paints: [MaterialId; 10],
     /// Emits the light of the sky.
     pub(super) sky: MaterialId,
@@ -52,7 +52,7 @@ pub(super) struct Palette {
     pub(super) spot: MaterialId,
 }
 
-/// Colours of the paintings: sky to earth, then accents.
+/// Colors of the paintings: sky to earth, then accents.
 const PAINTS: [[f64; 3]; 10] = [
     [0.36, 0.47, 0.58],
     [0.62, 0.58, 0.46],

@@ -35,7 +35,7 @@ pub(super) fn pictures(palette: &Palette) -> Model {
     m
 }
 
-/// A painting about the origin before the plane `z = 0`: a landscape of coloured bands.
+/// A painting about the origin before the plane `z = 0`: a landscape of colored bands.
 fn painting(palette: &Palette, number: usize, [width, height]: [f64; 2]) -> Model {
     let mut m = Model::default();
     let (x, y) = (0.5 * width, 0.5 * height);
@@ -56,10 +56,10 @@ fn painting(palette: &Palette, number: usize, [width, height]: [f64; 2]) -> Mode
     m
 }
 
-/// Bands of colour in a landscape.
+/// Bands of color in a landscape.
 const BANDS: usize = 7;
 
-/// Their colours, from the bottom up.
+/// Their colors, from the bottom up.
 const LANDSCAPES: [[usize; BANDS]; 5] = [
     [6, 5, 4, 5, 1, 0, 0],
     [7, 6, 8, 2, 2, 9, 1],
@@ -80,7 +80,7 @@ fn horizon(number: usize, band: usize, x: f64) -> f64 {
     even + swing * ((2.1 + 0.5 * (n * 0.7).sin()) * x + 2.3 * k + n).sin() + 0.03 * (7.0 * x + k * n).sin()
 }
 
-/// A flat box whose front, which looks along `z`, is a grid with cells of different colours; `point(i, j)` gets further
+/// A flat box whose front, which looks along `z`, is a grid with cells of different colors; `point(i, j)` gets further
 /// right with `i` and up with `j`. Its back is not cut into cells.
 fn panel(
     m: &mut Model,
@@ -92,7 +92,7 @@ fn panel(
 ) {
     let at = |[x, y]: [f64; 2], z: f64| DVec3::new(x, y, z);
     m.sheet([columns, rows], |i, j| at(point(i, j), front), paint);
-    // Around the edge, counter-clockwise seen from the front.
+    // Around the edge, counterclockwise seen from the front.
     let mut edge: Vec<[f64; 2]> = (0..columns).map(|i| point(i, 0)).collect();
     edge.extend((0..rows).map(|j| point(columns, j)));
     edge.extend((1..=columns).rev().map(|i| point(i, rows)));

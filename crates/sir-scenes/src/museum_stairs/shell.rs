@@ -1,6 +1,6 @@
 //! Floor, walls with their niches, and ceilings: one closed surface with its fronts inward.
 //!
-//! All of it is cut along the same lines, half a metre apart, so that neighbours share their edges.
+//! All of it is cut along the same lines, half a meter apart, so that neighbors share their edges.
 
 use glam::DVec3;
 use sir_geom::MaterialId;
@@ -79,7 +79,7 @@ pub(super) fn shell(palette: &Palette) -> Model {
     m
 }
 
-/// The colour of the walls at a height.
+/// The color of the walls at a height.
 fn wall_paint(palette: &Palette, v: f64) -> MaterialId {
     match v {
         ..1.0 => palette.rosso,
@@ -123,7 +123,7 @@ fn wall(
     }
 }
 
-/// Lines of cells on the walls: edges of niches and colours are some of them.
+/// Lines of cells on the walls: edges of niches and colors are some of them.
 const HEIGHTS: [f64; 16] =
     [0.0, 1.0, 1.75, 2.5, 3.5, 4.5, 5.25, 6.0, 6.5, 7.5, 8.5, 9.5, AISLE, 11.3, 12.1, HEIGHT];
 

@@ -11,7 +11,7 @@ use crate::museum_stairs::statues::amphora;
 /// All vitrines.
 pub(super) fn vitrines(palette: &Palette) -> Model {
     let mut m = Model::default();
-    let colours = [
+    let colors = [
         [palette.clay, palette.glaze],
         [palette.celadon, palette.gold],
         [palette.glaze, palette.clay],
@@ -19,8 +19,8 @@ pub(super) fn vitrines(palette: &Palette) -> Model {
     ];
     let far = SOUTH_EDGE - 1.6;
     let places = [[-3.1, FOOT + 1.3], [4.05, FOOT + 1.3], [-4.05, far], [4.05, far]];
-    for (colours, [x, z]) in colours.into_iter().zip(places) {
-        m.add_at(&vitrine(palette, colours), x, GAP, z);
+    for (colors, [x, z]) in colors.into_iter().zip(places) {
+        m.add_at(&vitrine(palette, colors), x, GAP, z);
     }
     m
 }

@@ -62,7 +62,7 @@ impl Bookcase {
         m
     }
 
-    /// A moulding on top.
+    /// A molding on top.
     fn cornice(&self, m: &mut Model, palette: &Palette) {
         let (y, out) = (self.height + GAP, 0.04);
         let mut turned = Model::default();
@@ -119,7 +119,7 @@ fn run(
     let (mut material, tall) = (cover(palette, random), random.between(0.68, 0.93) * height);
     let thick = random.between(0.030, 0.066);
     let deep = random.between(0.60, 0.85) * depth;
-    // Volumes of one edition are alike; other neighbours are not.
+    // Volumes of one edition are alike; other neighbors are not.
     let (edition, count) = (random.unit() < 0.4, 2 + random.below(7));
     let mut used = 0.0;
     for _ in 0..count {

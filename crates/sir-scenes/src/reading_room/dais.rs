@@ -123,16 +123,16 @@ pub(super) fn globe(palette: &Palette) -> Model {
         [0.05, 0.50],
     ];
     m.lathe(&stand, 14, palette.walnut);
-    let (radius, centre) = (0.32, 0.83);
+    let (radius, center) = (0.32, 0.83);
     let arc: Vec<[f64; 2]> = (0..=12)
         .map(|i| {
             let (sin, cos) = (std::f64::consts::PI * f64::from(i) / 12.0).sin_cos();
-            [if i % 12 == 0 { 0.0 } else { radius * sin }, centre - radius * cos]
+            [if i % 12 == 0 { 0.0 } else { radius * sin }, center - radius * cos]
         })
         .collect();
     m.lathe(&arc, 20, palette.sea);
     let ring =
-        [[0.40, centre - 0.015], [0.40, centre + 0.015], [0.34, centre + 0.015], [0.34, centre - 0.015]];
+        [[0.40, center - 0.015], [0.40, center + 0.015], [0.34, center + 0.015], [0.34, center - 0.015]];
     m.turned_ring(&ring, 20, |_| palette.brass);
     m
 }

@@ -139,10 +139,10 @@ fn rug(palette: &Palette) -> Model {
     let mut z = vec![from, from + 0.08, from + 0.16, from + 0.2];
     z.extend(lines(from + 0.2, to - 0.2, 0.5).iter().skip(1));
     z.extend([to - 0.16, to - 0.08, to]);
-    let colour = |_, p: DVec3| {
+    let color = |_, p: DVec3| {
         let edge = (0.7 - p.x.abs()).min((p.z - from).min(to - p.z));
         if (0.08..0.16).contains(&edge) { palette.rug_border } else { palette.rug }
     };
-    m.grid_block([&x, &[GAP, 0.012], &z], colour);
+    m.grid_block([&x, &[GAP, 0.012], &z], color);
     m
 }

@@ -44,14 +44,14 @@ pub(super) fn shell(palette: &Palette) -> Model {
     plain_wall(&mut m, south, [0.0, 2.0 * HALF_WIDTH], palette.plaster);
 
     vault(&mut m, palette);
-    let (centre, mut rings) = (HALF_WIDTH, half_rings(HALF_WIDTH, ARC, TILE));
-    m.half_disc(south, [centre, SPRING, 0.0], &rings, palette.plaster);
+    let (center, mut rings) = (HALF_WIDTH, half_rings(HALF_WIDTH, ARC, TILE));
+    m.half_disc(south, [center, SPRING, 0.0], &rings, palette.plaster);
     let window = rings.split_off(rings.iter().position(|r| r.0 <= LUNETTE_RADIUS).unwrap_or(0));
     rings.extend(window.first());
-    m.half_disc(north, [centre, SPRING, 0.0], &rings, palette.plaster);
-    m.half_disc(north, [centre, SPRING, LUNETTE_DEPTH], &window, palette.sky);
-    let mut edge = north.arc([centre, SPRING, 0.0], window[0].0, window[0].1);
-    let sill = lines(centre - window[0].0, centre + window[0].0, TILE);
+    m.half_disc(north, [center, SPRING, 0.0], &rings, palette.plaster);
+    m.half_disc(north, [center, SPRING, LUNETTE_DEPTH], &window, palette.sky);
+    let mut edge = north.arc([center, SPRING, 0.0], window[0].0, window[0].1);
+    let sill = lines(center - window[0].0, center + window[0].0, TILE);
     edge.extend(sill.iter().skip(1).map(|&u| north.at(u, SPRING, 0.0)));
     m.recess(&edge, north.at(0.0, 0.0, LUNETTE_DEPTH) - north.at(0.0, 0.0, 0.0), palette.plaster);
     m
@@ -88,8 +88,8 @@ fn plain_wall(m: &mut Model, wall: Wall, [from, to]: [f64; 2], material: Materia
 
 /// One bay of a wall, from `u` on, with an arched recess in its middle that ends in a pane.
 fn wall_with_opening(m: &mut Model, wall: Wall, u: f64, depth: f64, [material, pane]: [MaterialId; 2]) {
-    let centre = u + 0.5 * BAY;
-    let (left, right) = (centre - OPENING.radius, centre + OPENING.radius);
+    let center = u + 0.5 * BAY;
+    let (left, right) = (center - OPENING.radius, center + OPENING.radius);
     plain_wall(m, wall, [u, left], material);
     plain_wall(m, wall, [right, u + BAY], material);
     let across = lines(left, right, TILE);
@@ -102,13 +102,13 @@ fn wall_with_opening(m: &mut Model, wall: Wall, u: f64, depth: f64, [material, p
     around.extend(across.iter().rev().map(|&u| wall.at(u, SPRING, 0.0)));
     around.extend(beside.rev().map(|&v| wall.at(left, v, 0.0)));
     let segments = 12;
-    let arch = wall.arc([centre, OPENING.spring, 0.0], OPENING.radius, segments);
+    let arch = wall.arc([center, OPENING.spring, 0.0], OPENING.radius, segments);
     m.stitch(&around, &arch, material);
 
     let jamb: Vec<f64> =
         WALL_LINES.iter().copied().filter(|v| (OPENING.sill..=OPENING.spring).contains(v)).collect();
     m.sheet([across.len() - 1, jamb.len() - 1], |i, j| wall.at(across[i], jamb[j], depth), |_, _| pane);
-    m.half_disc(wall, [centre, OPENING.spring, depth], &half_rings(OPENING.radius, segments, TILE), pane);
+    m.half_disc(wall, [center, OPENING.spring, depth], &half_rings(OPENING.radius, segments, TILE), pane);
     let mut edge = arch;
     edge.extend(jamb.iter().rev().skip(1).map(|&v| wall.at(left, v, 0.0)));
     edge.extend(across.iter().skip(1).map(|&u| wall.at(u, OPENING.sill, 0.0)));

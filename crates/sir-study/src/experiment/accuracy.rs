@@ -98,7 +98,7 @@ mod tests {
             patch: i as u32,
             triangle: 0,
             area: 2.0,
-            centre: DVec3::ZERO,
+            center: DVec3::ZERO,
             normal: DVec3::Z,
             radiosity: Rgb::splat(b),
             irradiance: Rgb::ZERO,

@@ -6,7 +6,7 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use crate::scaling::axis::{Axis, draw_axes};
-use crate::scaling::legend::{Failure, GREY, INK, Pixel, write};
+use crate::scaling::legend::{Failure, GRAY, INK, Pixel, write};
 
 /// What is shown.
 pub(crate) struct Diagram<'a> {
@@ -21,8 +21,8 @@ pub(crate) struct Diagram<'a> {
     pub(crate) curves: &'a [(&'a str, Vec<(f64, f64)>)],
 }
 
-/// Distinct for the colour-blind, too (Okabe and Ito).
-const COLOURS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115)];
+/// Distinct for the color-blind, too (Okabe and Ito).
+const COLORS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115)];
 
 const SIZE: (u32, u32) = (760, 480);
 const TITLE: u32 = 44;
@@ -59,17 +59,17 @@ impl Diagram<'_> {
         let at = |x: f64, y: f64| chart.backend_coord(&(x, y));
         let (x, top) = at(self.mark.0, y_last);
         let line = vec![(x, top + 18), at(self.mark.0, 0.0)];
-        canvas.draw(&DashedPathElement::new(line, 2, 3, GREY.stroke_width(1)))?;
-        write(&canvas, self.mark.1, (x, top + 8), true, 14, GREY)?;
+        canvas.draw(&DashedPathElement::new(line, 2, 3, GRAY.stroke_width(1)))?;
+        write(&canvas, self.mark.1, (x, top + 8), true, 14, GRAY)?;
         let middle = (SIZE.1 - LEGEND / 2) as i32;
         let width = SIZE.0 as i32 / (self.curves.len() as i32 + 1);
-        for (i, ((name, points), colour)) in self.curves.iter().zip(COLOURS.iter().cycle()).enumerate() {
+        for (i, ((name, points), color)) in self.curves.iter().zip(COLORS.iter().cycle()).enumerate() {
             let pixels: Vec<Pixel> = points.iter().map(|&(x, y)| at(x, y)).collect();
-            canvas.draw(&PathElement::new(pixels.clone(), colour.stroke_width(2)))?;
+            canvas.draw(&PathElement::new(pixels.clone(), color.stroke_width(2)))?;
             for pixel in pixels {
-                canvas.draw(&Circle::new(pixel, 4, colour.filled()))?;
+                canvas.draw(&Circle::new(pixel, 4, color.filled()))?;
             }
-            write(&canvas, name, (width * (i as i32 + 1), middle), true, 16, *colour)?;
+            write(&canvas, name, (width * (i as i32 + 1), middle), true, 16, *color)?;
         }
         canvas.present()
     }

@@ -196,7 +196,7 @@ mod tests {
     use crate::experiment::accuracy::Bands;
 
     #[test]
-    fn the_best_share_has_neighbours_that_are_as_good() {
+    fn the_best_share_has_neighbors_that_are_as_good() {
         let all = |x: f64| Bands { luminance: x, red: x, green: x, blue: x };
         let mixture = |(share, rms): (f64, f64)| Mixture {
             share,

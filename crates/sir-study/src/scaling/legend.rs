@@ -18,7 +18,7 @@ pub(crate) type Failure = DrawingAreaErrorKind<std::io::Error>;
 pub(crate) type Pixel = (i32, i32);
 
 /// Of the ideal lines, and of that which shows the number of cores.
-pub(crate) const GREY: RGBColor = RGBColor(150, 150, 150);
+pub(crate) const GRAY: RGBColor = RGBColor(150, 150, 150);
 
 /// Of letters and axes.
 pub(crate) const INK: RGBColor = RGBColor(50, 50, 50);
@@ -39,7 +39,7 @@ pub(crate) fn draw_line(
     kind: &Kind,
     stage: &Stage,
 ) -> Result<(), Failure> {
-    let style = stage.colour.stroke_width(stage.width);
+    let style = stage.color.stroke_width(stage.width);
     if kind.dashed {
         canvas.draw(&DashedPathElement::new(points.iter().copied(), 7, 4, style))
     } else {
@@ -50,11 +50,11 @@ pub(crate) fn draw_line(
 /// Draws a mark. Those of ranks are empty, so that one sees what is below them.
 pub(crate) fn draw_mark(canvas: &Canvas<'_>, at: Pixel, kind: &Kind, stage: &Stage) -> Result<(), Failure> {
     if kind.mark.is_empty() {
-        return canvas.draw(&Circle::new(at, 3 + stage.width as i32 / 2, stage.colour.filled()));
+        return canvas.draw(&Circle::new(at, 3 + stage.width as i32 / 2, stage.color.filled()));
     }
     // Two corners more than there are: the line ends where it has begun, and goes round the first corner.
     let corners = kind.mark.iter().chain(kind.mark.iter().take(2)).map(|(x, y)| (at.0 + x, at.1 + y));
-    canvas.draw(&PathElement::new(corners.collect::<Vec<_>>(), stage.colour.stroke_width(2)))
+    canvas.draw(&PathElement::new(corners.collect::<Vec<_>>(), stage.color.stroke_width(2)))
 }
 
 /// Writes a text whose middle, or whose left end, is at a place.
@@ -62,16 +62,16 @@ pub(crate) fn write(
     canvas: &Canvas<'_>,
     text: &str,
     at: Pixel,
-    centred: bool,
+    centerd: bool,
     size: i32,
-    colour: RGBColor,
+    color: RGBColor,
 ) -> Result<(), Failure> {
-    let style = TextStyle::from(("sans-serif", size).into_font()).color(&colour);
-    let anchor = if centred { HPos::Center } else { HPos::Left };
+    let style = TextStyle::from(("sans-serif", size).into_font()).color(&color);
+    let anchor = if centerd { HPos::Center } else { HPos::Left };
     canvas.draw(&Text::new(text.to_owned(), at, style.pos(Pos::new(anchor, VPos::Center))))
 }
 
-/// Draws the legend, centred below `top`: a column for every stage, a row for every kind of workers.
+/// Draws the legend, centerd below `top`: a column for every stage, a row for every kind of workers.
 pub(crate) fn draw_legend(
     canvas: &Canvas<'_>,
     top: i32,
@@ -86,7 +86,7 @@ pub(crate) fn draw_legend(
     let column = |i: usize| left + names + COLUMN * i as i32 + COLUMN / 2;
     let row = |i: usize| top + ROW * i as i32 + ROW / 2;
     for (i, stage) in stages.iter().enumerate() {
-        write(canvas, stage.name, (column(i), row(0)), true, 16, stage.colour)?;
+        write(canvas, stage.name, (column(i), row(0)), true, 16, stage.color)?;
         for (j, kind) in kinds.iter().enumerate() {
             let (x, y) = (column(i), row(j + 1));
             draw_line(canvas, &[(x - SAMPLE, y), (x + SAMPLE, y)], kind, stage)?;
@@ -97,6 +97,6 @@ pub(crate) fn draw_legend(
         write(canvas, &kind.label, (left, row(j + 1)), false, 16, INK)?;
     }
     let (x, y) = (column(stages.len()), row(1));
-    write(canvas, "ideal", (x, row(0)), true, 16, GREY)?;
-    canvas.draw(&PathElement::new(vec![(x - SAMPLE, y), (x + SAMPLE, y)], GREY.stroke_width(1)))
+    write(canvas, "ideal", (x, row(0)), true, 16, GRAY)?;
+    canvas.draw(&PathElement::new(vec![(x - SAMPLE, y), (x + SAMPLE, y)], GRAY.stroke_width(1)))
 }

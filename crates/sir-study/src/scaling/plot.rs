@@ -7,7 +7,7 @@ use plotters::prelude::*;
 
 use crate::scaling::axis::{Axis, draw_axes};
 use crate::scaling::legend::{
-    Canvas, Failure, GREY, INK, Pixel, ROW, draw_legend, draw_line, draw_mark, write,
+    Canvas, Failure, GRAY, INK, Pixel, ROW, draw_legend, draw_line, draw_mark, write,
 };
 use crate::scaling::series::{Kind, Stage, kinds, stages};
 use crate::scaling::statistics::Part;
@@ -114,13 +114,13 @@ impl Panel {
         draw_axes(&mut chart, ("workers p", self.label), decimals)?;
         let at = |x: f64, y: f64| chart.backend_coord(&(x, y));
         let ideal = self.ideal.map(|(x, y)| at(x, y));
-        canvas.draw(&PathElement::new(ideal.to_vec(), GREY.stroke_width(1)))?;
+        canvas.draw(&PathElement::new(ideal.to_vec(), GRAY.stroke_width(1)))?;
         let place = cores as f64;
         if place < x_last / ROOM {
             let (x, top) = at(place, y_last);
             let line = vec![(x, top + 18), at(place, 0.0)];
-            canvas.draw(&DashedPathElement::new(line, 2, 3, GREY.stroke_width(1)))?;
-            write(canvas, &counted(cores, "core"), (x, top + 8), true, 14, GREY)?;
+            canvas.draw(&DashedPathElement::new(line, 2, 3, GRAY.stroke_width(1)))?;
+            write(canvas, &counted(cores, "core"), (x, top + 8), true, 14, GRAY)?;
         }
         let series = || stages.iter().rev().flat_map(|stage| kinds.iter().map(move |kind| (stage, kind)));
         let points = |stage: &Stage, shown: &[usize]| -> Vec<Pixel> {

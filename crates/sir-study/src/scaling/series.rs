@@ -6,20 +6,20 @@ use crate::scaling::statistics::Part;
 use crate::scaling::study::{Row, Study};
 use crate::scaling::workers::{Workers, counted};
 
-/// A part of the run, and how its lines look. The colours differ for the colour-blind, too (Okabe and Ito).
+/// A part of the run, and how its lines look. The colors differ for the color-blind, too (Okabe and Ito).
 #[derive(Clone, Copy)]
 pub(crate) struct Stage {
     pub(crate) name: &'static str,
-    pub(crate) colour: RGBColor,
+    pub(crate) color: RGBColor,
     /// Width of its lines in pixels. The whole run is often where one of the stages is, and then below it.
     pub(crate) width: u32,
     pub(crate) part: fn(&Row) -> Option<Part>,
 }
 
 const STAGES: [Stage; 3] = [
-    Stage { name: "first shot", colour: RGBColor(0, 114, 178), width: 2, part: |row| row.first_shot },
-    Stage { name: "multipath", colour: RGBColor(213, 94, 0), width: 2, part: |row| row.multipath },
-    Stage { name: "whole run", colour: RGBColor(90, 90, 90), width: 4, part: |row| Some(row.whole) },
+    Stage { name: "first shot", color: RGBColor(0, 114, 178), width: 2, part: |row| row.first_shot },
+    Stage { name: "multipath", color: RGBColor(213, 94, 0), width: 2, part: |row| row.multipath },
+    Stage { name: "whole run", color: RGBColor(90, 90, 90), width: 4, part: |row| Some(row.whole) },
 ];
 
 /// The parts that the pipeline has.

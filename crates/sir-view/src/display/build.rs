@@ -73,7 +73,7 @@ impl<'a> DisplayMesh<'a> {
             }
             for patch in self.mesh.patches_of(t).map(PatchId) {
                 outline.polygon(self.mesh, t, patch, &mut polygon);
-                let centre = self.add_centre(&outline, &polygon);
+                let center = self.add_center(&outline, &polygon);
                 for (&side, vertices) in sides.iter().zip(&vertices_of_sides) {
                     self.piece_starts.push(self.triangles.len() as u32);
                     nodes.clear();
@@ -81,7 +81,7 @@ impl<'a> DisplayMesh<'a> {
                     if side == Side::Back {
                         nodes.reverse();
                     }
-                    self.add_polygon(&nodes, centre);
+                    self.add_polygon(&nodes, center);
                 }
             }
         }
@@ -121,8 +121,8 @@ impl<'a> DisplayMesh<'a> {
         }
     }
 
-    /// The position of the centre of a polygon that needs one.
-    fn add_centre(&mut self, outline: &Outline, polygon: &[Corner]) -> Option<u32> {
+    /// The position of the center of a polygon that needs one.
+    fn add_center(&mut self, outline: &Outline, polygon: &[Corner]) -> Option<u32> {
         if polygon.len() < 4 {
             return None;
         }
@@ -132,18 +132,18 @@ impl<'a> DisplayMesh<'a> {
         Some(self.positions.len() as u32 - 1)
     }
 
-    /// A triangle, or a fan of triangles around the centre of a polygon. Nodes are vertices, and whether they are
+    /// A triangle, or a fan of triangles around the center of a polygon. Nodes are vertices, and whether they are
     /// corners of the patch.
-    fn add_polygon(&mut self, nodes: &[(u32, bool)], centre: Option<u32>) {
-        if let Some(position) = centre {
+    fn add_polygon(&mut self, nodes: &[(u32, bool)], center: Option<u32>) {
+        if let Some(position) = center {
             // The value that the triangle of the corners alone would have there: the fan differs from the
             // patches next to it only along the edge that has more points.
             let corners =
                 || nodes.iter().filter(|n| n.1).map(|n| rgb(self.vertices[n.0 as usize].irradiance));
             let mean = corners().sum::<Rgb>() / corners().count() as f64;
-            let centre = push(&mut self.vertices, position, mean);
+            let center = push(&mut self.vertices, position, mean);
             for (i, node) in nodes.iter().enumerate() {
-                self.triangles.push([node.0, nodes[(i + 1) % nodes.len()].0, centre]);
+                self.triangles.push([node.0, nodes[(i + 1) % nodes.len()].0, center]);
             }
         } else if let &[a, b, c] = nodes {
             self.triangles.push([a.0, b.0, c.0]);
@@ -204,7 +204,7 @@ impl Rims {
 }
 
 /// Calls `add` with every node of every patch of a triangle and the weight of the patch there: the angle at the
-/// node over the distance to the centre of the patch.
+/// node over the distance to the center of the patch.
 fn weigh(
     scene: &Scene,
     mesh: &PatchMesh,
@@ -224,15 +224,15 @@ fn weigh(
     for patch in mesh.patches_of(triangle).map(PatchId) {
         outline.polygon(mesh, triangle, patch, polygon);
         let on_edge = polygon.iter().any(|c| c.corner.is_none());
-        let centre = || {
+        let center = || {
             let c = mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
             (c[0] + c[1] + c[2]) / 3.0
         };
-        let centre = if on_edge { centre() } else { DVec3::ZERO };
+        let center = if on_edge { center() } else { DVec3::ZERO };
         for c in &*polygon {
             let weight = match c.corner {
                 Some(i) => at_corner[usize::from(i)],
-                None => std::f64::consts::PI / centre.distance(outline.positions[c.node as usize]),
+                None => std::f64::consts::PI / center.distance(outline.positions[c.node as usize]),
             };
             add(*c, patch, weight);
         }

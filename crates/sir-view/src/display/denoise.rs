@@ -1,13 +1,13 @@
 //! Noise taken out of what is shown.
 //!
 //! The irradiance of a patch is known to its standard error only, and eyes see differences of a per cent between
-//! neighbours. So for pictures every patch takes a mean over those around it on the same smooth surface, as far as they
+//! neighbors. So for pictures every patch takes a mean over those around it on the same smooth surface, as far as they
 //! differ by no more than noise would make them differ. Where the solution is good, nothing changes.
 //!
 //! Perona and Malik (1990) diffuse pictures like this, stopping at edges; Schied et al. (2017) take the threshold from the
 //! variance, as is done here. The variance is that of light that comes in grains: with grains of `q` watts, a patch
 //! of the area `a` \[m²\] and the irradiance `E` has `q E / a`. That holds for patches that no line has met, too,
-//! whose own estimate is zero. The grains come from the standard errors of a patch and its neighbours, `Σ σ²a² / Σ E a`.
+//! whose own estimate is zero. The grains come from the standard errors of a patch and its neighbors, `Σ σ²a² / Σ E a`.
 //!
 //! A patch so small that hardly a grain was to be expected says nothing: it is black, or by far too bright. Where such patches have
 //! no smooth surface around them, they show what is around them beyond edges.
@@ -19,7 +19,7 @@ use sir_geom::{Rgb, Side};
 
 use crate::display::mesh::DisplayMesh;
 
-/// How often patches take the mean of their neighbours. Each time adds the area of about ten of them to what a value
+/// How often patches take the mean of their neighbors. Each time adds the area of about ten of them to what a value
 /// stands for, so that 10 % of noise become 1 %.
 const PASSES: usize = 10;
 
@@ -32,7 +32,7 @@ const REAL: f64 = 3.0;
 /// By how many standard errors of a patch what is shown may differ from what was computed.
 const FARTHEST: f64 = 3.0;
 
-/// Area of independent patches whose mean is as good as that over all neighbours of a patch, in units of their sum:
+/// Area of independent patches whose mean is as good as that over all neighbors of a patch, in units of their sum:
 /// corners count some of them twice, and the middle one three times.
 const RING: f64 = 0.65;
 
@@ -57,7 +57,7 @@ impl DisplayMesh<'_> {
     /// The irradiance \[W/m²\] of every [`SideId`](sir_mesh::SideId) without the noise, for pictures; the mesh is that of the
     /// irradiance as it was computed, and `errors` are its standard errors.
     ///
-    /// Neighbours are patches that share a vertex of the mesh, and so belong to one smooth surface; for patches on which hardly
+    /// Neighbors are patches that share a vertex of the mesh, and so belong to one smooth surface; for patches on which hardly
     /// any light was to be expected to arrive, those that share a position. No value moves by more than three standard
     /// errors. The result is the same for any number of threads.
     ///
@@ -132,7 +132,7 @@ impl DisplayMesh<'_> {
     }
 }
 
-/// One more mean over the neighbours of a patch.
+/// One more mean over the neighbors of a patch.
 fn pass(ring: &Ring, now: &[State], areas: &[f64], grain: Rgb, i: usize) -> State {
     let own = now[i];
     // The share that is taken over from others.

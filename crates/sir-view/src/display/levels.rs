@@ -6,9 +6,9 @@
 use std::collections::HashMap;
 
 use glam::DVec2;
-use sir_geom::{Barycentric, ColourMap, Material, Rgb, Scene, Side, Texture, TextureId, TriangleId};
+use sir_geom::{Barycentric, ColorMap, Material, Rgb, Scene, Side, Texture, TextureId, TriangleId};
 
-/// The textures that colour surfaces, each with its smaller images, down to a single texel. Together they use 1.4 bytes per texel.
+/// The textures that color surfaces, each with its smaller images, down to a single texel. Together they use 1.4 bytes per texel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Levels {
     smaller: HashMap<(TextureId, bool), Vec<Texture>>,
@@ -18,7 +18,7 @@ impl Levels {
     pub(super) fn of(scene: &Scene) -> Self {
         let mut smaller = HashMap::new();
         for material in scene.materials() {
-            for ColourMap { map, .. } in
+            for ColorMap { map, .. } in
                 [material.reflectance_map, material.exitance_map].into_iter().flatten()
             {
                 let by_alpha = counts_by_alpha(material, &map);
@@ -42,8 +42,8 @@ impl Levels {
     /// Reflectance of a triangle about a point, on the mean over a width \[m\].
     pub(super) fn reflectance(&self, scene: &Scene, t: TriangleId, point: Barycentric, width: f64) -> Rgb {
         let material = scene.material(t);
-        let colour = material.reflectance_map.and_then(|map| self.colour(scene, t, &map, point, width));
-        scene.tinted(t, point, colour.unwrap_or(material.reflectance))
+        let color = material.reflectance_map.and_then(|map| self.color(scene, t, &map, point, width));
+        scene.tinted(t, point, color.unwrap_or(material.reflectance))
     }
 
     /// Exitance \[W/m²\] of a side of a triangle about a point, likewise.
@@ -57,14 +57,14 @@ impl Levels {
     ) -> Rgb {
         let mean = scene.exitance(t, side);
         let map = scene.material(t).exitance_map.filter(|_| mean != Rgb::ZERO);
-        map.and_then(|map| self.colour(scene, t, &map, point, width)).unwrap_or(mean)
+        map.and_then(|map| self.color(scene, t, &map, point, width)).unwrap_or(mean)
     }
 
-    fn colour(
+    fn color(
         &self,
         scene: &Scene,
         t: TriangleId,
-        ColourMap { map, factor }: &ColourMap,
+        ColorMap { map, factor }: &ColorMap,
         point: Barycentric,
         width: f64,
     ) -> Option<Rgb> {
@@ -72,13 +72,13 @@ impl Levels {
         let smaller = self.smaller.get(&(map.texture, counts_by_alpha(scene.material(t), map)))?;
         let place = a + point.v * (b - a) + point.w * (c - a);
         let texels = DVec2::from(texture.size().map(f64::from)).element_product();
-        // Texels in a square metre.
+        // Texels in a square meter.
         let density = texels * (b - a).perp_dot(c - a).abs() / (2.0 * scene.area(t));
         // A width of one texel is seen on the texture itself, one of two texels on the first smaller image.
         let level = (width * density.sqrt()).log2().clamp(0.0, smaller.len() as f64);
         let of_level = |level: usize| {
             let image = level.checked_sub(1).map_or(texture, |level| &smaller[level]);
-            image.colour_at(place, map.wrap)
+            image.color_at(place, map.wrap)
         };
         let (whole, part) = (level as usize, level.fract());
         let below = of_level(whole);
@@ -86,7 +86,7 @@ impl Levels {
     }
 }
 
-/// Whether texels count by their opacity: where the image itself says where there is a surface, the colour beside it is nobody's.
+/// Whether texels count by their opacity: where the image itself says where there is a surface, the color beside it is nobody's.
 fn counts_by_alpha(material: &Material, map: &sir_geom::TextureMap) -> bool {
     material.opacity.map.as_ref() == Some(map)
 }

@@ -26,7 +26,7 @@ pub struct Piece<'a> {
     pub side: Side,
     /// The side of the patch.
     pub id: SideId,
-    /// Numbers of vertices, counter-clockwise seen from the side. Empty for a patch smaller than the precision of
+    /// Numbers of vertices, counterclockwise seen from the side. Empty for a patch smaller than the precision of
     /// the coordinates.
     pub triangles: &'a [[u32; 3]],
 }
@@ -38,8 +38,8 @@ pub struct Piece<'a> {
 ///
 /// A vertex has the mean irradiance of the patches around it that belong to one smooth surface, which are those
 /// that continue each other across an edge with nothing between them, bent by less than 30°. The mean is weighted by the angle at the vertex over
-/// the distance to the patch's centre. On a regular subdivision it reproduces a linear field. It is the
-/// irradiance that is averaged and not the radiosity, so that colours do not run into each other where materials
+/// the distance to the patch's center. On a regular subdivision it reproduces a linear field. It is the
+/// irradiance that is averaged and not the radiosity, so that colors do not run into each other where materials
 /// change: `B = M + ρE` is evaluated with the material, and the texture, of each triangle.
 #[derive(Clone, Debug)]
 pub struct DisplayMesh<'a> {
@@ -87,7 +87,7 @@ impl<'a> DisplayMesh<'a> {
         &self.vertices
     }
 
-    /// All triangles: numbers of vertices, counter-clockwise seen from the side that they show.
+    /// All triangles: numbers of vertices, counterclockwise seen from the side that they show.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles

@@ -1,4 +1,4 @@
-//! The patches of one triangle as polygons that share all points with their neighbours.
+//! The patches of one triangle as polygons that share all points with their neighbors.
 
 use glam::DVec3;
 use sir_geom::{Scene, TriangleId};
@@ -8,7 +8,7 @@ use crate::display::seams::Seams;
 
 /// One triangle, its patches and the points on its rim. Reused from triangle to triangle.
 ///
-/// *Nodes* are numbered within the triangle: first those of the rim, counter-clockwise from the first corner, then
+/// *Nodes* are numbered within the triangle: first those of the rim, counterclockwise from the first corner, then
 /// the inner corners of patches.
 #[derive(Default)]
 pub(super) struct Outline {
@@ -98,7 +98,7 @@ impl Outline {
         [self.parts[next.saturating_sub(1)], self.parts.get(next).copied().unwrap_or(0)]
     }
 
-    /// The polygon of a patch, counter-clockwise seen from the front. Has fewer than three nodes if the patch is
+    /// The polygon of a patch, counterclockwise seen from the front. Has fewer than three nodes if the patch is
     /// smaller than the tolerance of the mesh.
     pub(super) fn polygon(
         &self,

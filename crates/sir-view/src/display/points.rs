@@ -49,7 +49,7 @@ impl Weld {
     }
 }
 
-/// A k-d tree over points, for those near a segment. A grid would need one cell size for millimetres and halls.
+/// A k-d tree over points, for those near a segment. A grid would need one cell size for millimeters and halls.
 pub(super) struct PointTree<'a> {
     points: &'a [DVec3],
     /// Point numbers; a node is a range of them, its children the two halves.

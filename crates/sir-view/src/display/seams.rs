@@ -1,6 +1,6 @@
 //! Seams: the edges of triangles, each cut at every point that lies on it.
 //!
-//! Neighbouring triangles are cut into different numbers of parts, and files have T-junctions of their own. A seam
+//! Neighboring triangles are cut into different numbers of parts, and files have T-junctions of their own. A seam
 //! knows *all* points on an edge, from whatever triangle, so that the pieces on its sides can share them.
 
 use sir_geom::{Scene, TriangleId};
@@ -46,7 +46,7 @@ struct TriangleEdge {
 impl Seams {
     pub(super) fn new(scene: &Scene, mesh: &PatchMesh) -> Self {
         let tolerance = TOLERANCE * scene.bounding_sphere().radius;
-        let mut weld = Weld::new(scene.bounding_sphere().centre, tolerance);
+        let mut weld = Weld::new(scene.bounding_sphere().center, tolerance);
         let corners: Vec<u32> = scene.vertices().iter().map(|&p| weld.add(p)).collect();
         let positions: Vec<DVec3> = scene.vertices().to_vec();
 

@@ -95,7 +95,7 @@ impl Groups {
         }
     }
 
-    /// Unites what faces each other across the gaps between neighbouring sheets, if that is nearly flat.
+    /// Unites what faces each other across the gaps between neighboring sheets, if that is nearly flat.
     fn join_sheets(&mut self, scene: &Scene, sheets: &[Sheet]) {
         for (i, sheet) in sheets.iter().enumerate() {
             let next = &sheets[(i + 1) % sheets.len()];

@@ -30,10 +30,10 @@ impl Canvas {
     }
 
     /// Fills the pixels from `x.start` to before `x.end`, and likewise in `y`.
-    pub(super) fn fill(&mut self, x: std::ops::Range<u32>, y: std::ops::Range<u32>, colour: Rgb<u8>) {
+    pub(super) fn fill(&mut self, x: std::ops::Range<u32>, y: std::ops::Range<u32>, color: Rgb<u8>) {
         for y in y.start..y.end.min(self.image.height()) {
             for x in x.start..x.end.min(self.image.width()) {
-                self.image.put_pixel(x, y, colour);
+                self.image.put_pixel(x, y, color);
             }
         }
     }
@@ -55,7 +55,7 @@ impl Canvas {
         text.chars().map(|c| font.h_advance(font.glyph_id(c))).sum()
     }
 
-    /// Writes a line of text, vertically centred at `y`.
+    /// Writes a line of text, vertically centerd at `y`.
     pub(super) fn write(&mut self, text: &str, (x, y): (f32, f32), anchor: Anchor, size: f32) {
         let mut x = match anchor {
             Anchor::Start => x,

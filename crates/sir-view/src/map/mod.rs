@@ -1,7 +1,7 @@
-//! Maps: values on a grid in false colours, with a scale.
+//! Maps: values on a grid in false colors, with a scale.
 
 mod canvas;
-mod colours;
+mod colors;
 
 use std::io;
 use std::path::Path;
@@ -12,7 +12,7 @@ use image::{ExtendedColorType, ImageEncoder, Rgb};
 use crate::atomic_file::write_atomically;
 use crate::error::ViewError;
 use canvas::{Anchor, Canvas};
-use colours::viridis;
+use colors::viridis;
 
 /// Values on a grid of equal cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ const TEXT: f32 = 17.0;
 /// A cell without a value.
 const NOTHING: Rgb<u8> = Rgb([225, 225, 225]);
 
-/// Writes a map as PNG. Cells without a value are grey.
+/// Writes a map as PNG. Cells without a value are gray.
 ///
 /// # Errors
 ///
@@ -71,13 +71,13 @@ fn draw(map: &Map) -> Result<Canvas, ab_glyph::InvalidFont> {
     canvas.write(&map.subtitle, (middle, 56.0), Anchor::Middle, TEXT);
 
     let (least, most) = range(&map.values);
-    let colour = |value: f64| viridis((value - least) / (most - least));
+    let color = |value: f64| viridis((value - least) / (most - least));
     let place = |i: usize, n: usize, length: u32| (i as f64 / n as f64 * f64::from(length)).round() as u32;
     for (cell, value) in map.values.iter().enumerate() {
         let (column, row) = (cell % columns, rows - 1 - cell / columns);
         let x = left + place(column, columns, width)..left + place(column + 1, columns, width);
         let y = above + place(row, rows, height)..above + place(row + 1, rows, height);
-        canvas.fill(x, y, value.map_or(NOTHING, colour));
+        canvas.fill(x, y, value.map_or(NOTHING, color));
     }
     canvas.frame(left..left + width, above..above + height);
     draw_axes(&mut canvas, map.size, [left, above], [width, height]);
@@ -105,20 +105,20 @@ fn extent(size: [f64; 2]) -> [u32; 2] {
     size.map(|length| (length * scale).round().max(LEAST) as u32)
 }
 
-/// Metres along the edges, from the lower left corner.
+/// Meters along the edges, from the lower left corner.
 fn draw_axes(canvas: &mut Canvas, size: [f64; 2], [left, above]: [u32; 2], [width, height]: [u32; 2]) {
     let bottom = above + height;
     let steps = [width, height].map(|pixels| f64::from(pixels) / 70.0);
     let step = step((size[0] / steps[0]).max(size[1] / steps[1]));
-    for metres in multiples(step, 0.0, size[0]) {
-        let x = left + (metres / size[0] * f64::from(width)).round() as u32;
+    for meters in multiples(step, 0.0, size[0]) {
+        let x = left + (meters / size[0] * f64::from(width)).round() as u32;
         canvas.fill(x..x + 1, bottom..bottom + 6, canvas::INK);
-        canvas.write(&number(metres, step), (x as f32, bottom as f32 + 17.0), Anchor::Middle, TEXT);
+        canvas.write(&number(meters, step), (x as f32, bottom as f32 + 17.0), Anchor::Middle, TEXT);
     }
-    for metres in multiples(step, 0.0, size[1]) {
-        let y = bottom - (metres / size[1] * f64::from(height)).round() as u32;
+    for meters in multiples(step, 0.0, size[1]) {
+        let y = bottom - (meters / size[1] * f64::from(height)).round() as u32;
         canvas.fill(left - 6..left, y..y + 1, canvas::INK);
-        canvas.write(&number(metres, step), (left as f32 - 10.0, y as f32), Anchor::End, TEXT);
+        canvas.write(&number(meters, step), (left as f32 - 10.0, y as f32), Anchor::End, TEXT);
     }
     canvas.write("m", ((left + width / 2) as f32, bottom as f32 + 40.0), Anchor::Middle, TEXT);
 }
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_have_the_colours_of_their_values_with_the_first_row_below() {
+    fn cells_have_the_colors_of_their_values_with_the_first_row_below() {
         let drawn = draw(&map(2, [2.0, 2.0], vec![Some(0.0), None, Some(50.0), Some(100.0)])).unwrap();
         let [width, height] = extent([2.0, 2.0]);
         let at = |x: f64, y: f64| {

@@ -24,7 +24,7 @@ impl Table {
     /// The table of a solution: the irradiance `E` \[W/m²\] of every [`SideId`](sir_mesh::SideId), and its
     /// standard error.
     ///
-    /// A two-sided patch has two rows, with opposite normals. A face that is one patch has the centre and the mean
+    /// A two-sided patch has two rows, with opposite normals. A face that is one patch has the center and the mean
     /// normal of all its triangles, and the number of the first one.
     ///
     /// # Panics
@@ -42,14 +42,14 @@ impl Table {
                 patch: patch.0,
                 triangle: scene.triangle(t).source,
                 area: mesh.patch_area(t),
-                centre: DVec3::ZERO,
+                center: DVec3::ZERO,
                 normal: DVec3::ZERO,
                 radiosity: mesh.exitance(scene, t, patch, side) + reflectance * e,
                 irradiance: e,
                 error: reflectance * se,
             });
         });
-        // Centres and normals are means over all triangles of a patch, which are several if faces are patches.
+        // Centers and normals are means over all triangles of a patch, which are several if faces are patches.
         for t in scene.triangle_ids() {
             let (corners, normal) = (scene.corners(t), scene.normal(t));
             let patches = mesh.patches_of(t);
@@ -59,7 +59,7 @@ impl Table {
                 for (side, outward) in [(Side::Front, normal), (Side::Back, -normal)] {
                     if let Some(id) = mesh.side_of(t, patch, side) {
                         let row = &mut rows[id.index()];
-                        row.centre += part / row.area * (c[0] + c[1] + c[2]) / 3.0;
+                        row.center += part / row.area * (c[0] + c[1] + c[2]) / 3.0;
                         row.normal += part / row.area * outward;
                     }
                 }

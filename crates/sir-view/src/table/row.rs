@@ -16,8 +16,8 @@ pub struct Row {
     pub triangle: u32,
     /// Area \[m²\], gaps included.
     pub area: f64,
-    /// Centre of area \[m\].
-    pub centre: DVec3,
+    /// Center of area \[m\].
+    pub center: DVec3,
     /// Unit normal on this side.
     pub normal: DVec3,
     /// Radiosity `B` \[W/m²\] of what is not gap; with a texture, its mean.
@@ -41,7 +41,7 @@ impl Row {
     /// The columns after the whole numbers.
     pub(super) fn numbers(&self) -> [f64; COLUMNS.len() - WHOLE_COLUMNS] {
         let mut out = [self.area; COLUMNS.len() - WHOLE_COLUMNS];
-        let vectors = [self.centre, self.normal, self.radiosity, self.irradiance, self.error];
+        let vectors = [self.center, self.normal, self.radiosity, self.irradiance, self.error];
         for (slot, x) in out[1..].iter_mut().zip(vectors.iter().flat_map(|v| v.to_array())) {
             *slot = x;
         }
@@ -54,7 +54,7 @@ impl Row {
             patch,
             triangle,
             area: x[0],
-            centre: vector(1),
+            center: vector(1),
             normal: vector(4),
             radiosity: vector(7),
             irradiance: vector(10),

@@ -1,4 +1,4 @@
-//! Texture coordinates and colours of vertices.
+//! Texture coordinates and colors of vertices.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -17,19 +17,19 @@ use crate::load::texture::Placement;
 /// The most sets of coordinates of a material: it has two textures.
 pub(super) const MOST_SETS: usize = 2;
 
-/// Attributes by their accessors, which primitives often share. Colours as they are in the file.
+/// Attributes by their accessors, which primitives often share. Colors as they are in the file.
 #[derive(Default)]
 pub(super) struct Attributes {
     places: HashMap<usize, Rc<[Vec2]>>,
-    colours: HashMap<usize, Rc<[Vec4]>>,
+    colors: HashMap<usize, Rc<[Vec4]>>,
 }
 
 /// What varies over the triangles of a primitive, vertex by vertex.
 pub(super) struct Values {
     /// The sets of coordinates, as many as are there in a row, and what becomes of each.
     pub(super) coordinates: Vec<(Rc<[Vec2]>, Placement)>,
-    /// Colours, unless all are white.
-    pub(super) colours: Option<Rc<[Vec4]>>,
+    /// Colors, unless all are white.
+    pub(super) colors: Option<Rc<[Vec4]>>,
 }
 
 impl Reader<'_> {
@@ -53,16 +53,16 @@ impl Reader<'_> {
         }
         if primitive.attributes.contains_key(&Checked::Valid(Semantic::Colors(1))) {
             self.notes
-                .count("mesh primitives have more than one set of colours, of which the first is used", 1);
+                .count("mesh primitives have more than one set of colors, of which the first is used", 1);
         }
-        let colours = match primitive.attributes.get(&Checked::Valid(Semantic::Colors(0))) {
+        let colors = match primitive.attributes.get(&Checked::Valid(Semantic::Colors(0))) {
             Some(&accessor) => {
-                let colours = self.colours(accessor, vertices, shared, what)?;
-                self.tints(&colours, material.alpha)
+                let colors = self.colors(accessor, vertices, shared, what)?;
+                self.tints(&colors, material.alpha)
             }
             None => None,
         };
-        Ok(Values { coordinates, colours })
+        Ok(Values { coordinates, colors })
     }
 
     fn places(
@@ -81,7 +81,7 @@ impl Reader<'_> {
         })
     }
 
-    fn colours(
+    fn colors(
         &mut self,
         accessor: Index<Accessor>,
         vertices: usize,
@@ -89,16 +89,16 @@ impl Reader<'_> {
         what: &str,
     ) -> Result<Rc<[Vec4]>, LoadError> {
         use ComponentType::{F32, U8, U16};
-        let what = format!("{what}, colours");
-        self.attribute(accessor, vertices, &mut shared.colours, &what, |reader| {
+        let what = format!("{what}, colors");
+        self.attribute(accessor, vertices, &mut shared.colors, &what, |reader| {
             let definition: Option<&Accessor> = reader.root.get(accessor);
             let has_alpha = definition.is_some_and(|a| matches!(a.type_, Checked::Valid(Type::Vec4)));
             if has_alpha {
-                let colours = reader.elements::<4>(accessor, Type::Vec4, &[F32, U8, U16], &what)?;
-                Ok(colours.into_iter().map(|c| DVec4::from_array(c).as_vec4()).collect())
+                let colors = reader.elements::<4>(accessor, Type::Vec4, &[F32, U8, U16], &what)?;
+                Ok(colors.into_iter().map(|c| DVec4::from_array(c).as_vec4()).collect())
             } else {
-                let colours = reader.elements::<3>(accessor, Type::Vec3, &[F32, U8, U16], &what)?;
-                Ok(colours.into_iter().map(|[r, g, b]| DVec4::new(r, g, b, 1.0).as_vec4()).collect())
+                let colors = reader.elements::<3>(accessor, Type::Vec3, &[F32, U8, U16], &what)?;
+                Ok(colors.into_iter().map(|[r, g, b]| DVec4::new(r, g, b, 1.0).as_vec4()).collect())
             }
         })
     }
@@ -117,7 +117,7 @@ impl Reader<'_> {
             None => {
                 let values = read(self)?;
                 self.coordinates += values.len();
-                self.check_size("texture coordinates and colours", self.coordinates)?;
+                self.check_size("texture coordinates and colors", self.coordinates)?;
                 Rc::clone(known.entry(accessor.value()).or_insert(values))
             }
         };
@@ -127,18 +127,18 @@ impl Reader<'_> {
         Err(self.invalid(format!("{what}: there are {} for {vertices} vertices", values.len())))
     }
 
-    /// What colours multiply their material by; `None` if that changes nothing.
-    fn tints(&mut self, colours: &Rc<[Vec4]>, alpha: Alpha) -> Option<Rc<[Vec4]>> {
-        let is_open = colours.iter().any(|colour| colour.w < 1.0);
+    /// What colors multiply their material by; `None` if that changes nothing.
+    fn tints(&mut self, colors: &Rc<[Vec4]>, alpha: Alpha) -> Option<Rc<[Vec4]>> {
+        let is_open = colors.iter().any(|color| color.w < 1.0);
         if alpha == Alpha::Mask && is_open {
             self.notes.count(
-                "mesh primitives have colours with alpha, which was ignored because their material is a mask",
+                "mesh primitives have colors with alpha, which was ignored because their material is a mask",
                 1,
             );
         }
         let tints = match alpha {
-            Alpha::Opaque | Alpha::Mask if is_open => colours.iter().map(|c| c.with_w(1.0)).collect(),
-            _ => Rc::clone(colours),
+            Alpha::Opaque | Alpha::Mask if is_open => colors.iter().map(|c| c.with_w(1.0)).collect(),
+            _ => Rc::clone(colors),
         };
         tints.iter().any(|&tint| tint != Vec4::ONE).then_some(tints)
     }
@@ -146,4 +146,4 @@ impl Reader<'_> {
 
 /// A kind of warning.
 const NO_COORDINATES_OF_PRIMITIVES: &str =
-    "mesh primitives lack coordinates for a texture, and have its mean colour";
+    "mesh primitives lack coordinates for a texture, and have its mean color";

@@ -33,7 +33,7 @@ pub(super) struct Known {
     pub(super) alpha: Alpha,
 }
 
-/// What becomes of the alpha of vertex colours.
+/// What becomes of the alpha of vertex colors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Alpha {
     /// It has no meaning.

@@ -23,15 +23,15 @@ use crate::texture::Wrap;
 
 impl Reader<'_> {
     /// The material at an index of the file, added when it is first used; `None` is the default material, which is white
-    /// under colours of vertices.
+    /// under colors of vertices.
     pub(super) fn material(
         &mut self,
         index: Option<Index<Source>>,
-        is_coloured: bool,
+        is_colored: bool,
     ) -> Result<Known, LoadError> {
-        let key = (index.map(|i| i.value()), index.is_none() && is_coloured);
+        let key = (index.map(|i| i.value()), index.is_none() && is_colored);
         if key == (None, false) {
-            self.notes.count("mesh primitives have no material, and are made grey", 1);
+            self.notes.count("mesh primitives have no material, and are made gray", 1);
         }
         if let Some(known) = self.materials.get(&key) {
             return Ok(known.clone());
@@ -43,7 +43,7 @@ impl Reader<'_> {
                 (self.convert(source, &mut sets)?, alpha(source))
             }
             None => {
-                let reflectance = if is_coloured { MAX_REFLECTANCE } else { DEFAULT_REFLECTANCE };
+                let reflectance = if is_colored { MAX_REFLECTANCE } else { DEFAULT_REFLECTANCE };
                 (Material::diffuse("", Rgb::splat(reflectance)), Alpha::Opaque)
             }
         };
@@ -53,15 +53,15 @@ impl Reader<'_> {
         Ok(known)
     }
 
-    /// Base colour to reflectance, emitted radiance `L` to exitance `π L` (the emitted light of glTF is a
+    /// Base color to reflectance, emitted radiance `L` to exitance `π L` (the emitted light of glTF is a
     /// radiance in cd/m²; specification, section 3.9.3).
     ///
-    /// The base colour of a metal is what it reflects as a mirror. As a diffuse reflectance it sends the right amount of light into
+    /// The base color of a metal is what it reflects as a mirror. As a diffuse reflectance it sends the right amount of light into
     /// the wrong directions, while none would make metals black.
     fn convert(&mut self, source: &Source, sets: &mut Vec<Coordinates>) -> Result<Material, LoadError> {
         let name = source.name.as_deref().unwrap_or_default();
         self.note_ignored(source, name);
-        let ([r, g, b, a], info) = base_colour(source);
+        let ([r, g, b, a], info) = base_color(source);
         let base = self.layer(info, sets)?;
         let mut radiance = Rgb::from_array(source.emissive_factor.0.map(f64::from));
         let emissive = match radiance == Rgb::ZERO {
@@ -72,8 +72,8 @@ impl Reader<'_> {
             radiance *= f64::from(strength.emissive_strength.0);
         }
         let mut material = Material::diffuse(name, Rgb::ZERO);
-        (material.reflectance, material.reflectance_map) = texture::colour(Rgb::new(r, g, b), base.as_ref());
-        (material.exitance, material.exitance_map) = texture::colour(PI * radiance, emissive.as_ref());
+        (material.reflectance, material.reflectance_map) = texture::color(Rgb::new(r, g, b), base.as_ref());
+        (material.exitance, material.exitance_map) = texture::color(PI * radiance, emissive.as_ref());
         material.opacity = match alpha(source) {
             Alpha::Opaque => Opacity::default(),
             Alpha::Mask => {
@@ -92,10 +92,8 @@ impl Reader<'_> {
     fn note_ignored(&mut self, source: &Source, name: &str) {
         let name = notes::quoted(name);
         if source.extensions.as_ref().is_some_and(|e| e.unlit.is_some()) {
-            self.notes.name(
-                "materials are unlit, which has no meaning here: they reflect their base colour",
-                &name,
-            );
+            self.notes
+                .name("materials are unlit, which has no meaning here: they reflect their base color", &name);
         }
         if source.normal_texture.is_some()
             || source.occlusion_texture.is_some()
@@ -180,11 +178,11 @@ impl Reader<'_> {
     }
 }
 
-/// Base colour with alpha, and its texture.
+/// Base color with alpha, and its texture.
 ///
-/// Of a material with `KHR_materials_pbrSpecularGlossiness` it is the diffuse colour; where this is black, as that of metals
+/// Of a material with `KHR_materials_pbrSpecularGlossiness` it is the diffuse color; where this is black, as that of metals
 /// is, the specular one.
-fn base_colour(source: &Source) -> ([f64; 4], Option<&Info>) {
+fn base_color(source: &Source) -> ([f64; 4], Option<&Info>) {
     let glossy = source.extensions.as_ref().and_then(|e| e.pbr_specular_glossiness.as_ref());
     let (factor, info) = match glossy {
         Some(glossy) if glossy.diffuse_factor.0[..3] == [0.0; 3] => {
@@ -226,7 +224,7 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
 
 /// Coordinates are scaled, then turned, then moved (`KHR_texture_transform`).
 ///
-/// The turn is counter-clockwise in the plane of the image, whose second axis points down; the matrix in the text of the extension has
+/// The turn is counterclockwise in the plane of the image, whose second axis points down; the matrix in the text of the extension has
 /// the other sign, which its authors and all readers take for a mistake (Khronos' glTF issue 1563).
 fn coordinates(info: &Info) -> Coordinates {
     let plain = Coordinates { set: info.tex_coord, placement: Placement::PLAIN };

@@ -53,12 +53,12 @@ impl Reader<'_> {
         let triangles = Triangles { mode, corners: corners.len() };
         self.triangles += triangles.count();
         self.check_size("triangles", self.triangles)?;
-        let is_coloured = primitive.attributes.contains_key(&Checked::Valid(Semantic::Colors(0)));
-        let material = self.material(primitive.material, is_coloured)?;
-        let Values { coordinates, colours } =
+        let is_colored = primitive.attributes.contains_key(&Checked::Valid(Semantic::Colors(0)));
+        let material = self.material(primitive.material, is_colored)?;
+        let Values { coordinates, colors } =
             self.values(primitive, &material, vertices.len(), &mut shared.attributes, what)?;
-        self.coordinates += triangles.count() * (coordinates.len() + usize::from(colours.is_some()));
-        self.check_size("texture coordinates and colours", self.coordinates)?;
+        self.coordinates += triangles.count() * (coordinates.len() + usize::from(colors.is_some()));
+        self.check_size("texture coordinates and colors", self.coordinates)?;
         // A mirror image turns fronts into backs unless the order of the corners is turned, too.
         let mirrored = to_world.matrix3.determinant() < 0.0;
         for i in 0..triangles.count() {
@@ -67,12 +67,12 @@ impl Reader<'_> {
                 triangle.swap(1, 2);
             }
             self.builder.add_polygon(&triangle.map(|v| vertices[v]), material.id);
-            if !coordinates.is_empty() || colours.is_some() {
+            if !coordinates.is_empty() || colors.is_some() {
                 let mut sets = [[Vec2::ZERO; 3]; MOST_SETS];
                 for (set, (places, placement)) in sets.iter_mut().zip(&coordinates) {
                     *set = triangle.map(|v| placement.apply(places[v]));
                 }
-                let tint = colours.as_ref().map(|colours| triangle.map(|v| colours[v]));
+                let tint = colors.as_ref().map(|colors| triangle.map(|v| colors[v]));
                 self.builder.set_corners(&sets[..coordinates.len().min(MOST_SETS)], tint);
             }
         }
@@ -148,7 +148,7 @@ impl Triangles {
         }
     }
 
-    /// Corners of triangle `i`, counter-clockwise seen from its front (glTF 2.0 specification, section 3.7.2.1).
+    /// Corners of triangle `i`, counterclockwise seen from its front (glTF 2.0 specification, section 3.7.2.1).
     fn get(&self, i: usize) -> [usize; 3] {
         match self.mode {
             Mode::TriangleStrip => [i, i + 1 + i % 2, i + 2 - i % 2],

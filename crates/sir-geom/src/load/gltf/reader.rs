@@ -22,14 +22,14 @@ pub(super) struct Reader<'a> {
     pub(super) options: LoadOptions,
     pub(super) builder: &'a mut SceneBuilder,
     pub(super) notes: &'a mut Notes,
-    /// Materials met so far by their index in the file; no index stands for the default one, which comes in two colours.
+    /// Materials met so far by their index in the file; no index stands for the default one, which comes in two colors.
     pub(super) materials: BTreeMap<(Option<usize>, bool), Known>,
     /// Images met so far; `None` for one that cannot be read.
     pub(super) textures: BTreeMap<Pixels, Option<Image>>,
     pub(super) images: Images,
     /// How many were added so far.
     pub(super) vertices: usize,
-    /// Coordinates of textures and colours.
+    /// Coordinates of textures and colors.
     pub(super) coordinates: usize,
     pub(super) triangles: usize,
     pub(super) primitives: usize,

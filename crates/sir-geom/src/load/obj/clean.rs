@@ -1,7 +1,7 @@
 //! Rewrites OBJ and MTL text into the part of the formats that `tobj` reads without surprises.
 //!
 //! `tobj` 4.0 takes a comment after a value for a value, makes triangles of the polylines `l 1 2 3`, wants blanks
-//! rather than tabs after some keywords, and panics at colours with fewer than three numbers. So it gets only
+//! rather than tabs after some keywords, and panics at colors with fewer than three numbers. So it gets only
 //! the statements that a scene is made of, in their plainest form, each on its line of the original.
 
 use std::borrow::Cow;
@@ -19,7 +19,7 @@ pub(super) struct Obj {
     pub(super) libraries: Vec<String>,
     /// What stands behind each `usemtl`.
     pub(super) used_materials: BTreeSet<String>,
-    /// Texture coordinates and colours.
+    /// Texture coordinates and colors.
     pub(super) corners: Corners,
     /// Statements `p` and `l`, and faces with one or two corners.
     pub(super) points_and_lines: usize,
@@ -89,7 +89,7 @@ pub(super) fn mtl(text: &str) -> Result<Mtl, (usize, String)> {
         };
         let text = &mut plain.text;
         match (known, rest.split_whitespace().count()) {
-            // One number stands for three (the MTL specification has this for all colours).
+            // One number stands for three (the MTL specification has this for all colors).
             ("Kd" | "Ke", 1) => push_words(text, known, [rest; 3].into_iter()),
             ("Kd" | "Ke", 0 | 2) => {
                 let start = shortened(&statement, 80);
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_have_three_numbers() {
+    fn colors_have_three_numbers() {
         let plain = mtl("newmtl  a\n\tkd 0.5\nKe 1 2 3 # x\nD -halo 0.3\nillum 2\nbump x.png").unwrap();
         assert_eq!(plain.text, "newmtl a\nKd 0.5 0.5 0.5\nKe 1 2 3\nd 0.3\n\n\n");
         assert_eq!(plain.ignored, ["bump".to_owned()].into());

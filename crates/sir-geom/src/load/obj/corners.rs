@@ -1,4 +1,4 @@
-//! Texture coordinates and colours, which `tobj` does not get to see: corners come out of it in the order of the file.
+//! Texture coordinates and colors, which `tobj` does not get to see: corners come out of it in the order of the file.
 
 use glam::{Vec2, Vec4};
 
@@ -13,24 +13,24 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Corners {
     /// Vertices so far.
     vertices: usize,
-    /// Colours of the vertices up to the last that has one, as they are in the file.
-    colours: Vec<[f32; 3]>,
+    /// Colors of the vertices up to the last that has one, as they are in the file.
+    colors: Vec<[f32; 3]>,
     places: Vec<Vec2>,
     /// Numbers of vertex and coordinates, corner by corner.
     corners: Vec<[u32; 2]>,
-    /// Whether colours go up to one, as they should, or 255.
+    /// Whether colors go up to one, as they should, or 255.
     in_bytes: bool,
 }
 
 impl Corners {
-    /// Takes in the words of a `v` statement: three coordinates, and a colour if there are three more. What is no number makes it white.
+    /// Takes in the words of a `v` statement: three coordinates, and a color if there are three more. What is no number makes it white.
     pub(super) fn add_vertex<'a>(&mut self, words: impl Iterator<Item = &'a str>) {
-        let mut colour = words.skip(3).map(|word| word.parse().unwrap_or(f32::NAN));
-        if let (Some(r), Some(g), Some(b)) = (colour.next(), colour.next(), colour.next()) {
-            self.colours.resize(self.vertices, [1.0; 3]);
-            let is_colour = r.is_finite() && g.is_finite() && b.is_finite();
-            self.colours.push(if is_colour { [r, g, b] } else { [1.0; 3] });
-            self.in_bytes |= is_colour && (r > 1.0 || g > 1.0 || b > 1.0);
+        let mut color = words.skip(3).map(|word| word.parse().unwrap_or(f32::NAN));
+        if let (Some(r), Some(g), Some(b)) = (color.next(), color.next(), color.next()) {
+            self.colors.resize(self.vertices, [1.0; 3]);
+            let is_color = r.is_finite() && g.is_finite() && b.is_finite();
+            self.colors.push(if is_color { [r, g, b] } else { [1.0; 3] });
+            self.in_bytes |= is_color && (r > 1.0 || g > 1.0 || b > 1.0);
         }
         self.vertices += 1;
     }
@@ -56,8 +56,8 @@ impl Corners {
         }));
     }
 
-    pub(super) fn has_colours(&self) -> bool {
-        !self.colours.is_empty()
+    pub(super) fn has_colors(&self) -> bool {
+        !self.colors.is_empty()
     }
 
     /// The coordinates of a corner; `None` if it has none that are there.
@@ -66,15 +66,15 @@ impl Corners {
         self.places.get(place as usize).copied()
     }
 
-    /// The linear colour of the vertex of a corner, white if it has none.
+    /// The linear color of the vertex of a corner, white if it has none.
     ///
-    /// The format says nothing about the meaning of colours; what writes them writes what is seen on a screen.
-    pub(super) fn colour(&self, corner: usize) -> Vec4 {
+    /// The format says nothing about the meaning of colors; what writes them writes what is seen on a screen.
+    pub(super) fn color(&self, corner: usize) -> Vec4 {
         let vertex = self.corners.get(corner).map_or(NONE, |[vertex, _]| *vertex);
-        let colour = self.colours.get(vertex as usize).copied().unwrap_or([1.0; 3]);
-        let scale = if self.in_bytes && colour != [1.0; 3] { 255.0 } else { 1.0 };
+        let color = self.colors.get(vertex as usize).copied().unwrap_or([1.0; 3]);
+        let scale = if self.in_bytes && color != [1.0; 3] { 255.0 } else { 1.0 };
         let linear = |x: f32| srgb_to_linear_at(f64::from(x / scale).clamp(0.0, 1.0));
-        Rgb::from_array(colour.map(linear)).as_vec3().extend(1.0)
+        Rgb::from_array(color.map(linear)).as_vec3().extend(1.0)
     }
 }
 
@@ -95,20 +95,20 @@ mod tests {
         let places: Vec<_> = (0..7).map(|i| corners.place(i)).collect();
         assert_eq!(places, [Some(a), Some(b), None, None, None, None, None]);
         let half = srgb_to_linear_at(0.5) as f32;
-        assert_eq!(corners.colour(1), Vec4::new(1.0, half, 0.0, 1.0));
-        assert_eq!([0, 2, 3, 5].map(|i| corners.colour(i)), [Vec4::ONE; 4]);
+        assert_eq!(corners.color(1), Vec4::new(1.0, half, 0.0, 1.0));
+        assert_eq!([0, 2, 3, 5].map(|i| corners.color(i)), [Vec4::ONE; 4]);
     }
 
-    /// Found by the fuzzer: a colour that is no number was decoded for ever.
+    /// Found by the fuzzer: a color that is no number was decoded for ever.
     #[test]
-    fn what_is_no_colour_is_white() {
+    fn what_is_no_color_is_white() {
         let mut corners = Corners::default();
         for vertex in ["0 1 0 1 1 1d", "0 0 0 nan 0 0", "0 0 0 inf 0 0", "0 0 0 1 0 0"] {
             corners.add_vertex(vertex.split(' '));
         }
         corners.add_face("1 2 3 4".split(' '));
-        assert_eq!([0, 1, 2].map(|i| corners.colour(i)), [Vec4::ONE; 3]);
-        assert_eq!(corners.colour(3), Vec4::new(1.0, 0.0, 0.0, 1.0));
+        assert_eq!([0, 1, 2].map(|i| corners.color(i)), [Vec4::ONE; 3]);
+        assert_eq!(corners.color(3), Vec4::new(1.0, 0.0, 0.0, 1.0));
         assert!(srgb_to_linear_at(f64::NAN).is_nan());
     }
 }

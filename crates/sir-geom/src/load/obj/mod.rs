@@ -1,6 +1,6 @@
 //! Wavefront OBJ with material libraries (MTL).
 //!
-//! `Kd` is the reflectance, times `map_Kd` and the colours of vertices; `Ke`, times `map_Ke`, the radiance that the
+//! `Kd` is the reflectance, times `map_Kd` and the colors of vertices; `Ke`, times `map_Ke`, the radiance that the
 //! front emits: a file has no notion of sides, so both reflect and only the front emits. `d`, or else `1 − Tr`, times
 //! `map_d` is the opacity.
 //!
@@ -43,12 +43,12 @@ pub(super) fn read(
 ) -> Result<(), LoadError> {
     let obj = clean::obj(&String::from_utf8_lossy(&files::read_scene(path)?));
     notes.count("points and lines were skipped", obj.points_and_lines);
-    let mut library = mtl::Library::new(&obj.used_materials, obj.corners.has_colours(), options, builder);
+    let mut library = mtl::Library::new(&obj.used_materials, obj.corners.has_colors(), options, builder);
     for names in &obj.libraries {
         library.add(path, names, notes)?;
     }
     for name in obj.used_materials.iter().filter(|name| !library.by_name.contains_key(*name)) {
-        notes.name("materials are in no library, and are made grey", name);
+        notes.name("materials are in no library, and are made gray", name);
     }
     let models = parse(path, &obj.text, &library)?;
     let materials = library.finish();
@@ -110,7 +110,7 @@ fn add(
         builder.begin_group(if name == NO_OBJECT { "" } else { name });
         let known = mesh.material_id.map(|i| &materials[i]);
         let material = known.map(|known| known.id).unwrap_or_else(|| {
-            let reflectance = if corners.has_colours() { MAX_REFLECTANCE } else { DEFAULT_REFLECTANCE };
+            let reflectance = if corners.has_colors() { MAX_REFLECTANCE } else { DEFAULT_REFLECTANCE };
             let plain = Material::diffuse("", Rgb::splat(reflectance)).with_sides(Sides::Both);
             *default.get_or_insert_with(|| builder.add_material(options.sides.apply(plain)))
         });
@@ -125,21 +125,21 @@ fn add(
             let (face, behind) = rest.split_at(arity as usize);
             builder.add_polygon(face, material);
             if !paint(face, first, corners, placements, builder) {
-                notes.count("faces lack coordinates for a texture, and have its mean colour", 1);
+                notes.count("faces lack coordinates for a texture, and have its mean color", 1);
             }
             first += face.len();
             rest = behind;
         }
-        if mesh.material_id.is_none() && !corners.has_colours() {
+        if mesh.material_id.is_none() && !corners.has_colors() {
             notes.count(
-                "faces have no known material, and are made grey",
+                "faces have no known material, and are made gray",
                 mesh.face_arities.len() + triangles.len(),
             );
         }
     }
 }
 
-/// Gives the face that was added last, whose first corner has the number `first`, its coordinates and colours; `false` if some
+/// Gives the face that was added last, whose first corner has the number `first`, its coordinates and colors; `false` if some
 /// coordinates are absent.
 fn paint(
     face: &[VertexId],
@@ -155,8 +155,7 @@ fn paint(
         Some(places) => placements.iter().map(|p| places.iter().map(|&at| p.apply(at)).collect()).collect(),
         None => Vec::new(),
     };
-    let tint: Option<Vec<Vec4>> =
-        corners.has_colours().then(|| numbers().map(|i| corners.colour(i)).collect());
+    let tint: Option<Vec<Vec4>> = corners.has_colors().then(|| numbers().map(|i| corners.color(i)).collect());
     let tint = tint.filter(|tint| tint.iter().any(|&corner| corner != Vec4::ONE));
     if !sets.is_empty() || tint.is_some() {
         let sets: Vec<&[Vec2]> = sets.iter().map(|set| &set[..]).collect();

@@ -23,8 +23,8 @@ use crate::texture::Texture;
 pub(super) struct Library<'a> {
     /// Names of the materials to take in.
     wanted: &'a BTreeSet<String>,
-    /// Whether vertices have colours.
-    is_coloured: bool,
+    /// Whether vertices have colors.
+    is_colored: bool,
     options: LoadOptions,
     builder: &'a mut SceneBuilder,
     materials: Vec<Known>,
@@ -49,13 +49,13 @@ impl<'a> Library<'a> {
     /// A library that takes in the materials of these names.
     pub(super) fn new(
         wanted: &'a BTreeSet<String>,
-        is_coloured: bool,
+        is_colored: bool,
         options: LoadOptions,
         builder: &'a mut SceneBuilder,
     ) -> Self {
         Self {
             wanted,
-            is_coloured,
+            is_colored,
             options,
             builder,
             materials: Vec::new(),
@@ -137,9 +137,9 @@ impl<'a> Library<'a> {
         let reflectance = match source.diffuse {
             Some(factor) => Rgb::from_array(factor),
             None if base.is_some() => Rgb::ONE,
-            None if self.is_coloured => Rgb::splat(MAX_REFLECTANCE),
+            None if self.is_colored => Rgb::splat(MAX_REFLECTANCE),
             None => {
-                notes.name("materials have no diffuse colour, and are made grey", &source.name);
+                notes.name("materials have no diffuse color, and are made gray", &source.name);
                 Rgb::splat(DEFAULT_REFLECTANCE)
             }
         };
@@ -148,8 +148,8 @@ impl<'a> Library<'a> {
         let emissive = self.layer(mtl, map, false, sets, notes);
         let mask = self.layer(mtl, source.dissolve_texture.as_ref(), true, sets, notes);
         let mut material = Material::diffuse(&source.name, Rgb::ZERO).with_sides(Sides::Both);
-        (material.reflectance, material.reflectance_map) = texture::colour(reflectance, base.as_ref());
-        (material.exitance, material.exitance_map) = texture::colour(PI * radiance, emissive.as_ref());
+        (material.reflectance, material.reflectance_map) = texture::color(reflectance, base.as_ref());
+        (material.exitance, material.exitance_map) = texture::color(PI * radiance, emissive.as_ref());
         material.opacity = self.opacity(source, mask.as_ref(), notes);
         material
     }
@@ -188,8 +188,8 @@ impl<'a> Library<'a> {
             notes.name("textures are not in the folder of the scene, and were not read", &name);
             return None;
         };
-        let colours = (path.clone(), false);
-        let image = match self.textures.get(&colours).copied() {
+        let colors = (path.clone(), false);
+        let image = match self.textures.get(&colors).copied() {
             Some(None) => None,
             Some(Some(image)) if !is_mask || image.has_alpha() => Some(image),
             _ => self.image(path, &name, is_mask, notes),
@@ -219,11 +219,11 @@ impl<'a> Library<'a> {
     }
 }
 
-/// A mask from an image without alpha: the numbers of its colours are taken for what they are, without decoding.
+/// A mask from an image without alpha: the numbers of its colors are taken for what they are, without decoding.
 fn brightness_as_alpha(texture: &Texture) -> Option<Texture> {
     let [width, height] = texture.size();
     let mask = |&[r, g, b, _]: &[u8; 4]| {
-        // Weights of the luminance (ITU-R BT.709), in units that keep grey as it is.
+        // Weights of the luminance (ITU-R BT.709), in units that keep gray as it is.
         let sum = 2126 * u32::from(r) + 7152 * u32::from(g) + 722 * u32::from(b);
         [255, 255, 255, ((sum + 5000) / 10_000) as u8]
     };

@@ -9,11 +9,11 @@ const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 /// Each point by itself is uniform, so that a mean over the points is right on average; it converges faster than with independent
 /// points. How far off it is shows only by comparing sequences with different shifts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EvenPoints {
+pub struct R2Sequence {
     shift: [f64; 2],
 }
 
-impl EvenPoints {
+impl R2Sequence {
     /// Returns the sequence with this shift, a random point of the unit square.
     #[must_use]
     pub fn new(shift: [f64; 2]) -> Self {
@@ -47,7 +47,7 @@ mod tests {
         for (function, exact, variance) in functions {
             let errors: Vec<f64> = (0..repeats)
                 .map(|k| {
-                    let points = EvenPoints::new(streams.line(k).point());
+                    let points = R2Sequence::new(streams.line(k).point());
                     (0..n).map(|i| function(points.at(i))).sum::<f64>() / n as f64 - exact
                 })
                 .collect();

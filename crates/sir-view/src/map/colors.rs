@@ -1,4 +1,4 @@
-//! False colours.
+//! False colors.
 
 use image::Rgb;
 
@@ -13,8 +13,8 @@ const VIRIDIS: [[f64; 3]; 7] = [
     [-5.435_455_855_9, 4.645_852_612_2, 26.312_435_249_6],
 ];
 
-/// The colour of a number from 0 to 1 in *viridis* (Smith and van der Walt 2015), from dark violet to yellow: equal steps look equal, to
-/// the colour-blind too, and lightness alone tells more from less. By the polynomial of Zucker (2019), which is public domain.
+/// The color of a number from 0 to 1 in *viridis* (Smith and van der Walt 2015), from dark violet to yellow: equal steps look equal, to
+/// the color-blind too, and lightness alone tells more from less. By the polynomial of Zucker (2019), which is public domain.
 pub(super) fn viridis(t: f64) -> Rgb<u8> {
     let t = t.clamp(0.0, 1.0);
     let band = |k: usize| VIRIDIS.iter().rev().fold(0.0, |sum, coefficients| sum * t + coefficients[k]);
@@ -26,7 +26,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_begin_and_end_right_and_become_lighter_all_the_way() {
+    fn colors_begin_and_end_right_and_become_lighter_all_the_way() {
         // The published table begins and ends with (68, 1, 84) and (253, 231, 37).
         let near = |a: Rgb<u8>, b: [u8; 3]| a.0.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 5);
         assert!(near(viridis(0.0), [68, 1, 84]) && near(viridis(1.0), [253, 231, 37]));
