@@ -9,20 +9,9 @@ use sir_radiosity::{ModelError, SolveError};
 use sir_view::ViewError;
 use thiserror::Error;
 
+use crate::error_kind::ErrorKind;
 use crate::text::diagnostic::Diagnostics;
 use crate::view_factors::error::ViewFactorsError;
-
-/// What kind of failure an error is. It decides what a program does next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ErrorKind {
-    /// The request is wrong: a pipeline with mistakes, a directory that is taken, a run that cannot be resumed. The same request
-    /// fails again.
-    Usage,
-    /// Something failed: a file, memory, a computation, another process.
-    Failed,
-    /// Someone asked to stop.
-    Interrupted,
-}
 
 /// Why a run fails. Every message ends with what to do, where that is not obvious.
 #[derive(Debug, Error)]

@@ -2,7 +2,8 @@
 
 use sir_parallel::Communicator;
 
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
+use crate::error_kind::ErrorKind;
 use crate::fingerprint::Fingerprint;
 
 /// Kinds of errors, by the numbers that stand for them between ranks.

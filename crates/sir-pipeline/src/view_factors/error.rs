@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use sir_radiosity::{ClosureError, ModelError};
 use thiserror::Error;
 
-use crate::error::ErrorKind;
+use crate::error_kind::ErrorKind;
 
 /// Why there are no view factors.
 #[derive(Debug, Error)]
