@@ -169,7 +169,7 @@ impl GlobalLines {
 
     /// How many successive lines there are whose weights add up to at most 2³¹.
     #[must_use]
-    pub fn most(&self) -> u64 {
+    pub fn max_lines(&self) -> u64 {
         let Some(mixture) = &self.mixture else { return 1 << 31 };
         let weight = f64::from(mixture.weight);
         let mean = mixture.share + (1.0 - mixture.share) * weight;
@@ -265,7 +265,7 @@ mod tests {
                 }
             }
         }
-        let sum = lines.most() as f64 * (share + (1.0 - share) * f64::from(lines.weight()));
+        let sum = lines.max_lines() as f64 * (share + (1.0 - share) * f64::from(lines.weight()));
         assert!(sum < 2f64.powi(31) && sum > 2f64.powi(30), "{sum}");
     }
 

@@ -36,11 +36,3 @@ impl StudyError {
         }
     }
 }
-
-#[cfg(test)]
-impl StudyError {
-    /// Returns 2 for a wrong request, else another number. For the tests of `subject` only, until they compare kinds.
-    pub(crate) fn exit_code(&self) -> u8 {
-        if self.kind() == ErrorKind::Usage { 2 } else { 1 }
-    }
-}

@@ -10,7 +10,7 @@
 //!
 //! * `shape`: triangles for the shapes of the reference; `light`: scenes, and the mean light of their surfaces.
 //! * A module for each kind of case makes *trials* of it: quantities, and a function that estimates them with a seed.
-//! * `repeat` repeats them, `estimate` and [`Check`] judge, `bench` counts lines, `report` makes tables.
+//! * `repeat` repeats them, `estimate` and [`Check`] judge, `runner` counts lines, `report` makes tables.
 //!
 //! A report is a function of reference, effort, seed and chosen cases; threads make it faster, not different.
 //!
@@ -34,7 +34,6 @@
 //! # Ok::<(), sir_validate::ValidateError>(())
 //! ```
 
-mod bench;
 mod catalog;
 mod check;
 mod cube;
@@ -50,14 +49,15 @@ mod radiosity;
 mod repeat;
 mod report;
 mod room;
+mod runner;
 mod shape;
 mod trial;
 mod validate;
 
-pub use bench::Watcher;
 pub use check::{Check, LIMIT, Verdict};
 pub use data::{FILES, Reference};
 pub use effort::Effort;
 pub use error::ValidateError;
 pub use report::{Outcome, Report};
+pub use runner::Watcher;
 pub use validate::{Settings, validate};

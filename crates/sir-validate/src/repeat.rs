@@ -1,10 +1,10 @@
 //! Runs of the solver, repeated until their mean is precise enough.
 
-use crate::bench::Bench;
 use crate::check::Check;
 use crate::effort::Effort;
 use crate::error::ValidateError;
 use crate::estimate::Estimate;
+use crate::runner::Runner;
 use crate::trial::Trial;
 
 /// Runs of which a first estimate of the noise is made.
@@ -23,18 +23,18 @@ pub(crate) fn repeat(
     trial: &Trial<'_>,
     effort: Effort,
     seed: u64,
-    bench: &mut Bench<'_>,
+    runner: &mut Runner<'_>,
 ) -> Result<Vec<Check>, ValidateError> {
     let (sample, lines) = ((trial.prepare)(effort)?, effort.lines(trial.lines));
     let mut samples: Vec<Vec<f64>> = vec![Vec::new(); trial.quantities.len()];
     let (mut made, mut planned) = (0, FIRST_RUNS);
     while made < planned {
-        let values = bench.run(&sample, lines, seed.wrapping_add(made as u64))?;
+        let values = runner.run(&sample, lines, seed.wrapping_add(made as u64))?;
         samples.iter_mut().zip(values).for_each(|(all, value)| all.push(value));
         made += 1;
         if made == planned {
             planned = runs_needed(trial, &samples, effort).clamp(made, MOST_RUNS);
-            bench.expect(lines * (planned - made) as u64);
+            runner.expect(lines * (planned - made) as u64);
         }
     }
     let checks = trial.quantities.iter().zip(&samples);

@@ -2,13 +2,13 @@
 
 use std::num::NonZeroUsize;
 
-use crate::bench::{Bench, Watcher};
 use crate::catalog::plan;
 use crate::data::{Case, Reference};
 use crate::effort::Effort;
 use crate::error::ValidateError;
 use crate::repeat::{least_lines, repeat};
 use crate::report::{Outcome, Report};
+use crate::runner::{Runner, Watcher};
 
 /// What to run, and how.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,20 +41,20 @@ pub fn validate(
     }
     all_found(reference, settings)?;
     let effort = settings.effort;
-    let mut bench = Bench::new(watcher, settings.threads);
+    let mut runner = Runner::new(watcher, settings.threads);
     for trial in plans.iter().flat_map(|(_, _, plan)| plan.trials()) {
-        bench.expect(least_lines(trial, effort));
+        runner.expect(least_lines(trial, effort));
     }
     let mut cases = Vec::new();
     for (number, case, plan) in &plans {
         if plan.skipped().is_none() {
-            bench.watcher.begin(&case.id, &case.title);
+            runner.watcher.begin(&case.id, &case.title);
         }
         let mut checks = Vec::new();
         for (part, trial) in (0..).zip(plan.trials()) {
             // No two runs have random numbers in common.
             let stream: u64 = (number << 32) | (part << 16);
-            checks.extend(repeat(trial, effort, settings.seed.wrapping_add(stream), &mut bench)?);
+            checks.extend(repeat(trial, effort, settings.seed.wrapping_add(stream), &mut runner)?);
         }
         let skipped = plan.skipped().map(str::to_owned);
         cases.push(Outcome { case: case.id.clone(), title: case.title.clone(), skipped, checks });

@@ -74,7 +74,7 @@ mod tone;
 mod viewpoint;
 
 pub use atomic_file::write_atomically;
-pub use display::{DisplayMesh, DisplayVertex, Piece};
+pub use display::{DisplayMesh, DisplayPiece, DisplayVertex};
 pub use error::ViewError;
 pub use exposure::Exposure;
 pub use exr::write_exr;

@@ -55,15 +55,15 @@ impl Image {
 /// The images of a scene, as far as their number goes.
 #[derive(Debug)]
 pub(super) struct Images {
-    /// How many texels there still is room for.
-    room: u64,
-    /// How many texels may still be decoded.
-    patience: u64,
+    /// Texels that may still be kept in memory.
+    texels_left: u64,
+    /// Texels that may still be decoded.
+    decodes_left: u64,
 }
 
 impl Default for Images {
     fn default() -> Self {
-        Self { room: MAX_TEXELS, patience: MAX_DECODED }
+        Self { texels_left: MAX_TEXELS, decodes_left: MAX_DECODED }
     }
 }
 
@@ -74,11 +74,11 @@ impl Images {
     ///
     /// Why it cannot be read.
     pub(super) fn decode(&mut self, bytes: &[u8]) -> Result<Texture, String> {
-        if self.patience == 0 {
+        if self.decodes_left == 0 {
             return Err("the images of this scene have more than a billion texels".to_owned());
         }
         let texture = decode(bytes)?;
-        self.patience = self.patience.saturating_sub(texture.texels().len() as u64);
+        self.decodes_left = self.decodes_left.saturating_sub(texture.texels().len() as u64);
         Ok(texture)
     }
 
@@ -95,12 +95,12 @@ impl Images {
         let even_alpha = texels.iter().all(|texel| texel[3] == texels[0][3]);
         let count = texels.len() as u64;
         let (color, alpha) = (texture.mean_color(), texture.mean_alpha());
-        let fits = count <= self.room;
+        let fits = count <= self.texels_left;
         if !is_even && !fits {
             notes.name(TOO_MANY, name);
         }
         let texels = (!is_even && fits).then(|| {
-            self.room -= count;
+            self.texels_left -= count;
             builder.add_texture(texture)
         });
         Image { texels, color, alpha, even_alpha }
@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn images_without_room_are_means() {
         let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
-        let mut images = Images { room: 10, patience: 13 };
+        let mut images = Images { texels_left: 10, decodes_left: 13 };
         let mut found = Vec::new();
         for _ in 0..3 {
             let texture = images.decode(&halves()).unwrap();
@@ -255,6 +255,6 @@ mod tests {
         let layer = Layer::new(image, [Wrap::Repeat; 2], (), &mut sets);
         assert_eq!(color(Rgb::splat(0.5), Some(&layer)), (Rgb::X / 2.0, None));
         assert_eq!(opacity(0.5, Some(&layer), None), Opacity { factor: 0.1, ..Opacity::default() });
-        assert!(sets.is_empty() && images.room == MAX_TEXELS);
+        assert!(sets.is_empty() && images.texels_left == MAX_TEXELS);
     }
 }

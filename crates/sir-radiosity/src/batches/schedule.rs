@@ -79,7 +79,7 @@ impl Schedule {
             least: (SMALLEST * once).ceil() as u64,
             guess,
             source,
-            most: domain.most(),
+            most: domain.max_lines(),
             outside: 1.0 / f64::from(domain.weight()),
             ceased: FocusSums::default(),
             sums: BatchSums { unshot: source, ..BatchSums::default() },

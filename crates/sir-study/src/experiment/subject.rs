@@ -169,6 +169,6 @@ mod tests {
         std::fs::write(&path, r#"(stages: [Load(path: "x.obj"), FirstShot(lines: 1)])"#).unwrap();
         let error = Subject::read(&path, 1.0).err().unwrap();
         assert!(error.to_string().contains("x.ron has no `Multipath` stage"), "{error}");
-        assert_eq!(error.exit_code(), 2);
+        assert_eq!(error.kind(), sir_pipeline::ErrorKind::Usage);
     }
 }

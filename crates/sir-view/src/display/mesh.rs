@@ -19,7 +19,7 @@ pub struct DisplayVertex {
 
 /// The triangles into which one side of one patch was cut.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece<'a> {
+pub struct DisplayPiece<'a> {
     /// The triangle of the scene.
     pub triangle: TriangleId,
     /// The side of it.
@@ -95,17 +95,17 @@ impl<'a> DisplayMesh<'a> {
 
     /// Every side of every patch with its triangles. With
     /// [`Subdivision::PerFace`](sir_mesh::Subdivision::PerFace) a side comes once for each triangle of its face.
-    pub fn pieces(&self) -> impl Iterator<Item = Piece<'_>> {
+    pub fn pieces(&self) -> impl Iterator<Item = DisplayPiece<'_>> {
         self.scene.triangle_ids().flat_map(|t| self.pieces_of(t))
     }
 
     /// The pieces of one triangle of the scene.
-    pub fn pieces_of(&self, t: TriangleId) -> impl Iterator<Item = Piece<'_>> {
+    pub fn pieces_of(&self, t: TriangleId) -> impl Iterator<Item = DisplayPiece<'_>> {
         let sides = active_sides(self.scene, t);
         self.mesh.patches_of(t).map(PatchId).flat_map(move |patch| {
             sides.iter().filter_map(move |&side| {
                 let id = self.mesh.side_of(t, patch, side)?;
-                Some(Piece { triangle: t, side, id, triangles: self.triangles_of(t, patch, side) })
+                Some(DisplayPiece { triangle: t, side, id, triangles: self.triangles_of(t, patch, side) })
             })
         })
     }
@@ -171,13 +171,13 @@ impl<'a> DisplayMesh<'a> {
     }
 
     /// Radiosity \[W/m²\] of a piece with this irradiance.
-    pub(crate) fn radiosity_of(&self, piece: &Piece<'_>, irradiance: Rgb) -> Rgb {
+    pub(crate) fn radiosity_of(&self, piece: &DisplayPiece<'_>, irradiance: Rgb) -> Rgb {
         let patch = self.mesh.patch_of_side(piece.triangle, piece.id);
         self.radiosity(piece.triangle, patch, piece.side, irradiance)
     }
 
     /// Radiosity \[W/m²\] of a piece as it was solved, not interpolated.
-    pub(crate) fn own_radiosity(&self, piece: &Piece<'_>) -> Rgb {
+    pub(crate) fn own_radiosity(&self, piece: &DisplayPiece<'_>) -> Rgb {
         self.radiosity_of(piece, self.irradiance[piece.id.index()])
     }
 

@@ -9,4 +9,4 @@ mod points;
 mod seams;
 mod smooth;
 
-pub use mesh::{DisplayMesh, DisplayVertex, Piece};
+pub use mesh::{DisplayMesh, DisplayPiece, DisplayVertex};

@@ -17,14 +17,14 @@ pub trait Watcher {
 }
 
 /// Makes runs, and counts their lines.
-pub(crate) struct Bench<'w> {
+pub(crate) struct Runner<'w> {
     pub(crate) watcher: &'w mut dyn Watcher,
     threads: NonZeroUsize,
     done: u64,
     total: u64,
 }
 
-impl<'w> Bench<'w> {
+impl<'w> Runner<'w> {
     pub(crate) fn new(watcher: &'w mut dyn Watcher, threads: NonZeroUsize) -> Self {
         Self { watcher, threads, done: 0, total: 0 }
     }
