@@ -15,9 +15,9 @@ use sir_radiosity::{
     ShotSettings, Stage, StageTotals, Transported, Workers, run_stage,
 };
 
-/// The exact answers: see `tests/reference/README.md`.
+/// The exact answers: see `README.md` in `data` of `sir-validate`.
 pub(crate) fn reference(file: &str) -> Value {
-    let path = format!("{}/tests/reference/{file}", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../sir-validate/data/{file}", env!("CARGO_MANIFEST_DIR"));
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
