@@ -1,6 +1,6 @@
-//! The facade in one go: load a scene, solve it, and ask for the light on the tables of the reading room.
+//! Uses the facade: loads the reading room, solves it, and prints the irradiance on its tables.
 //! `cargo run --release --example lux_on_a_desk`
-#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Solver::new(scene).patches(100_000).first_shot(2_000_000).multipath(4_000_000).seed(1).solve()?;
     let model = &solved.model;
 
-    // Mean irradiance of the upward faces of each material at desk height.
+    // Area and received power of the upward faces of each material at desk height.
     let mut desks = std::collections::BTreeMap::<&str, (f64, Rgb)>::new();
     solved.for_each_side(|light| {
         let [a, b, c] = model.scene.corners(light.triangle);

@@ -1,6 +1,6 @@
 //! **SIR**: parallel global-line Monte Carlo radiosity.
 //!
-//! Ten lines from a scene to its light, with standard errors, on all cores:
+//! Computes the light in a scene in ten lines of code, with standard errors, on all cores:
 //!
 //! ```
 //! use std::path::Path;
@@ -16,13 +16,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Three doors for three kinds of user:
+//! There are three ways to use SIR:
 //!
-//! * *A pipeline file*: `sir run room.ron`, or [`pipeline::run`](fn@pipeline::run) and [`pipeline::check`](fn@pipeline::check) from Rust.
-//! * *A solver*: [`parallel::Solver`], or its stages one by one with [`parallel::Executor`].
-//! * *A part*: each crate works by itself; [`accel`] and [`lines`] need no scene.
+//! * *Pipeline files*: `sir run room.ron`, or [`pipeline::run`](fn@pipeline::run) and
+//!   [`pipeline::check`](fn@pipeline::check) from Rust.
+//! * *Solver*: [`parallel::Solver`], or single stages with [`parallel::Executor`].
+//! * *Single crates*: each crate can be used on its own; [`accel`] and [`lines`] need no scene.
 //!
-//! This package only gathers the crates that do the work.
+//! This package only re-exports the crates of the workspace.
 
 pub use sir_accel as accel;
 pub use sir_cli as cli;

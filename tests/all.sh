@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs all tests, those with several processes included. Arguments go to `cargo test`.
+# Runs all tests, including those with several processes. Arguments are passed to `cargo test`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tests/install-needs.sh

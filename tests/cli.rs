@@ -1,4 +1,4 @@
-//! The program `sir`: exit codes, and what goes to which stream.
+//! The program `sir`: exit codes, standard output and standard error.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

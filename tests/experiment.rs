@@ -1,4 +1,4 @@
-//! `sir experiment`: the report, going on, and wrong inputs.
+//! `sir experiment`: report, resumption, and invalid inputs.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// The Cornell box with few patches and a small picture.
+/// Writes a pipeline for the Cornell box with few patches.
 fn write_box(folder: &Path, name: &str, stages: &str) {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-box/cornell-box.gltf");
     let text = format!("(stages: [Load(path: {scene:?}), Subdivide(patches: 200), {stages}])");
@@ -77,12 +77,12 @@ fn a_report_has_all_parts_and_nothing_is_run_twice() {
     // 64 replicas of 94 lines each lose most of the light.
     assert!(scene["farm"]["transports"][2]["reflected_bias"]["luminance"].as_f64().unwrap() < -0.1);
 
-    // Derived pipelines can be run by themselves.
+    // Derived pipelines can be run separately.
     let (code, stdout, _) = sir(folder.path(), "run o/runs/box/farm-08/pipeline.ron --out again --json");
     let again: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!((code, &again["stages"][3]["batches"]), (Some(0), &8.into()));
 
-    // The reference is gone: it alone is made again.
+    // If the reference is missing, only the reference is computed again.
     fs::remove_file(folder.path().join("o/runs/box/reference/patches.npy")).unwrap();
     let (code, _, stderr) = sir(folder.path(), LINE);
     assert_eq!(code, Some(0), "{stderr}");

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sees to it that there is what the tests with several processes need: Open MPI, and libclang to build against it.
-# Installs them where it may, and says exactly what to install where it may not.
+# Installs the dependencies of the tests with several processes: Open MPI, and libclang to build against it.
+# Without the permission to install, it prints the command to run.
 set -euo pipefail
 
 packages="openmpi-bin libopenmpi-dev libclang-dev"
@@ -27,7 +27,7 @@ if command -v apt-get >/dev/null; then
     fi
     echo "installing $packages"
     $as_root apt-get update -qq
-    # shellcheck disable=SC2086 # a list of packages
+    # shellcheck disable=SC2086 # list of packages
     DEBIAN_FRONTEND=noninteractive $as_root apt-get install -y -qq --no-install-recommends $packages >/dev/null
     exit 0
 fi

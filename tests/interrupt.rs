@@ -1,7 +1,7 @@
-//! Runs that are stopped, killed, or find the disk full, and go on: with the real program and real signals.
+//! Resumption of runs that were stopped, killed, or ended by a full disk, with the real program and real signals.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers fail and print like tests")]
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// Some seconds of work, with outputs in between.
+/// Pipeline that takes several seconds, with outputs in between.
 const PIPELINE: &str = r#"Pipeline(
     stages: [
         Load(path: "furnace.gltf"),
@@ -26,7 +26,7 @@ fn sir() -> Command {
     Command::new(env!("CARGO_BIN_EXE_sir"))
 }
 
-/// A folder with a scene and a pipeline of that name and text.
+/// Returns a folder with a scene and a pipeline with this text.
 fn folder(text: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace/furnace.gltf");
@@ -48,7 +48,7 @@ fn repeated() -> String {
     format!("{}{lines}{}", &PIPELINE[..start], &PIPELINE[end..])
 }
 
-/// Starts a run, or goes on with the one in this directory if there is a checkpoint.
+/// Starts a run, or resumes the run in this directory if there is a checkpoint.
 fn start(folder: &Path, out: &str, threads: usize, every: &str) -> Child {
     let mut command = sir();
     if folder.join(out).join("checkpoint").exists() {
@@ -66,11 +66,11 @@ fn finish(folder: &Path, out: &str) {
 }
 
 fn signal(child: &Child, name: &str) {
-    // The shell's own, because not every system has a program of that name.
+    // `kill` of the shell, because not every system has a program of that name.
     Command::new("sh").args(["-c", &format!("kill {name} {}", child.id())]).status().unwrap();
 }
 
-/// All files of a finished run; of the report all but the times.
+/// Returns all files of a finished run, with the times removed from the report.
 fn files(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let entries = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path());
     entries
@@ -86,7 +86,7 @@ fn files(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
         .collect()
 }
 
-/// Of a report, its stages and theirs.
+/// Clears the times of a report and, recursively, of its stages.
 fn forget_times(report: &mut serde_json::Value) {
     report["time"] = 0.into();
     if let Some(stages) = report.get_mut("stages").and_then(|stages| stages.as_array_mut()) {
@@ -99,7 +99,7 @@ fn assert_same(folder: &Path, out: &str, whole: &str) {
     let (a, b) = (files(&folder.join(out)), files(&folder.join(whole)));
     assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
     for (name, bytes) in &a {
-        assert!(*bytes == b[name], "{} differs from that of a run which was never stopped", name.display());
+        assert!(*bytes == b[name], "{} differs from that of an uninterrupted run", name.display());
     }
 }
 
@@ -109,7 +109,7 @@ fn a_run_that_is_killed_twenty_times_gives_the_same_bytes() {
     let folder = folder.path();
     finish(folder, "whole");
     let (mut kills, mut runs) = (0, 0);
-    // Pauses that are scattered enough, the same ones each time.
+    // Scattered but deterministic pauses.
     let mut pause = (0..).map(|i: u64| Duration::from_millis(40 + i * 7919 % 450));
     while kills < 20 {
         let out = format!("run-{runs}");
@@ -163,7 +163,7 @@ fn ctrl_c_and_sigterm_save_the_state_and_exit_with_130() {
     }
 }
 
-/// A limit on the size of files stands for a disk that is full: it is large enough for the first checkpoint only.
+/// A file size limit emulates a full disk. It is large enough for the first checkpoint only.
 #[test]
 fn a_full_disk_is_an_error_that_leaves_the_checkpoint_before_it() {
     let folder = folder(PIPELINE);
@@ -177,7 +177,7 @@ fn a_full_disk_is_an_error_that_leaves_the_checkpoint_before_it() {
     assert_eq!(status.code(), Some(1), "{stderr}");
     let last = stderr.lines().last().unwrap();
     assert!(last.starts_with("error: cannot write the checkpoint full/checkpoint; "), "{stderr}");
-    assert!(last.contains("still whole") && last.contains("too large"), "{stderr}");
+    assert!(last.contains("still intact") && last.contains("too large"), "{stderr}");
     finish(folder, "full");
     assert_same(folder, "full", "whole");
 }
@@ -199,7 +199,7 @@ fn what_cannot_be_resumed_is_refused_with_the_reason() {
         assert!(stderr.contains(&start) && stderr.contains("`sir run PIPELINE`"), "{stderr}");
         stderr.lines().find(|line| line.starts_with(&start)).unwrap().to_owned()
     };
-    // Something is changed, and changed back.
+    // Changes a file, tries to resume, and restores the file.
     let with = |file: &str, change: &dyn Fn(Vec<u8>) -> Vec<u8>| {
         let path = folder.join(file);
         let before = fs::read(&path).unwrap();
@@ -212,9 +212,9 @@ fn what_cannot_be_resumed_is_refused_with_the_reason() {
         move |bytes| String::from_utf8(bytes).unwrap().replacen(from, to, 1).into_bytes()
     };
     let error = with("work.ron", &text("8_000_000", "9_000_000"));
-    assert!(error.contains("work.ron has changed; put it back, or start a new run"), "{error}");
+    assert!(error.contains("work.ron has changed; restore it, or start a new run"), "{error}");
     let error = with("furnace.gltf", &text("0.5", "0.25"));
-    assert!(error.contains("furnace.gltf has changed; put it back, or start a new run"), "{error}");
+    assert!(error.contains("furnace.gltf has changed; restore it, or start a new run"), "{error}");
     let flip = |mut bytes: Vec<u8>| {
         let middle = bytes.len() / 2;
         bytes[middle] ^= 1;
@@ -226,7 +226,7 @@ fn what_cannot_be_resumed_is_refused_with_the_reason() {
     let other = |bytes: Vec<u8>| [b"SIR checkpoint 0\n", &bytes[..]].concat();
     assert!(with("stopped/checkpoint", &other).contains("another version"));
     finish(folder, "stopped");
-    assert!(refused("stopped").contains("the run is finished: its result is there"));
+    assert!(refused("stopped").contains("the run is finished; see its result.json"));
     assert!(refused("nowhere").contains("there is no such directory"));
     fs::create_dir(folder.join("empty")).unwrap();
     assert!(refused("empty").contains("it holds no checkpoint; start a new run"));

@@ -1,7 +1,7 @@
-//! Several processes that work on one run, started by mpirun: the same bits for any number of ranks and threads, and
-//! what happens when a rank fails. Needs the feature `mpi` and Open MPI.
+//! Runs with several processes, started by mpirun: bit-identical results for any number of ranks and threads, and
+//! failures of single ranks. Needs the feature `mpi` and Open MPI.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers fail and print like tests")]
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Light that escapes, surfaces of two sides, several reflectances; more sides than one message has.
+/// Scene with escaping light, two-sided surfaces and several reflectances. Its tallies do not fit into one message.
 const SCENE: &str = "mtllib room.mtl
 v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2
 v 0.5 0.5 0.5\nv 1.5 0.5 0.5\nv 1.5 0.6 1.5\nv 0.5 0.6 1.5
@@ -35,17 +35,17 @@ fn folder(pipeline: &str) -> tempfile::TempDir {
     folder
 }
 
-/// `mpirun -n ranks sir arguments`, in a folder.
+/// Returns the command `mpirun -n ranks sir arguments`, in a folder.
 fn mpirun(folder: &Path, ranks: usize, arguments: &[&str]) -> Command {
     let mut command = Command::new("mpirun");
-    // Open MPI does not like root, nor more ranks than cores, unless it is told so.
+    // By default, Open MPI refuses to run as root or with more ranks than cores.
     command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
     command.args(["--oversubscribe", "-n", &ranks.to_string(), env!("CARGO_BIN_EXE_sir")]).args(arguments);
     command.current_dir(folder);
     command
 }
 
-/// Exit code, standard output and standard error.
+/// Returns exit code, standard output and standard error.
 fn outcome(output: Output) -> (Option<i32>, String, String) {
     let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
     (output.status.code(), text(&output.stdout), text(&output.stderr))
@@ -55,7 +55,7 @@ fn reap(child: Child) -> (Option<i32>, String, String) {
     outcome(child.wait_with_output().unwrap())
 }
 
-/// The hash of the tallies of the last stage of lines, and the table.
+/// Returns the hash of the tallies of the last stage with lines, and the table.
 fn result(run: &Path) -> (String, Vec<u8>) {
     let report = fs::read_to_string(run.join("result.json")).unwrap();
     let report: serde_json::Value = serde_json::from_str(&report).unwrap();
@@ -76,7 +76,7 @@ fn any_number_of_ranks_and_threads_gives_the_same_bits() {
                 let arguments = ["run", "room.ron", "--out", "run", "--force", "--threads", threads];
                 let (code, stdout, stderr) = outcome(mpirun(folder, ranks, &arguments).output().unwrap());
                 assert_eq!(code, Some(0), "{stderr}");
-                assert_eq!(stdout.matches("result.json").count(), 1, "only one rank prints: {stdout}");
+                assert_eq!(stdout.matches("result.json").count(), 1, "only one rank must print: {stdout}");
                 assert_eq!(stderr.matches("Multipath: 60_000 lines\n").count(), 1, "{stderr}");
                 let found = result(&folder.join("run"));
                 let expected = expected.get_or_insert_with(|| found.clone());
@@ -120,7 +120,7 @@ fn a_mistake_is_shown_once_and_ends_all_ranks() {
     assert!(!folder.join("results").exists());
 }
 
-/// Every rank runs in a folder of its own, in which the files may differ.
+/// Runs every rank in its own folder. `change` is a shell command that modifies the files of rank 2.
 fn in_own_folders(folder: &Path, change: &str) -> (Option<i32>, String, String) {
     let script = format!(
         "mkdir -p own-$OMPI_COMM_WORLD_RANK; cp room.* own-$OMPI_COMM_WORLD_RANK; cd own-$OMPI_COMM_WORLD_RANK
@@ -154,7 +154,7 @@ fn ranks_that_read_something_else_are_found_out() {
     }
 }
 
-/// Starts a long run with checkpoints, and waits until there is one with some lines in it.
+/// Starts a long run with checkpoints, and waits for the first checkpoint after some lines.
 fn under_way(folder: &Path, ranks: usize) -> Child {
     let arguments = ["run", "room.ron", "--out", "run", "--checkpoint-every", "0.2", "--threads", "1"];
     let mut child =
@@ -167,7 +167,8 @@ fn under_way(folder: &Path, ranks: usize) -> Child {
     child
 }
 
-/// Finishes what was interrupted, by other numbers of ranks and threads; the result must be that of a run by itself.
+/// Resumes an interrupted run with other numbers of ranks and threads. Fails unless the result is that of an
+/// uninterrupted run.
 fn assert_resumes(folder: &Path, ranks: usize) {
     let arguments = ["resume", "run", "--threads", "2"];
     let (code, _, stderr) = outcome(mpirun(folder, ranks, &arguments).output().unwrap());
@@ -180,7 +181,7 @@ fn assert_resumes(folder: &Path, ranks: usize) {
     assert!(result(&folder.join("run")) == result(&folder.join("whole")));
 }
 
-/// The processes whose parent is `child`: Linux only.
+/// Returns the processes whose parent is `child`. Works on Linux only.
 fn ranks_of(child: &Child) -> Vec<u32> {
     let pid = child.id();
     let children = fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap();
@@ -208,7 +209,7 @@ fn a_killed_rank_ends_the_run_and_the_last_checkpoint_resumes() {
     }
 }
 
-/// Open MPI passes on SIGUSR1 at once; after SIGTERM it waits for a second, and then gives the ranks another one.
+/// Open MPI forwards SIGUSR1 immediately. After SIGTERM it waits for a second and then sends the ranks another one.
 #[test]
 fn signals_to_mpirun_save_the_state_of_all_ranks() {
     for signal in ["-USR1", "-TERM"] {
@@ -222,7 +223,7 @@ fn signals_to_mpirun_save_the_state_of_all_ranks() {
     }
 }
 
-/// A checkpoint that cannot be written is an error of the first rank; the others do not wait for it.
+/// If a checkpoint cannot be written, the first rank reports the error, and the others do not wait for it.
 #[test]
 fn an_error_of_one_rank_is_printed_once_and_ends_all() {
     let folder = folder(&pipeline(1_000_000, "6_000_000"));

@@ -1,11 +1,11 @@
-//! Whole pipelines, from the file to the files: the same bytes each time, light neither lost nor made, known answers,
-//! and snapshots that show which numbers a change moves.
+//! Whole pipelines, from the pipeline file to the output files: reproducible bytes, conserved power, exact answers, and
+//! snapshots that show which numbers a change affects.
 
 #![allow(
     clippy::unwrap_used,
     clippy::panic,
     clippy::print_stdout,
-    reason = "helpers of tests fail and talk like tests"
+    reason = "test helpers fail and print like tests"
 )]
 
 use std::collections::BTreeMap;
@@ -19,8 +19,8 @@ use sir::pipeline::report::{LinesReport, Report, Time};
 use sir::pipeline::run::{RunOptions, run_pipeline as run};
 use sir::view::{Row, Table};
 
-/// A closed room with a lamp as its ceiling and a sheet above the floor that is lit from both sides. One wall
-/// reflects nothing.
+/// Closed room whose ceiling is a lamp, with a sheet above the floor that is lit from both sides. One wall reflects
+/// nothing.
 const ROOM: &str = "mtllib room.mtl
 v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2
 v 0.5 0.5 0.5\nv 1.5 0.5 0.5\nv 1.5 0.6 1.5\nv 0.5 0.6 1.5
@@ -49,7 +49,7 @@ const ROOM_PIPELINE: &str = r#"Pipeline(
     ],
 )"#;
 
-/// A box without a lid whose floor emits: light escapes, and lines meet an odd number of surfaces.
+/// Open box whose floor emits: light escapes, and lines cross an odd number of surfaces.
 const OPEN_BOX: &str = "mtllib open.mtl
 v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
 usemtl glow\nf 1 5 6 2
@@ -78,19 +78,19 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// A folder of the repository's own scenes.
+/// Returns the folder of one of the repository's own scenes.
 fn scene_folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)
 }
 
-/// A finished run and its files, but for the report.
+/// Finished run with its output files, except the report.
 struct Outcome {
     report: Report,
     files: BTreeMap<String, Vec<u8>>,
     table: Table,
 }
 
-/// Runs a pipeline whose file would lie in the folder `scene`, in a new temporary folder.
+/// Runs a pipeline as if its file were in the folder `scene`, with a new temporary output folder.
 fn outcome(scene: &Path, text: &str, seed: Option<u64>) -> Outcome {
     let pipeline = Pipeline::parse(text, &scene.join("test.ron")).unwrap_or_else(|e| panic!("{e}"));
     let results = tempfile::tempdir().unwrap();
@@ -106,7 +106,7 @@ fn outcome(scene: &Path, text: &str, seed: Option<u64>) -> Outcome {
     Outcome { report, files, table }
 }
 
-/// The report without its times.
+/// Returns the report without its times.
 fn timeless(mut report: Report) -> String {
     report.time = Time::of(0.0);
     for stage in &mut report.stages {
@@ -119,7 +119,8 @@ fn lines_stages(report: &Report) -> impl Iterator<Item = (&str, &LinesReport)> {
     report.stages.iter().filter_map(|s| Some((s.name.as_str(), s.lines.as_ref()?)))
 }
 
-/// No stage lost or made power, and multipath sent on what the first shot left, but for the noise of the forecast.
+/// Fails unless every stage conserves power, and multipath emits what the first shot left unshot, up to the noise of
+/// the forecast.
 fn assert_balanced(report: &Report) {
     for (name, lines) in lines_stages(report) {
         let b = &lines.balance;
@@ -135,12 +136,12 @@ fn assert_balanced(report: &Report) {
         let (ratio, left) = (second.emitted[k] / first.unshot[k], second.unshot[k] / second.emitted[k]);
         let extrapolated = stages[1].extrapolated[k] / second.emitted[k];
         if extrapolated > 0.0 {
-            assert!((ratio - 1.0).abs() < 1e-12, "batches sent {ratio} of what was left to them");
-            // Each unit of power that is unshot would have been received at least once.
-            assert!(left < 0.05 && extrapolated >= left, "{left} unshot, {extrapolated} made up");
+            assert!((ratio - 1.0).abs() < 1e-12, "batches sent {ratio} of the unshot power");
+            // Each quantum of unshot power would have been received at least once.
+            assert!(left < 0.05 && extrapolated >= left, "{left} unshot, {extrapolated} extrapolated");
         } else {
-            assert!((ratio - 1.0).abs() < 0.05, "multipath sent {ratio} of what was left to it");
-            assert!(left < 1e-3, "the tail sends on what is left, but for {left}");
+            assert!((ratio - 1.0).abs() < 0.05, "multipath sent {ratio} of the unshot power");
+            assert!(left < 1e-3, "{left} is unshot after the tail");
         }
     }
 }
@@ -179,7 +180,7 @@ fn an_open_box_stays_as_it_was() {
     insta::assert_snapshot!("open_box_stages", stages(&report));
 }
 
-/// Results of independent seeds: their mean, and its standard error per band.
+/// Returns the mean of independent results, and its standard error per band.
 fn mean_and_error(samples: &[Rgb]) -> (Rgb, Rgb) {
     let n = samples.len() as f64;
     let mean = samples.iter().sum::<Rgb>() / n;
@@ -217,14 +218,14 @@ fn a_furnace_has_the_radiosity_of_the_geometric_series() {
             values += 3;
         }
     }
-    // Batches lose nothing, and what is unshot is made up for: the mean over all patches is exact in each run, but for
+    // Batches conserve power, and unshot power is extrapolated: the mean over all patches is exact in each run, up to
     // the rounding of tables.
     for mean in means {
         assert!((mean / exact - 1.0).abs().max_element() < 1e-6, "furnace: {mean}, exact {exact}");
     }
-    // A normal deviate is beyond 4σ once in 16 000 times; a patch's error bar is itself an estimate.
-    println!("{far} of {values} patches are beyond 4σ");
-    assert!(far * 1000 <= values, "{far} of {values} patches are beyond 4σ");
+    // A normal deviate exceeds 4σ with a probability of 1/16,000; the error of a patch is itself an estimate.
+    println!("{far} of {values} values deviate by more than 4σ");
+    assert!(far * 1000 <= values, "{far} of {values} values deviate by more than 4σ");
 }
 
 #[test]
@@ -251,7 +252,8 @@ fn concentric_spheres_have_their_exact_radiosities() {
     }
 }
 
-/// Mean radiosity of both sides of every triangle, and the root mean square of the standard errors of its patches.
+/// Formats the mean radiosity of each side of every triangle, and the root mean square of the standard errors of its
+/// patches.
 fn triangles(table: &Table) -> String {
     let mut text = String::from("triangle side      B_r     B_g     B_b      se_r    se_g    se_b\n");
     let mut sides: BTreeMap<(u32, bool), Vec<&Row>> = BTreeMap::new();
@@ -275,7 +277,7 @@ fn triangles(table: &Table) -> String {
     text
 }
 
-/// What a report says about its scene and the stages with lines.
+/// Formats the parts of a report about its scene and the stages with lines.
 fn stages(report: &Report) -> String {
     let scene = &report.scene;
     let mut text = format!(

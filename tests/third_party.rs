@@ -1,9 +1,9 @@
-//! Scenes of others against the radiosities that an independent path tracer found for them.
+//! Third-party scenes, compared with radiosities of an independent path tracer.
 //!
-//! The scenes and tables are no part of the project. They are read from where the variable `SIR_TEST_DATA` says, or
-//! from a folder `shared` beside the repository; without them the tests say so and pass.
+//! The scenes and tables are not part of the project. They are read from the folder in the variable `SIR_TEST_DATA`, or
+//! from the folder `shared` next to the repository. Without them the tests print this and pass.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers fail and print like tests")]
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -15,7 +15,7 @@ use sir::mesh::Subdivision;
 use sir::parallel::{Executor, Start};
 use sir::radiosity::{BatchSettings, Batches, FirstShot, Model, ShotSettings};
 
-/// The folder of a scene.
+/// Returns the folder of a scene, if it exists.
 fn scene_folder(name: &str) -> Option<PathBuf> {
     let data = match std::env::var_os("SIR_TEST_DATA") {
         Some(folder) => PathBuf::from(folder),
@@ -29,7 +29,7 @@ fn scene_folder(name: &str) -> Option<PathBuf> {
     found.then_some(folder)
 }
 
-/// A radiosity per band and its standard error \[W/m²\].
+/// Radiosity per band and its standard error \[W/m²\].
 #[derive(Clone, Copy, Debug)]
 struct Estimate {
     mean: Rgb,
@@ -37,7 +37,7 @@ struct Estimate {
 }
 
 impl Estimate {
-    /// From independent results.
+    /// Returns the mean of independent results and its standard error.
     fn of(samples: &[Rgb]) -> Self {
         let n = samples.len() as f64;
         let mean = samples.iter().sum::<Rgb>() / n;
@@ -45,15 +45,15 @@ impl Estimate {
         Self { mean, se: variance.map(f64::sqrt) }
     }
 
-    /// The difference to another estimate in units of its standard error. Zero where both are exact and equal.
+    /// Returns the difference to another estimate in units of its standard error; zero where both are exact and equal.
     fn z(self, other: Self) -> Rgb {
         let (off, se) = (self.mean - other.mean, (self.se * self.se + other.se * other.se).map(f64::sqrt));
         Rgb::from_array(std::array::from_fn(|k| if off[k] == 0.0 { 0.0 } else { off[k] / se[k] }))
     }
 }
 
-/// A reference table: by the name in its first column, `B_r,B_g,B_b,se_r,se_g,se_b` from the fourth column on.
-/// It states six digits; their rounding is part of the error.
+/// Reads a reference table: by the name in its first column, `B_r,B_g,B_b,se_r,se_g,se_b` from the fourth column on.
+/// Values have six digits; their rounding is included in the error.
 fn reference(path: &Path) -> BTreeMap<String, Estimate> {
     let text = fs::read_to_string(path).unwrap();
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -67,16 +67,16 @@ fn reference(path: &Path) -> BTreeMap<String, Estimate> {
         .collect()
 }
 
-/// How to compute the light of a scene.
+/// Settings for computing the light in a scene.
 struct Effort {
     patches: u64,
-    /// Lines of the first shot and of multipath, per run.
+    /// Numbers of lines of the first shot and of multipath, per run.
     lines: (u64, u64),
-    /// Independent runs.
+    /// Number of independent runs.
     seeds: u64,
 }
 
-/// Mean radiosity of the fronts of every triangle, one list per run.
+/// Returns the mean radiosity of the front of every triangle, one list per run.
 fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
     let (local, global) = effort.lines;
     let domain = Domain::hull(model.scene.vertices());
@@ -103,7 +103,7 @@ fn model(path: &Path, effort: &Effort) -> Model {
     Model::new(scene, Subdivision::Patches(effort.patches)).unwrap()
 }
 
-/// Differences in units of their standard errors, and what to call them.
+/// Differences in units of their standard errors, each with a description.
 #[derive(Default)]
 struct Deviations(Vec<(String, f64)>);
 
@@ -127,8 +127,9 @@ impl Deviations {
     }
 }
 
-/// No difference is beyond four standard errors, and all together are as large as chance makes them: with errors
-/// from a dozen runs or fewer (Student's t) and bands that go together, up to 1.3 in the root mean square.
+/// Fails if a difference exceeds four standard errors, or if the root mean square of all differences is 1.3 or more.
+/// The errors come from a dozen runs or fewer (Student's t) and the bands are correlated, so chance explains values up
+/// to 1.3.
 #[track_caller]
 fn assert_agrees(mut deviations: Deviations) {
     let rms = deviations.rms();
@@ -142,14 +143,14 @@ fn assert_agrees(mut deviations: Deviations) {
     assert!(rms < 1.3, "the root mean square of all z is {rms:.3}");
 }
 
-/// Triangles of the Cornell box that lie on each other.
+/// Pairs of coincident triangles in the Cornell box.
 const COPIES: [(usize, usize); 4] = [(16, 20), (17, 21), (30, 32), (31, 33)];
 
-/// Cornell box by Cardenas and McGuire: every triangle.
+/// Every triangle of the Cornell box by Cardenas and McGuire.
 ///
-/// Patches of the floor that reach below a box take some of its light there, so that the lower parts of its sides
-/// are too dark: by 2 % with 20 000 patches, by 1 % with 80 000, in proportion to `h log(1/h)` for patches of the
-/// width `h`. Those of this test are small enough for that to be within the error bars.
+/// A patch of the floor that extends below a box averages over its covered part, so the lower parts of the sides of the
+/// box are too dark: by 2 % with 20,000 patches, by 1 % with 80,000, in proportion to `h log(1/h)` for patches of the
+/// width `h`. The patches of this test are small enough for this error to be within the error bars.
 #[test]
 fn cornell_box() {
     let Some(folder) = scene_folder("cornell-mcguire") else { return };
@@ -161,7 +162,7 @@ fn cornell_box() {
     let mut deviations = Deviations::default();
     for (name, theirs) in &reference {
         let t: usize = name.parse().unwrap();
-        // The light falls on one of two triangles in the same place.
+        // Only one of two coincident triangles receives light.
         let ours = match COPIES.iter().find(|&&(a, b)| a == t || b == t) {
             None => estimate(t),
             Some(&(a, b)) if estimate(a).mean.x > estimate(b).mean.x => estimate(a),
@@ -173,7 +174,7 @@ fn cornell_box() {
     assert_agrees(deviations);
 }
 
-/// A scene, its light in several runs, and what others have found.
+/// Scene with its light in several runs, and the folder of the reference tables.
 struct Compared {
     model: Model,
     runs: Vec<Vec<Rgb>>,
@@ -187,7 +188,8 @@ impl Compared {
         Self { model, runs, folder }
     }
 
-    /// Materials: the area-weighted mean of the fronts of their triangles. Those in `but` are left out.
+    /// Compares the area-weighted mean over the fronts of all triangles of each material, except the materials in
+    /// `but`.
     fn by_material(&self, but: &[&str]) -> Deviations {
         let scene = &self.model.scene;
         let mut means: BTreeMap<&str, Vec<Rgb>> = BTreeMap::new();
@@ -213,7 +215,7 @@ impl Compared {
         deviations
     }
 
-    /// Triangles that do not emit, are larger than `area` \[m²\], and whose reference is better than 3 %.
+    /// Compares triangles that do not emit, are larger than `area` \[m²\], and whose reference has an error below 3 %.
     fn by_triangle(&self, area: f64) -> Deviations {
         let scene = &self.model.scene;
         let reference = reference(&self.folder.join("reference-radiosity.csv"));
@@ -233,13 +235,14 @@ impl Compared {
     }
 }
 
-/// Narrow strips of window frames that are 7 and 8 % darker in the reference. Path tracing with exact geometry (the example
-/// `path_traced` of sir-radiosity) agrees with this program there: .1054 ± .0011 and .1381 ± .0013 in green.
+/// Narrow strips of window frames that are 7 and 8 % darker in the reference. Path tracing with exact geometry (the
+/// example `path_traced` of sir-radiosity) agrees with this program there: .1054 ± .0011 and .1381 ± .0013 in green.
 const LEUVEN_FRAMES: [&str; 2] = ["487 ", "531 "];
 
-/// A small office, of the RenderPark distribution: materials, and triangles of more than 200 cm².
+/// Materials, and triangles larger than 200 cm², of a small office from the RenderPark distribution.
 ///
-/// Smaller ones need smaller patches, or have the same trouble as [`LEUVEN_FRAMES`]: the shells of the chairs (docs/accuracy.md).
+/// Smaller triangles need smaller patches, or differ like [`LEUVEN_FRAMES`]: the shells of the chairs
+/// (docs/accuracy.md).
 #[test]
 fn leuven_office() {
     let Some(folder) = scene_folder("mgf-leuven-office") else { return };
@@ -252,11 +255,11 @@ fn leuven_office() {
     assert_agrees(triangles);
 }
 
-/// Materials of the ice cream store with parts that lie on or in each other: what is hidden has light in the reference where it is
-/// closer to the surface than single precision can tell.
+/// Materials of the ice cream store with parts that touch or overlap. In the reference, hidden parts receive light
+/// where they are closer to the surface than single precision resolves.
 const SODA_IN_CONTACT: [&str; 5] = ["blue_vinyl", "chrome", "khaki", "normal_glass", "stainless_steel"];
 
-/// An ice cream store by Greg Ward: materials, and triangles.
+/// Materials and triangles of an ice cream store by Greg Ward.
 #[test]
 fn soda() {
     let Some(folder) = scene_folder("mgf-soda") else { return };

@@ -1,9 +1,9 @@
-//! The pipelines for scenes of others.
+//! Pipelines for third-party scenes.
 //!
-//! Their scenes are no part of the project: where the variable `SIR_TEST_DATA` says, or in a folder `shared` beside
-//! the repository. Without them the pipelines are only parsed, and the test says so.
+//! The scenes are not part of the project. They are read from the folder in the variable `SIR_TEST_DATA`, or from the
+//! folder `shared` next to the repository. Without them the pipelines are only parsed, and the test prints this.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers fail and print like tests")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ fn pipelines() -> Vec<PathBuf> {
     found
 }
 
-/// The scene that a pipeline names, below `data`.
+/// Returns the path of the scene of a pipeline, below `data`.
 fn scene_of(text: &str) -> &str {
     let (_, rest) = text.split_once("Load(path: \"data/").unwrap();
     rest.split('"').next().unwrap()
@@ -31,7 +31,7 @@ fn all_are_pipelines_whose_scenes_are_in_data_and_which_the_readme_names() {
     let readme = fs::read_to_string(pipelines()[0].with_file_name("README.md")).unwrap();
     let copies = tempfile::tempdir().unwrap();
     for path in pipelines() {
-        // A pipeline is read only if its scene is there: an empty one will do.
+        // A pipeline can be read only if its scene exists. An empty file is sufficient.
         let text = fs::read_to_string(&path).unwrap();
         let scene = copies.path().join("data").join(scene_of(&text));
         fs::create_dir_all(scene.parent().unwrap()).unwrap();
@@ -57,7 +57,7 @@ fn all_check_where_their_scenes_are() {
         let text = fs::read_to_string(&path).unwrap();
         let scene = scenes.join(scene_of(&text));
         if !scene.is_file() {
-            println!("skipped: no {}", scene.display());
+            println!("skipped: no file {}", scene.display());
             continue;
         }
         let text = text.replace("data/", &format!("{}/", scenes.canonicalize().unwrap().display()));

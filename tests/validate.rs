@@ -1,4 +1,4 @@
-//! `sir validate`: exit codes, files, and answers that are wrong.
+//! `sir validate`: exit codes, files, and wrong answers.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -19,7 +19,7 @@ fn validate(folder: &Path, args: &[&str]) -> (i32, String, String) {
     (status.code().unwrap(), text(stdout), text(stderr))
 }
 
-/// A folder with the exact answers, one of them changed.
+/// Returns a folder with the exact answers, one of which is changed.
 fn wrong_answers() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for name in sir_validate::FILES {

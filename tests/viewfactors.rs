@@ -1,4 +1,4 @@
-//! `sir viewfactors`: what it prints and writes, and what it refuses.
+//! `sir viewfactors`: output, files, and errors.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// A cube of six named faces without a material library; both sides of a face count, but outside there is nothing.
+/// Cube of six named two-sided faces, without a material library. There is nothing outside of it.
 const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
 usemtl gray\no floor\nf 1 2 3 4\no \"ceiling, high\"\nf 6 5 8 7\ng west\nf 5 1 4 8\ng east\nf 2 6 7 3\no south\nf 5 6 2 1\no north\nf 4 3 7 8\n";
 
@@ -67,7 +67,7 @@ fn tables_and_files_agree() {
     assert_eq!(read("pairs.csv").lines().count(), 31);
     assert_eq!(read("closed.csv").lines().count(), 7);
 
-    // The number of lines that is reported gives the same again, by another number of threads.
+    // The reported number of lines gives the same result again, with another number of threads.
     let lines = &json["lines"];
     let args = format!("cube.obj --by group --sides front --lines {lines} --closure --threads 3 --json -q");
     let (code, stdout, stderr) = sir(folder.path(), &args);
@@ -85,7 +85,8 @@ fn sides_decide_what_escapes() {
     let (both, front) = (of("as-authored"), of("front"));
     assert_eq!(both["groups"][0]["area"], 12.0);
     assert_eq!((&front["groups"][0]["area"], &front["counted"]["escaped"][0]), (&6.0.into(), &0.0.into()));
-    // Half of the flux leaves the outside of the cube; four standard errors of 3,000 lines.
+    // Half of the power is sent from the outside of the cube and escapes. The tolerance is four standard errors of
+    // 3,000 lines.
     assert!((both["counted"]["escaped"][0].as_f64().unwrap() - 0.5).abs() < 0.037);
 }
 

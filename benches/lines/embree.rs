@@ -1,4 +1,4 @@
-//! The peer: Embree 3, loaded at run time, so that neither building nor running this benchmark needs it.
+//! Embree 3 as a reference. It is loaded at run time, so that neither building nor running this benchmark requires it.
 #![allow(unsafe_code, reason = "Embree has a C interface")]
 
 use std::ffi::{c_char, c_int, c_uint, c_void};
@@ -7,7 +7,7 @@ use std::mem::{ManuallyDrop, offset_of};
 use libloading::Library;
 use sir::geom::{Line, Scene};
 
-/// Where Debian's `libembree3-3` and other distributions have it.
+/// File names of the library, as in Debian's `libembree3-3` and in other distributions.
 const NAMES: [&str; 2] = ["libembree3.so.3", "libembree3.so"];
 
 const TRIANGLE: c_int = 0;
@@ -19,12 +19,12 @@ const INVALID: c_uint = u32::MAX;
 
 type Handle = *mut c_void;
 
-/// How much time a tree may take to build.
+/// Build quality of an acceleration structure.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Quality {
-    /// No spatial splits: a triangle is met at most once.
+    /// Without spatial splits: each triangle is reported at most once.
     Medium = 1,
-    /// Spatial splits: the best for closest hits.
+    /// With spatial splits: best for closest hits.
     High = 2,
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct RayHit {
 }
 
 impl RayHit {
-    /// A ray that starts at a distance from its origin.
+    /// Returns a ray that starts at the distance `near` from its origin.
     pub(crate) fn new(line: &Line, near: f32) -> Self {
         Self {
             origin: line.origin.as_vec3().to_array(),
@@ -69,24 +69,24 @@ impl RayHit {
         }
     }
 
-    /// The triangle that was met.
+    /// Returns the triangle that was hit, if any.
     pub(crate) fn triangle(&self) -> Option<u32> {
         (self.geometry != INVALID).then_some(self.triangle)
     }
 }
 
-/// `RTCIntersectContext`, followed by what is ours.
+/// `RTCIntersectContext`, followed by our own data.
 #[repr(C)]
 struct Context {
     flags: c_int,
     filter: Option<Filter>,
     instance: c_uint,
-    /// There in some builds of Embree, which then read it.
+    /// Only some builds of Embree have and read this field.
     min_width: f32,
     found: Vec<Found>,
 }
 
-/// What the filter function notes of a crossing: as much as is needed to find the patch.
+/// Crossing recorded by the filter function, with the data needed to find the patch.
 #[derive(Clone, Copy)]
 pub(crate) struct Found {
     pub(crate) t: f32,
@@ -108,7 +108,7 @@ struct FilterArguments {
 
 type Filter = unsafe extern "C" fn(*const FilterArguments);
 
-/// Notes a hit and rejects it, so that the search goes on.
+/// Records a hit and rejects it, so that traversal continues.
 unsafe extern "C" fn note(arguments: *const FilterArguments) {
     // SAFETY: Embree calls this with N = 1 for `rtcIntersect1`, where ray and hit are laid out as in `RayHit`, and with
     // the context that was passed to it.
@@ -128,7 +128,7 @@ unsafe extern "C" fn note(arguments: *const FilterArguments) {
     }
 }
 
-/// The functions that are used.
+/// Functions of Embree that are used.
 struct Functions {
     new_device: unsafe extern "C" fn(*const c_char) -> Handle,
     new_scene: unsafe extern "C" fn(Handle) -> Handle,
@@ -146,16 +146,16 @@ struct Functions {
     release_device: unsafe extern "C" fn(Handle),
 }
 
-/// The library, with a device that uses one thread.
+/// Embree library, with a device that uses one thread.
 pub(crate) struct Embree {
     functions: Functions,
     device: Handle,
-    /// Never unloaded: threads of the library may outlive the device.
+    /// Library, which is never unloaded because its threads may outlive the device.
     _library: ManuallyDrop<Library>,
 }
 
 impl Embree {
-    /// Loads the library, or says why it cannot.
+    /// Loads the library, or returns the reason why it cannot be loaded.
     pub(crate) fn load() -> Result<Self, String> {
         let mut reason = String::new();
         for name in NAMES {
@@ -188,16 +188,16 @@ impl Embree {
                 release_device: *library.get(b"rtcReleaseDevice")?,
             };
             let device = (functions.new_device)(c"threads=1,set_affinity=0".as_ptr());
-            assert!(!device.is_null(), "Embree makes no device");
+            assert!(!device.is_null(), "Embree cannot create a device");
             Ok(Self { functions, device, _library: ManuallyDrop::new(library) })
         }
     }
 
-    /// Builds a tree of the triangles of a scene; with a filter function, for all hits.
+    /// Builds an acceleration structure for a scene. If `all_hits` is set, a filter function records all hits.
     pub(crate) fn scene(&self, scene: &Scene, quality: Quality, all_hits: bool) -> Peer<'_> {
         let f = &self.functions;
         let (vertices, triangles) = (scene.vertices(), scene.triangles());
-        // SAFETY: buffers that Embree makes are at least as long as asked for; handles are those it gave.
+        // SAFETY: buffers that Embree creates are at least as long as requested; all handles come from Embree.
         let handle = unsafe {
             let handle = (f.new_scene)(self.device);
             (f.set_build_quality)(handle, quality as c_int);
@@ -232,7 +232,7 @@ impl Drop for Embree {
     }
 }
 
-/// A scene that Embree traces in.
+/// Scene of Embree.
 pub(crate) struct Peer<'e> {
     embree: &'e Embree,
     handle: Handle,
@@ -249,18 +249,18 @@ impl Peer<'_> {
         }
     }
 
-    /// Closest hits, ray by ray.
+    /// Finds closest hits, ray by ray.
     pub(crate) fn closest(&self, rays: &[RayHit], mut visit: impl FnMut(Option<u32>)) {
         let mut context = Self::context(false);
         for ray in rays {
             let mut ray = *ray;
-            // SAFETY: the scene is committed, context and ray are laid out as Embree expects.
+            // SAFETY: the scene is committed; context and ray have the layout that Embree expects.
             unsafe { (self.embree.functions.intersect1)(self.handle, &raw mut context, &raw mut ray) };
             visit(ray.triangle());
         }
     }
 
-    /// Closest hits, of streams of coherent rays.
+    /// Finds closest hits of streams of coherent rays.
     pub(crate) fn closest_streams(&self, rays: &[RayHit], mut visit: impl FnMut(Option<u32>)) {
         let mut context = Self::context(true);
         let mut stream = Vec::new();
@@ -268,7 +268,7 @@ impl Peer<'_> {
             stream.clear();
             stream.extend_from_slice(rays);
             let (count, stride) = (stream.len() as c_uint, size_of::<RayHit>());
-            // SAFETY: as above; the stream has that many rays.
+            // SAFETY: as above; the stream has `count` rays.
             unsafe {
                 let first = stream.as_mut_ptr();
                 (self.embree.functions.intersect1m)(self.handle, &raw mut context, first, count, stride);
@@ -277,7 +277,7 @@ impl Peer<'_> {
         }
     }
 
-    /// All hits, line by line, in order.
+    /// Finds all hits in order along each line, line by line.
     pub(crate) fn all_hits(&self, lines: &[RayHit], mut visit: impl FnMut(&[Found])) {
         let mut context = Self::context(false);
         for line in lines {

@@ -1,9 +1,9 @@
-//! How fast lines are traced, beside Embree 3 where it is installed (Debian: `libembree3-3`): the same triangles and the
-//! same rays, on one thread, by turns.
+//! Benchmark of line tracing, compared with Embree 3 if it is installed (Debian: `libembree3-3`): the same triangles
+//! and rays, on one thread, in interleaved rounds.
 //!
 //! ```text
-//! cargo bench --bench lines                        # all scenes that are there
-//! cargo bench --bench lines -- soda --rounds 3     # one of them
+//! cargo bench --bench lines                        # all available scenes
+//! cargo bench --bench lines -- soda --rounds 3     # one scene
 //! cargo bench --bench lines -- patches growth experiment
 //! ```
 
@@ -25,10 +25,10 @@ use sir::radiosity::{
 
 use embree::{Embree, Peer, Quality, RayHit};
 
-/// Patches per scene, about as many as in the experiment of the paper.
+/// Number of patches per scene, about as in the experiment of the paper.
 const PATCHES: u64 = 600_000;
 
-/// What to run, from the command line.
+/// Command-line options.
 struct Options {
     names: Vec<String>,
     rounds: usize,
@@ -40,9 +40,9 @@ impl Options {
         let mut options = Self { names: Vec::new(), rounds: 7, lines: 1_000_000 };
         let mut arguments = std::env::args().skip(1);
         while let Some(argument) = arguments.next() {
-            let mut number = || arguments.next().and_then(|n| n.parse().ok()).expect("a number");
+            let mut number = || arguments.next().and_then(|n| n.parse().ok()).expect("option needs a number");
             match argument.as_str() {
-                // Cargo adds this to every benchmark.
+                // Cargo passes this option to every benchmark.
                 "--bench" => {}
                 "--rounds" => options.rounds = number() as usize,
                 "--lines" => options.lines = number(),
@@ -61,11 +61,11 @@ fn main() {
     let options = Options::parse();
     let embree = Embree::load();
     if let Err(reason) = &embree {
-        println!("Embree is not compared, because it cannot be loaded: {reason}");
-        println!("(On Debian: apt-get install libembree3-3)\n");
+        println!("no comparison with Embree, because it cannot be loaded ({reason});");
+        println!("on Debian, install it with `apt-get install libembree3-3`\n");
     }
     let embree = embree.ok();
-    println!("One thread, {} lines, median of {} rounds by turns.", options.lines, options.rounds);
+    println!("One thread, {} lines, median of {} interleaved rounds.", options.lines, options.rounds);
     println!(
         "{:<16} {:<34} {:>10} {:>10} {:>7}  agreement",
         "scene", "M per second", "ours", "Embree", "ratio"
@@ -88,7 +88,7 @@ fn main() {
     }
 }
 
-/// The seconds of a call.
+/// Returns the duration of a call, in seconds.
 fn seconds(call: impl FnOnce()) -> f64 {
     let start = Instant::now();
     call();
@@ -100,7 +100,7 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-/// Runs things by turns and gives the median of the seconds of each.
+/// Runs all calls in interleaved rounds, and returns the median duration of each, in seconds.
 fn by_turns(rounds: usize, calls: &mut [&mut dyn FnMut()]) -> Vec<f64> {
     let mut times = vec![Vec::new(); calls.len()];
     for _ in 0..rounds {
@@ -111,7 +111,7 @@ fn by_turns(rounds: usize, calls: &mut [&mut dyn FnMut()]) -> Vec<f64> {
     times.into_iter().map(median).collect()
 }
 
-/// Prints a row: counts per second of ours and of peers.
+/// Prints a row: the rates of SIR and Embree, and their ratio.
 fn row(scene: &str, what: &str, counts: (f64, f64), times: &[f64], agreement: &str) {
     let ours = counts.0 / times[0] / 1e6;
     print!("{scene:<16} {what:<34} {ours:>10.2}");
@@ -124,7 +124,7 @@ fn row(scene: &str, what: &str, counts: (f64, f64), times: &[f64], agreement: &s
     }
 }
 
-/// The three rates of a scene.
+/// Measures the three rates of a scene.
 fn rates(name: &str, scene: Scene, embree: Option<&Embree>, options: &Options) {
     let model = Model::new(scene, Subdivision::Patches(PATCHES)).unwrap();
     let scene = &model.scene;
@@ -139,7 +139,7 @@ fn rates(name: &str, scene: Scene, embree: Option<&Embree>, options: &Options) {
     compare_all(name, &model, options.lines, all.as_ref(), options.rounds);
 }
 
-/// Rays that leave random points of all surfaces, to either side, as diffuse light does.
+/// Returns cosine-weighted rays from random points of all surfaces, to either side.
 fn cosine_rays(scene: &Scene, rays: u64) -> Vec<Ray> {
     let mut areas: Vec<f64> = scene.triangle_ids().map(|t| scene.area(t)).collect();
     for i in 1..areas.len() {
@@ -195,7 +195,7 @@ fn compare_closest(
     let n = rays.len() as f64;
     let agreement = format!("{:.3} % of the triangles", 100.0 * same as f64 / n);
     row(name, what, (n, n), &times[..2], &agreement);
-    // Embree traces coherent rays faster as streams; ours are in the order in which a pipeline makes them.
+    // Embree traces coherent rays faster as streams. These rays have the order in which a pipeline generates them.
     row(name, &format!("{what}, its streams"), (n, n), &[times[0], times[2]], "");
 }
 
@@ -246,10 +246,10 @@ fn compare_all(name: &str, model: &Model, lines: u64, peer: Option<&Peer<'_>>, r
     row(name, what, (hits as f64, f64::from(they_hit as u32)), &times, &agreement);
 }
 
-/// What a line costs if the same triangles are cut into ten times as many patches: hits and patches alone, and with the
-/// exchange of power.
+/// Measures the cost of a line if the same triangles are cut into ten times as many patches: hits and patches alone,
+/// and with the exchange of power.
 fn patches(options: &Options) {
-    println!("\nTen times the patches, M lines per second, and by how much a line takes longer");
+    println!("\nTen times the patches: M lines per second, and factor by which the time per line increases");
     println!(
         "{:<16} {:>10} {:>9} {:>9} {:>6} {:>9} {:>9} {:>6}",
         "scene", "patches", "find", "find 10×", "", "exchange", "exch. 10×", ""
@@ -295,10 +295,10 @@ fn patches(options: &Options) {
     }
 }
 
-/// The paper's experiment: all that a run does after loading, on one thread, beside what Embree takes to trace the same
-/// lines. There are 1.3 global lines for each of the first shot.
+/// Repeats the experiment of the paper on one thread: the complete run after loading, compared with the time that
+/// Embree needs to trace the same lines. There are 1.3 global lines per line of the first shot.
 fn experiment(embree: Option<&Embree>, options: &Options) {
-    println!("\nThe paper's experiment, seconds: all of a run, and the tracing alone by Embree");
+    println!("\nExperiment of the paper, seconds: the complete run, and the tracing alone by Embree");
     println!(
         "{:<16} {:>10} {:>10} {:>7} {:>10} {:>10} {:>7} {:>6}",
         "scene", "first shot", "Embree", "ratio", "multipath", "Embree", "ratio", "all"
@@ -350,7 +350,7 @@ fn experiment(embree: Option<&Embree>, options: &Options) {
     }
 }
 
-/// How the cost of a line, and of building, grows with the number of triangles.
+/// Measures how the cost of a line and of the build grows with the number of triangles.
 fn growth(embree: Option<&Embree>, options: &Options) {
     println!("\nGrowth with the number of triangles (balls in a room), M per second; seconds to build");
     println!(

@@ -1,14 +1,14 @@
-//! Where triangles come from.
+//! Scenes of the benchmark.
 
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use sir::geom::{LoadOptions, Material, Rgb, Scene, SceneBuilder, load, shapes};
 
-/// Makes or loads a scene, if it is there.
+/// Loads a scene, or returns `None` if its file does not exist.
 type Source = fn() -> Option<Scene>;
 
-/// Scenes by name. Those of others are absent where their files are.
+/// Scenes by name. Third-party scenes are skipped if their files do not exist.
 pub(crate) const ALL: [(&str, Source); 6] = [
     ("reading-room", || own("reading-room")),
     ("museum-stairs", || own("museum-stairs")),
@@ -18,25 +18,25 @@ pub(crate) const ALL: [(&str, Source); 6] = [
     ("living-room-2", || third_party("living-room-2/living-room-2.obj")),
 ];
 
-/// One of the project's scenes.
+/// Loads one of the project's own scenes.
 fn own(name: &str) -> Option<Scene> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).join(format!("{name}.glb"));
     Some(load(&path, &LoadOptions::default()).unwrap().scene)
 }
 
-/// A scene from where `SIR_TEST_DATA` says, or from a folder `shared` beside the repository.
+/// Loads a third-party scene from the folder in `SIR_TEST_DATA`, or from the folder `shared` next to the repository.
 fn third_party(path: &str) -> Option<Scene> {
     let data = std::env::var_os("SIR_TEST_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"), PathBuf::from);
     let path = data.join("scenes").join(path);
     if !path.is_file() {
-        println!("{} is not there: skipped", path.display());
+        println!("skipped: no file {}", path.display());
         return None;
     }
     Some(load(&path, &LoadOptions::default()).unwrap().scene)
 }
 
-/// Sixty-four balls in a room, of `20 · 4^level` triangles each.
+/// Returns a room with sixty-four balls of `20 · 4^level` triangles each.
 pub(crate) fn balls(level: u32) -> Scene {
     let mut builder = SceneBuilder::new();
     let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));

@@ -1,4 +1,4 @@
-//! The command-line program; see [`sir_cli`].
+//! Command-line program; see [`sir_cli`].
 
 fn main() -> std::process::ExitCode {
     sir_cli::main()

@@ -1,11 +1,11 @@
-//! Circles in a graph of files.
+//! Cycles in the dependency graph of files.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use crate::names::Arrows;
 
-/// For each file that is in a circle, a shortest one; circles of the same files are listed once. A circle begins with the first of its
-/// files.
+/// Returns a shortest cycle for each file that is in one. Cycles of the same files are listed once. A cycle begins with
+/// the first file for which it was found.
 pub(crate) fn circles(arrows: &Arrows) -> Vec<Vec<String>> {
     let mut used: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (from, to) in arrows.keys() {
@@ -24,7 +24,7 @@ pub(crate) fn circles(arrows: &Arrows) -> Vec<Vec<String>> {
     circles
 }
 
-/// The shortest way from a file back to it.
+/// Returns a shortest cycle through a file.
 fn shortest<'a>(used: &BTreeMap<&'a str, Vec<&'a str>>, start: &'a str) -> Option<Vec<&'a str>> {
     let mut came_from: BTreeMap<&str, &str> = BTreeMap::new();
     let mut queue = VecDeque::from([start]);
@@ -47,7 +47,7 @@ fn shortest<'a>(used: &BTreeMap<&'a str, Vec<&'a str>>, start: &'a str) -> Optio
     None
 }
 
-/// A circle in words, with the places of its arrows.
+/// Describes a cycle in words, with the line of each dependency.
 pub(crate) fn describe(folder: &str, arrows: &Arrows, circle: &[String]) -> String {
     let next = circle.iter().cycle().skip(1);
     let steps: Vec<String> = circle

@@ -1,24 +1,24 @@
-//! The arrows between the crates point downward, and only along the lines of the design.
+//! Dependencies between crates point downward, and only as the design allows.
 
 use std::process::Command;
 
 use serde_json::Value;
 
-/// Every crate of the workspace with the crates that it may use, from the bottom to the top.
+/// Crates of the workspace, from the bottom to the top, each with the crates that it may use.
 const LAYERS: [(&str, &[&str]); 14] = [
     ("sir-types", &[]),
     ("sir-geom", &["sir-types"]),
     ("sir-mesh", &["sir-geom"]),
     ("sir-lines", &["sir-types"]),
     ("sir-scenes", &["sir-geom"]),
-    // A tracer of lines needs no scene.
+    // The ray tracer does not depend on scenes.
     ("sir-accel", &["sir-types"]),
     ("sir-radiosity", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel"]),
     ("sir-parallel", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
-    // Exact answers need the solver, and nothing of pipelines or files.
+    // Validation depends on the solver, but not on pipelines or files.
     ("sir-validate", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel"]),
     ("sir-view", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
-    // Text to plan to files; known answers are no business of it.
+    // Pipelines do not depend on validation.
     (
         "sir-pipeline",
         &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel", "sir-view"],
@@ -69,23 +69,23 @@ const LAYERS: [(&str, &[&str]); 14] = [
     ),
 ];
 
-/// Crates of others that one crate hides from the rest.
+/// Third-party crates that only one crate may use.
 const HIDDEN: [(&str, &str); 2] = [("obvhs", "sir-accel"), ("mpi", "sir-parallel")];
 
-/// A crate and what it depends on, dev-dependencies left out: tests may look upward.
+/// Crates with their dependencies, except dev-dependencies: tests may use crates above.
 type Arrows = Vec<(String, Vec<String>)>;
 
-/// What is wrong with these arrows, one sentence each.
+/// Returns the violations, one sentence each.
 fn problems(arrows: &Arrows) -> Vec<String> {
     let mut problems = Vec::new();
     for (name, _) in LAYERS {
         if !arrows.iter().any(|(found, _)| found == name) {
-            problems.push(format!("{name} is in the list of layers, but not in the workspace"));
+            problems.push(format!("{name} is in the list of layers, but not in the workspace; remove it"));
         }
     }
     for (name, dependencies) in arrows {
         let Some((_, allowed)) = LAYERS.iter().find(|(listed, _)| listed == name) else {
-            problems.push(format!("{name} is not in the list of layers; give it its place there"));
+            problems.push(format!("{name} is not in the list of layers; add it there"));
             continue;
         };
         for dependency in dependencies {
@@ -95,7 +95,7 @@ fn problems(arrows: &Arrows) -> Vec<String> {
             }
             for (hidden, owner) in HIDDEN {
                 if dependency == hidden && name != owner {
-                    problems.push(format!("{name} must not depend on {hidden}, which is {owner}'s"));
+                    problems.push(format!("{name} must not depend on {hidden}, which only {owner} may use"));
                 }
             }
         }
@@ -103,7 +103,7 @@ fn problems(arrows: &Arrows) -> Vec<String> {
     problems
 }
 
-/// The workspace as cargo sees it.
+/// Returns the dependencies between the crates of the workspace, from `cargo metadata`.
 fn workspace() -> Arrows {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--offline", "--format-version", "1", "--manifest-path"])
@@ -156,11 +156,12 @@ fn wrong_arrows_are_found() {
         ("sir-pipeline", "sir-study", "sir-pipeline must not depend on sir-study"),
         ("sir-cli", "sir", "sir-cli must not depend on sir"),
         ("sir-cli", "sir-new", "sir-cli must not depend on sir-new"),
-        ("sir-view", "obvhs", "sir-view must not depend on obvhs, which is sir-accel's"),
-        ("sir-new", "glam", "sir-new is not in the list of layers; give it its place there"),
+        ("sir-view", "obvhs", "sir-view must not depend on obvhs, which only sir-accel may use"),
+        ("sir-new", "glam", "sir-new is not in the list of layers; add it there"),
     ] {
         assert_eq!(made_up(&[(name, &[used])]), [expected]);
     }
     let all_but_one: Arrows = LAYERS[1..].iter().map(|(name, _)| ((*name).to_owned(), Vec::new())).collect();
-    assert_eq!(problems(&all_but_one), ["sir-types is in the list of layers, but not in the workspace"]);
+    let missing = "sir-types is in the list of layers, but not in the workspace; remove it";
+    assert_eq!(problems(&all_but_one), [missing]);
 }

@@ -1,4 +1,4 @@
-//! The files of a crate depend on each other without circles.
+//! Dependencies between the files of a crate have no cycles.
 
 use std::fs;
 use std::path::Path;
@@ -7,12 +7,12 @@ use crate::circles::{circles, describe};
 use crate::modules::{Sources, read_sources, targets};
 use crate::names::arrows;
 
-/// What to do about a circle.
+/// Advice for removing a cycle.
 const REMEDY: &str = "Name items by the module that defines them (crate::tree::Tree, not crate::Tree); \
     move what both files need into a file that needs neither; leave only docs, `mod` and `pub use` in a lib.rs or mod.rs \
     whose modules name it.";
 
-/// The circles of a package, one sentence each.
+/// Returns the cycles of a package, one sentence each.
 fn problems(folder: &str, sources: &Sources) -> Vec<String> {
     let mut problems = Vec::new();
     for target in targets(sources) {
@@ -22,7 +22,7 @@ fn problems(folder: &str, sources: &Sources) -> Vec<String> {
     problems
 }
 
-/// Names of all packages, with the folders of their sources below the root of the workspace.
+/// Returns the names of all packages, with the folders of their sources below the root of the workspace.
 fn packages() -> Vec<(String, String)> {
     let mut packages = vec![("sir".to_owned(), "src/".to_owned())];
     for entry in fs::read_dir(root().join("crates")).unwrap() {
@@ -48,7 +48,7 @@ fn files_have_no_circles() {
     for (_, folder) in packages {
         found.extend(problems(&folder, &read_sources(&root().join(&folder))));
     }
-    assert!(found.is_empty(), "{} circles between files:\n{}\n{REMEDY}", found.len(), found.join("\n"));
+    assert!(found.is_empty(), "{} cycles between files:\n{}\n{REMEDY}", found.len(), found.join("\n"));
 }
 
 #[test]
@@ -58,12 +58,12 @@ fn all_files_are_looked_at() {
         let targets = targets(&sources);
         for file in sources.keys() {
             let known = targets.iter().any(|target| target.files.contains(file));
-            assert!(known, "{folder}{file} is no module of {name}");
+            assert!(known, "{folder}{file} is not a module of {name}");
         }
     }
 }
 
-/// The circles of a made-up crate.
+/// Returns the cycles of a synthetic crate.
 fn made_up(files: &[(&str, &str)]) -> Vec<String> {
     problems("", &files.iter().map(|&(name, text)| (name.to_owned(), text.to_owned())).collect())
 }

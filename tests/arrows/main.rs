@@ -1,5 +1,5 @@
-//! Dependencies point one way: between the crates downward, along the lines of the design, and between the files of a crate
-//! without circles.
+//! Checks of dependencies (*arrows*): between crates they point downward, as the design allows, and between the files
+//! of a crate they have no cycles.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

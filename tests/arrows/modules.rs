@@ -1,4 +1,4 @@
-//! The modules of a crate, found as the compiler finds them.
+//! Modules of a crate, resolved as the compiler does.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -6,20 +6,20 @@ use std::path::Path;
 
 use syn::{Attribute, Expr, ExprLit, Item, Lit, Meta};
 
-/// The text of each file of a crate, by its path below `src`.
+/// Text of each file of a crate, by its path below `src`.
 pub(crate) type Sources = BTreeMap<String, String>;
 
-/// A module: where it stands, and what is in it, code for tests left out.
+/// Module with its file and its items, except test code.
 pub(crate) struct Module {
     pub(crate) file: String,
     pub(crate) items: Vec<Item>,
 }
 
-/// A target of a package: a library or a program.
+/// Target of a package: a library or a program.
 pub(crate) struct Target {
     /// Modules by their paths; the path of the root is empty.
     pub(crate) modules: BTreeMap<Vec<String>, Module>,
-    /// All files, those for tests too.
+    /// All files, including those for tests.
     pub(crate) files: BTreeSet<String>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn read_sources(src: &Path) -> Sources {
     sources
 }
 
-/// The targets of a package: its library, and its programs.
+/// Returns the targets of a package: its library and its programs.
 pub(crate) fn targets(sources: &Sources) -> Vec<Target> {
     let is_root = |name: &str| {
         ["lib.rs", "main.rs"].contains(&name)
@@ -57,7 +57,7 @@ impl Target {
         target
     }
 
-    /// Adds a file and the modules that it declares, whose files are in `folder`.
+    /// Adds a file and the modules that it declares, whose files are in `folder`. `counts` is false for test code.
     fn add_file(&mut self, sources: &Sources, file: &str, folder: String, path: Vec<String>, counts: bool) {
         let text =
             sources.get(file).unwrap_or_else(|| panic!("no file {file} for module {}", path.join("::")));
@@ -93,10 +93,10 @@ impl Target {
                         Some(given) => vec![normal(&(folder_of(file) + &given))],
                         None => vec![format!("{folder}{name}.rs"), format!("{inner}mod.rs")],
                     };
-                    // A file of tests may be shared with other packages.
+                    // A test file may be shared with other packages.
                     let Some(found) = candidates.iter().find(|candidate| sources.contains_key(*candidate))
                     else {
-                        assert!(!counts, "{file}: no file for the module {name}");
+                        assert!(!counts, "{file}: no file for module {name}");
                         continue;
                     };
                     self.add_file(sources, found, inner, path, counts);
@@ -109,19 +109,19 @@ impl Target {
     }
 }
 
-/// The folder of a file, with the slash at its end.
+/// Returns the folder of a file, with a trailing slash.
 fn folder_of(file: &str) -> String {
     file.rfind('/').map_or_else(String::new, |slash| file[..=slash].to_owned())
 }
 
-/// The file that `#[path = "…"]` names.
+/// Returns the file named by `#[path = "…"]`.
 fn path_attribute(attribute: &Attribute) -> Option<String> {
     let Meta::NameValue(pair) = &attribute.meta else { return None };
     let Expr::Lit(ExprLit { lit: Lit::Str(text), .. }) = &pair.value else { return None };
     pair.path.is_ident("path").then(|| text.value())
 }
 
-/// A path without `..`, as far as that is possible.
+/// Removes `..` from a path where possible.
 fn normal(path: &str) -> String {
     let mut parts: Vec<&str> = Vec::new();
     for part in path.split('/') {
@@ -134,7 +134,7 @@ fn normal(path: &str) -> String {
     parts.join("/")
 }
 
-/// True for `#[cfg(test)]` and `#[cfg(all(test, …))]`.
+/// Returns true for `#[cfg(test)]` and `#[cfg(all(test, …))]`.
 pub(crate) fn is_for_tests(attribute: &Attribute) -> bool {
     let Meta::List(list) = &attribute.meta else { return false };
     let condition = list.tokens.to_string().replace(' ', "");

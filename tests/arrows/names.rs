@@ -1,4 +1,4 @@
-//! Which file names something of which other file.
+//! Dependencies between files, found by the paths that stand in them.
 
 use std::collections::BTreeMap;
 
@@ -8,14 +8,15 @@ use syn::{Attribute, ImplItem, Item, ItemUse, Macro, Meta, Path, TraitItem, UseT
 
 use crate::modules::{Target, is_for_tests};
 
-/// The first line on which a file names something of another, by the names of both.
+/// First line on which a file names an item of another file, by the names of both.
 pub(crate) type Arrows = BTreeMap<(String, String), usize>;
 
-/// The arrows between the files of a target.
+/// Returns the dependencies (arrows) between the files of a target.
 ///
-/// A file names another by a path that leads into a module there: in a `use`, a type, an expression, an attribute or the arguments
-/// of a macro. What a module re-exports counts as its own: `crate::Scene` names `lib.rs`, and `lib.rs` names the file that has it.
-/// Declarations of modules are no arrows, nor are calls of methods and code for tests.
+/// A file depends on another if it contains a path to a module in that file: in a `use`, a type, an expression, an
+/// attribute or the arguments of a macro. Re-exports belong to the module that re-exports: `crate::Scene` leads to
+/// `lib.rs`, and `lib.rs` depends on the file that defines it. Module declarations, method calls and test code are
+/// ignored.
 pub(crate) fn arrows(target: &Target) -> Arrows {
     let mut mentions = BTreeMap::new();
     for (path, module) in &target.modules {
@@ -38,7 +39,7 @@ pub(crate) fn arrows(target: &Target) -> Arrows {
     arrows
 }
 
-/// A path from the root of the target; `None` if it leads elsewhere.
+/// Resolves a path to one from the root of the target. Returns `None` if the path leads outside of the target.
 fn absolute(
     target: &Target,
     mentions: &BTreeMap<Vec<String>, Mentions>,
@@ -68,7 +69,7 @@ fn absolute(
     }
 }
 
-/// The paths that stand in a module, each with its line, and the names that it imports.
+/// Paths in a module, each with its line, and the names that the module imports.
 #[derive(Default)]
 struct Mentions {
     paths: Vec<(Vec<String>, usize)>,
@@ -77,7 +78,7 @@ struct Mentions {
 
 impl Mentions {
     fn add(&mut self, segments: Vec<String>, span: Span) {
-        // A single name is imported or local.
+        // A single name is imported or local and adds no dependency.
         if segments.len() > 1 {
             self.paths.push((segments, span.start().line));
         }
@@ -113,7 +114,7 @@ impl Mentions {
         self.add(path, span);
     }
 
-    /// Finds paths among tokens, such as the arguments of a macro.
+    /// Adds the paths in a token stream, such as the arguments of a macro.
     fn add_tokens(&mut self, tokens: TokenStream) {
         let tokens: Vec<TokenTree> = tokens.into_iter().collect();
         let is = |i: usize, c: char| matches!(tokens.get(i), Some(TokenTree::Punct(p)) if p.as_char() == c);
@@ -122,7 +123,8 @@ impl Mentions {
             match &tokens[i] {
                 TokenTree::Group(group) => self.add_tokens(group.stream()),
                 TokenTree::Ident(first) => {
-                    // Paths that begin with `::` lead to other crates; what follows a path's generics belongs to it.
+                    // Paths that begin with `::` lead to other crates. Segments after generic arguments continue a
+                    // path.
                     let begins = !(i >= 2 && is(i - 1, ':') && is(i - 2, ':'));
                     let mut segments = vec![first.to_string()];
                     while is(i + 1, ':')
@@ -194,7 +196,7 @@ impl<'ast> Visit<'ast> for Mentions {
         self.add_tokens(call.tokens.clone());
     }
 
-    /// Attributes of derive macros name functions and modules in strings: `#[serde(with = "crate::units")]`.
+    /// Adds paths in attributes. Those of derive macros may be strings: `#[serde(with = "crate::units")]`.
     fn visit_attribute(&mut self, attribute: &'ast Attribute) {
         if let Meta::List(list) = &attribute.meta {
             self.add_tokens(list.tokens.clone());
@@ -210,6 +212,6 @@ impl<'ast> Visit<'ast> for Mentions {
         }
     }
 
-    /// `pub(in crate::a)` limits who may name something, and names nothing itself.
+    /// Ignores visibilities: `pub(in crate::a)` is no dependency.
     fn visit_visibility(&mut self, _: &'ast Visibility) {}
 }

@@ -1,8 +1,8 @@
-//! Counts the surfaces along lines through a room with a ball, and how many of its corners see a lamp:
+//! Counts the surfaces along lines through a room with a ball, and the corners of the mesh that a lamp lights:
 //! `cargo run --release -p sir-accel --example crossings`.
 //!
-//! Positions and indices are all that is needed.
-#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+//! The only input is positions and indices.
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use std::f64::consts::PI;
 
@@ -17,7 +17,7 @@ struct Mesh {
 }
 
 impl Mesh {
-    /// Adds a closed surface: the image of a grid on a sphere, of unit vectors.
+    /// Adds a closed surface: the image of a grid of unit vectors on the sphere.
     fn add(&mut self, steps: u32, image: impl Fn(DVec3) -> DVec3) {
         let first = self.positions.len() as u32;
         let columns = 2 * steps;
@@ -39,7 +39,7 @@ impl Mesh {
                 let at = |row: u32, column: u32| first + row * columns + column % columns;
                 let [a, b] = [at(row, column), at(row, column + 1)];
                 let [c, d] = [at(row + 1, column), at(row + 1, column + 1)];
-                // Those at the poles have no area; they are never hit.
+                // Some triangles at the poles have no area; they are never hit.
                 self.indices.extend([[a, b, d], [a, d, c]]);
             }
         }
@@ -54,7 +54,7 @@ fn main() -> Result<(), AccelError> {
     let accel = Accel::build(&mesh.positions, &mesh.indices, Options::default())?;
     let mut tracer = accel.tracer();
 
-    // Lines through pairs of corners, on purpose: there a floating-point test would lose hits or find them twice.
+    // Lines through pairs of corners, where a floating-point test would lose hits or find them twice.
     let count = mesh.positions.len();
     let lines: Vec<Line> = (0..1_000_000usize)
         .filter_map(|i| {

@@ -11,29 +11,30 @@ use crate::options::Options;
 use crate::tree::Tree;
 use crate::triangle::GridTriangle;
 
-/// Triangles, arranged for tracing lines.
+/// Acceleration structure: triangles arranged for tracing lines.
 #[derive(Clone, Debug)]
 pub struct Accel {
     pub(crate) grid: Grid,
     pub(crate) tree: Tree,
-    /// Place of each triangle in the order of contact priorities; `None` if that is its number.
+    /// Rank of each triangle in the order of contact priorities; `None` if the rank is its number.
     ranks: Option<Vec<u32>>,
     /// `None` if all triangles are opaque.
     pub(crate) opacity: Option<OpacityTest>,
 }
 
 impl Accel {
-    /// Arranges triangles, which are numbered in the order of `indices`. Their front is the side from which the corners run
-    /// counterclockwise. Takes about a second per million triangles.
+    /// Builds the acceleration structure of triangles, which are numbered in the order of `indices`. Their front is the
+    /// side from which the corners run counterclockwise. Takes about a second per million triangles.
     ///
-    /// Corners are rounded to a grid of 2³¹ steps across the bounding sphere of all triangles. A triangle without an area, or without one
-    /// on this grid, keeps its number and is never hit. There may be no triangles at all. Positions that no triangle uses
-    /// are ignored.
+    /// Corners are rounded to a grid of 2³¹ steps across the bounding sphere of all triangles. A triangle that has no
+    /// area, or none on this grid, keeps its number and is never hit. `indices` may be empty. Positions that no
+    /// triangle uses are ignored.
     ///
     /// # Errors
     ///
-    /// If an index is out of range, a coordinate is not finite, the coordinates are too large or too small for their squares to be
-    /// computed, there are 2³¹ triangles or more, or the options have not as many elements as there are triangles.
+    /// Returns an error if an index is out of range, a coordinate is not finite, the coordinates are too large or too
+    /// small for their squares to be computed, there are 2³¹ triangles or more, or a list in the options does not have
+    /// one element per triangle.
     pub fn build(positions: &[DVec3], indices: &[[u32; 3]], options: Options) -> Result<Self, AccelError> {
         let grid = Grid::new(bounding_sphere(positions, indices)?);
         let Options { contact_priorities, opacity } = options;
@@ -50,7 +51,7 @@ impl Accel {
             .iter()
             .zip(0..)
             .map(|(corners, number)| {
-                // The sphere was made of the same positions: all are there.
+                // `bounding_sphere` has checked the indices.
                 GridTriangle::new(corners.map(|i| grid.vertex(positions[i as usize])), TriangleId(number))
             })
             .collect();
@@ -65,7 +66,7 @@ impl Accel {
         self.opacity.is_some()
     }
 
-    /// Memory in use \[bytes\].
+    /// Returns the memory in use \[bytes\].
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.tree.bytes()
@@ -73,13 +74,13 @@ impl Accel {
             + self.opacity.as_ref().map_or(0, OpacityTest::bytes)
     }
 
-    /// The order of triangles in contact.
+    /// Returns the order of triangles in contact.
     pub(crate) fn contacts(&self) -> ContactOrder<'_> {
         ContactOrder { tree: &self.tree, ranks: self.ranks.as_deref() }
     }
 }
 
-/// Checks triangles, and returns a sphere around those positions that they use.
+/// Checks triangles, and returns a bounding sphere of the positions that they use.
 fn bounding_sphere(positions: &[DVec3], indices: &[[u32; 3]]) -> Result<BoundingSphere, AccelError> {
     if indices.len() > MAX_TRIANGLES {
         return Err(AccelError::TooMany { count: indices.len() });
@@ -102,7 +103,7 @@ fn bounding_sphere(positions: &[DVec3], indices: &[[u32; 3]]) -> Result<Bounding
         BoundingSphere::of(positions)
     };
     match sphere {
-        // No triangles, or one place for all their corners: nothing has an area, on whatever grid.
+        // Without triangles, or with all their corners in one point, nothing has an area on any grid.
         None => Ok(BoundingSphere { center: DVec3::ZERO, radius: 1.0 }),
         Some(sphere) if sphere.radius == 0.0 => Ok(BoundingSphere { radius: 1.0, ..sphere }),
         Some(sphere) if (1e-140..=1e140).contains(&sphere.radius) => Ok(sphere),
@@ -110,7 +111,7 @@ fn bounding_sphere(positions: &[DVec3], indices: &[[u32; 3]]) -> Result<Bounding
     }
 }
 
-/// Returns the place of each element among all of them, ordered by priority and then by number.
+/// Returns the rank of each element in the order by priority, then by number.
 fn ranks(priorities: &[u32]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..priorities.len() as u32).collect();
     order.sort_unstable_by_key(|&i| (priorities[i as usize], i));

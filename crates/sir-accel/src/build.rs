@@ -1,4 +1,4 @@
-//! Builds the hierarchy: `obvhs` makes a binary tree, which is collapsed into nodes of sixteen boxes.
+//! Construction of the hierarchy: `obvhs` builds a binary tree, which is collapsed into nodes of sixteen boxes.
 
 use std::ops::Range;
 
@@ -15,19 +15,19 @@ use crate::node::{LEAF, MARGIN, Node};
 use crate::simd::backend::{LEAF_WIDTH, NODE_WIDTH};
 use crate::triangle::GridTriangle;
 
-/// Cost of a node in units of a triangle, which decides which triangles share a leaf. Between 2 and 6 the time of a search
-/// hardly changes; more saves memory.
+/// Cost of a node relative to a triangle, which decides which triangles share a leaf. Between 2 and 6 the search time
+/// hardly changes; a higher cost saves memory.
 const COLLAPSE_COST: f32 = 4.0;
 
-/// A tree of triangles that are named by their place in `order`.
+/// A tree whose leaves refer to triangles by their index in `order`.
 pub(crate) struct Hierarchy {
     pub(crate) nodes: Vec<Node>,
-    /// The triangles of each leaf.
+    /// Triangles of each leaf.
     pub(crate) leaves: Vec<Range<u32>>,
     pub(crate) order: Vec<u32>,
 }
 
-/// Builds the hierarchy of the triangles, of which there may be none.
+/// Builds the hierarchy of the triangles; there may be none.
 pub(crate) fn hierarchy(triangles: &[GridTriangle]) -> Hierarchy {
     if triangles.is_empty() {
         return Hierarchy { nodes: vec![Node::empty()], leaves: Vec::new(), order: Vec::new() };
@@ -43,8 +43,8 @@ pub(crate) fn hierarchy(triangles: &[GridTriangle]) -> Hierarchy {
     Hierarchy { nodes, leaves, order: binary.primitive_indices }
 }
 
-/// Builds a binary tree by the steps of `obvhs::bvh2::builder::build_bvh2`. That function also validates the tree in debug
-/// builds, and panics where the tree is deeper than what the traversals of `obvhs` allow; they are not used here.
+/// Builds a binary tree in the steps of `obvhs::bvh2::builder::build_bvh2`. That function also validates the tree in
+/// debug builds, and panics if the tree is deeper than the traversals of `obvhs` allow; these are not used here.
 fn binary_tree(boxes: &[Aabb]) -> Bvh2 {
     let parameters = BvhBuildParams::medium_build();
     let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
@@ -70,17 +70,18 @@ fn bounding_box(triangle: &GridTriangle) -> Aabb {
     b
 }
 
-/// The cheapest ways to cut the binary tree into nodes of many boxes.
+/// The cheapest ways to collapse the binary tree into wide nodes.
 ///
-/// The cost of a line is about the sum of the surface areas of all nodes (surface-area heuristic).
-/// After Ylitie, Karras and Laine (2017), *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*: the
-/// least cost of a subtree that hangs on a wide node by at most `k` boxes follows from those of its two halves.
+/// The cost of a line is about the sum of the surface areas of all nodes (surface-area heuristic). The algorithm is
+/// that of Ylitie, Karras and Laine (2017), *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*:
+/// the least cost of a subtree that occupies at most `k` boxes of a wide node follows from the least costs of its two
+/// halves.
 struct Cuts {
-    /// Per binary node, for `k` boxes at most, `k − 1` being the index: the least cost.
+    /// Least cost per binary node with at most `k` boxes, at index `k − 1`.
     costs: Vec<[f32; NODE_WIDTH - 1]>,
-    /// Number of the `k` boxes that the first half gets; 0 if the node itself is the only box.
+    /// Number of the `k` boxes that the first half occupies; 0 if the node itself is the only box.
     firsts: Vec<[u8; NODE_WIDTH - 1]>,
-    /// Number of boxes of a wide node that the first half gets.
+    /// Number of boxes of a wide node that the first half occupies.
     of_node: Vec<u8>,
 }
 
@@ -92,7 +93,7 @@ impl Cuts {
             firsts: vec![[0; NODE_WIDTH - 1]; count],
             of_node: vec![0; count],
         };
-        // Children after their parents.
+        // Breadth-first order: children after their parents.
         let mut order = vec![0usize];
         let mut next = 0;
         while next < order.len() {
@@ -127,7 +128,7 @@ impl Cuts {
         cuts
     }
 
-    /// The binary nodes whose boxes a wide node has.
+    /// Returns the binary nodes whose boxes form a wide node.
     fn members(&self, binary: &Bvh2, root: usize) -> Vec<usize> {
         let mut members = Vec::with_capacity(NODE_WIDTH);
         if binary.nodes[root].is_leaf() {
@@ -140,7 +141,7 @@ impl Cuts {
         };
         halves(root, self.of_node[root], NODE_WIDTH as u8, &mut waiting);
         while let Some((i, mut k)) = waiting.pop() {
-            // No more boxes than lower the cost.
+            // Use no more boxes than lower the cost.
             while k > 1 && self.costs[i][usize::from(k) - 2] == self.costs[i][usize::from(k) - 1] {
                 k -= 1;
             }
@@ -155,11 +156,11 @@ impl Cuts {
     }
 }
 
-/// Collapses the binary tree into nodes of many boxes.
+/// Collapses the binary tree into wide nodes.
 fn flatten(binary: &Bvh2, nodes: &mut Vec<Node>, mut leaf: impl FnMut(Range<u32>) -> u32) {
     let cuts = Cuts::new(binary);
     nodes.push(Node::empty());
-    // Pairs of a wide node that waits to be filled and the binary node it stands for.
+    // Pairs of a wide node that is still empty and the binary node that it replaces.
     let mut waiting = vec![(0usize, 0usize)];
     while let Some((wide, root)) = waiting.pop() {
         for (lane, m) in cuts.members(binary, root).into_iter().enumerate() {

@@ -7,22 +7,23 @@ use crate::hit::Hit;
 use crate::tree::Tree;
 use crate::triangle::{Crossing, GridTriangle};
 
-/// Distance within which parallel surfaces are in contact \[steps of the grid\]: a millionth of the radius of the scene.
+/// Distance within which parallel surfaces are in contact \[steps of the grid\]: a millionth of the radius of the
+/// scene.
 pub(crate) const CONTACT: f64 = 1e-6 * RADIUS;
 
 /// Largest squared sine of the angle between surfaces in contact.
 const PARALLEL: f64 = 1e-6;
 
-/// The rule of [`Hit`] for surfaces in contact.
+/// Order of surfaces in contact along a line, as [`Hit`] defines it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactOrder<'a> {
     pub(crate) tree: &'a Tree,
-    /// Place of each triangle in the order of priorities; `None` if that is its number.
+    /// Rank of each triangle in the order of priorities; `None` if the rank is its number.
     pub(crate) ranks: Option<&'a [u32]>,
 }
 
 impl ContactOrder<'_> {
-    /// Returns the key by which hits in contact are sorted along a line.
+    /// Returns the sort key of hits in contact along a line.
     fn key(&self, triangle: TriangleId, side: Side) -> (Side, u32) {
         let rank = self.ranks.and_then(|ranks| ranks.get(triangle.index())).copied().unwrap_or(triangle.0);
         match side {
@@ -40,26 +41,26 @@ impl ContactOrder<'_> {
     /// Returns true if a crossing close to the surface that a ray leaves lies ahead of it.
     #[cold]
     fn is_on_top(&self, leaving: TriangleId, other: &Crossing, line: &GridLine) -> bool {
-        let (Some(left), Some(met)) = (self.tree.triangle(leaving), self.tree.triangle(other.id)) else {
+        let (Some(left), Some(crossed)) = (self.tree.triangle(leaving), self.tree.triangle(other.id)) else {
             return other.t > 0.0;
         };
-        if !are_parallel(left, met) {
+        if !are_parallel(left, crossed) {
             return other.t > 0.0;
         }
-        // The side that the ray does not leave: it would face the origin if the line were followed from behind.
+        // The side opposite to the one that the ray leaves: it faces an origin far behind.
         let along = left.scaled_normal().dot(line.direction) > 0.0;
         let side = if along { Side::Back } else { Side::Front };
-        // A line that does not cross the start itself left it on an edge, and this is its neighbor there.
+        // A line that does not cross the triangle that it leaves starts on its edge, and `other` is the neighbor there.
         left.cross(line).is_some() && self.key(leaving, side) < self.key(other.id, other.side)
     }
 
-    /// Sorts the hits of a line by distance, and those in contact by their rule. `contact` is the distance [`CONTACT`] as a length
-    /// of the scene.
+    /// Sorts the hits of a line by distance, and those in contact by their key. `contact` is the distance [`CONTACT`]
+    /// as a length of the scene.
     #[cold]
     pub(crate) fn sort(&self, hits: &mut [Hit], contact: f64) {
         let key = |hit: &Hit| self.key(hit.triangle, hit.side);
-        // Copies of a triangle are met at the same distance. Sorted by their rule, they cost no swaps below; otherwise the time would
-        // grow with the square of their number.
+        // Copies of a triangle have hits at the same distance. Sorted by their key, they need no swaps below; otherwise
+        // the time would grow with the square of their number.
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(key(a).cmp(&key(b))));
         for i in 1..hits.len() {
             for j in (1..=i).rev() {

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// The reason why a list of triangles cannot be arranged for tracing.
+/// Reason why an acceleration structure cannot be built.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AccelError {
@@ -13,7 +13,7 @@ pub enum AccelError {
     OutOfRange {
         /// Number of the triangle.
         triangle: usize,
-        /// Number of the position that it asks for.
+        /// Index of the corner in the list of positions.
         index: u32,
         /// Number of positions.
         count: usize,
@@ -30,10 +30,10 @@ pub enum AccelError {
         /// Number of triangles.
         count: usize,
     },
-    /// A list has not as many elements as there are triangles.
+    /// A list in the options does not have one element per triangle.
     #[error("the list of {list} has {found} elements for {triangles} triangles; give one for each")]
     WrongLength {
-        /// The contents of the list.
+        /// Contents of the list.
         list: &'static str,
         /// Number of its elements.
         found: usize,

@@ -3,16 +3,16 @@
 use glam::DVec3;
 use sir_types::{BoundingSphere, Line};
 
-/// Steps of the vertex grid in the radius of the bounding sphere.
+/// Radius of the bounding sphere \[steps of the vertex grid\].
 pub(crate) const RADIUS: f64 = (1u32 << 30) as f64;
-/// Steps of the lines' grid in one step of the vertex grid.
+/// Steps of the line grid per step of the vertex grid.
 const FINE: f64 = 256.0;
-/// Steps of a unit direction.
+/// Length of a unit direction \[steps of the grid of directions\].
 const UNIT: f64 = (1u64 << 38) as f64;
-/// Lines start at most this far from the center, in radii, so that 128 bits hold every determinant.
+/// Largest distance of the origin of a line from the center \[radii\], so that 128 bits hold every determinant.
 const REACH: f64 = 1.75;
 
-/// The map between the scene and the grid.
+/// Map between the scene and the grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid {
     center: DVec3,
@@ -22,18 +22,18 @@ pub(crate) struct Grid {
     step: f64,
 }
 
-/// A line on the grid. Origin and direction hold numbers that doubles and integers represent exactly.
+/// A line on the grid. Doubles and integers represent its coordinates exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GridLine {
-    /// A point of the line, in steps; a multiple of 1/256.
+    /// A point of the line \[steps\], in multiples of 1/256.
     pub(crate) origin: DVec3,
-    /// Direction, of length one up to 2⁻³⁷; a multiple of 2⁻³⁸.
+    /// Direction, of length one up to 2⁻³⁷, in multiples of 2⁻³⁸.
     pub(crate) direction: DVec3,
-    /// How far the origin was moved along the line, in steps.
+    /// Distance by which the origin was moved along the line \[steps\].
     pub(crate) start: f64,
 }
 
-/// Nearest integer, for numbers below 2⁵¹: what the sum has no digits for is rounded off.
+/// Returns the nearest integer, for numbers below 2⁵¹: the sum has no bits for the fraction, so it is rounded off.
 #[inline(always)]
 fn nearest(x: f64) -> f64 {
     const SHIFT: f64 = 1.5 * (1u64 << 52) as f64;
@@ -42,25 +42,25 @@ fn nearest(x: f64) -> f64 {
 
 impl Grid {
     pub(crate) fn new(sphere: BoundingSphere) -> Self {
-        // Two steps less than the radius: differences of coordinates then fit 32 bits.
+        // Two steps less than `RADIUS`, so that differences of coordinates fit in 32 bits.
         let scale = (RADIUS - 2.0) / sphere.radius;
         Self { center: sphere.center, scale, step: 1.0 / scale }
     }
 
-    /// Returns the grid point next to a point of the scene.
+    /// Returns the grid point nearest to a point of the scene.
     pub(crate) fn vertex(&self, p: DVec3) -> [i32; 3] {
         ((p - self.center) * self.scale).to_array().map(|x| nearest(x) as i32)
     }
 
-    /// Returns the grid line next to a line; `None` if it passes far from the scene, is not finite, or if its direction is much longer
-    /// than one.
+    /// Returns the grid line nearest to a line; `None` if the line passes far from the scene, is not finite, or has a
+    /// direction much longer than one.
     #[inline(always)]
     pub(crate) fn line(&self, line: &Line) -> Option<GridLine> {
         let mut origin = (line.origin - self.center) * self.scale;
         let mut start = 0.0;
         let is_near = |origin: DVec3| origin.length_squared() <= (REACH * RADIUS) * (REACH * RADIUS);
         if !is_near(origin) {
-            // From far away: start where the line comes near.
+            // The origin is far away: move it to where the line comes near.
             start = -origin.dot(line.direction) - 1.25 * RADIUS;
             origin += start * line.direction;
             if !is_near(origin) {
@@ -72,7 +72,7 @@ impl Grid {
         if length_squared > 2.0 || length_squared.is_nan() {
             return None;
         }
-        // All six numbers alike, for vector instructions.
+        // The same operations for all six numbers, so that the compiler uses vector instructions.
         let [o, d] = [origin.to_array(), line.direction.to_array()];
         let fine = [FINE, FINE, FINE, 0.0, UNIT, UNIT, UNIT, 0.0];
         let numbers = [o[0], o[1], o[2], 0.0, d[0], d[1], d[2], 0.0];
@@ -82,13 +82,13 @@ impl Grid {
         Some(GridLine { origin, direction, start })
     }
 
-    /// Returns a length of the scene in steps.
+    /// Converts a length of the scene to steps.
     #[inline]
     pub(crate) fn steps(&self, length: f64) -> f64 {
         length * self.scale
     }
 
-    /// Returns a distance in steps as a length of the scene.
+    /// Converts a distance in steps to a length of the scene.
     #[inline]
     pub(crate) fn length(&self, steps: f64) -> f64 {
         steps * self.step
@@ -96,14 +96,14 @@ impl Grid {
 }
 
 impl GridLine {
-    /// A line that passes far from the scene.
+    /// Returns a line that passes far from the scene.
     pub(crate) fn far() -> Self {
         Self { origin: DVec3::X * (REACH * RADIUS), direction: DVec3::Y, start: 0.0 }
     }
 
-    /// On which side of the line the edge from `a` to `b` passes: the sign of `d · ((a − o) × (b − o))`, exactly,
-    /// with the line shifted by an infinitesimal if it is zero. Zero only for an edge parallel to the line in a
-    /// plane with it; no triangle with such an edge can be crossed.
+    /// Returns the side of the line on which the edge from `a` to `b` passes: the exact sign of
+    /// `d · ((a − o) × (b − o))`. If that is zero, the line is shifted by an infinitesimal. The result is zero only for
+    /// an edge parallel to the line (in a plane with it); no triangle with such an edge can be crossed.
     #[cold]
     pub(crate) fn exact_side(&self, a: [i32; 3], b: [i32; 3]) -> i32 {
         let o = self.origin.to_array().map(|x| (x * FINE) as i128);
@@ -119,7 +119,7 @@ impl GridLine {
         if determinant != 0 {
             return determinant.signum() as i32;
         }
-        // Derivative of the determinant by a shift of the line along each axis: (a − b) × d.
+        // Derivative of the determinant with respect to a shift of the line along each axis: (a − b) × d.
         let edge = std::array::from_fn(|k| i128::from(a[k]) - i128::from(b[k]));
         cross(edge, d).into_iter().find(|&x| x != 0).map_or(0, |x| x.signum() as i32)
     }

@@ -4,15 +4,15 @@ use std::ops::Range;
 
 use sir_types::{Barycentric, Side, TriangleId};
 
-/// A point where a line meets a triangle.
+/// A point where a line hits a triangle.
 ///
 /// # Surfaces in contact
 ///
-/// Hits of two parallel triangles within a millionth of the radius of the bounding sphere are *in contact*, and rounding does
-/// not decide about their order. Seen along the line, triangles whose front faces the origin come first, those of high
-/// priority before those of low priority. Then come triangles whose back faces the origin, low priority before high priority.
-/// In the opposite direction this gives the same hits in reverse. It means: of two sheets back to back, each one shows its
-/// front; of a decal on a wall, the one with the higher priority is on top. Without
+/// Hits of two parallel triangles within a millionth of the radius of the bounding sphere are *in contact*, and
+/// rounding does not decide their order. Seen along the line, triangles whose front faces the origin come first, those
+/// of high priority before those of low priority. Then come triangles whose back faces the origin, low priority before
+/// high priority. The opposite direction gives the same hits in reverse. As a result, two sheets back to back each show
+/// their front, and of a decal and its wall, the one with the higher priority is on top. Without
 /// [priorities](crate::Options::contact_priorities), a triangle has a higher priority than those before it in the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
@@ -20,9 +20,10 @@ pub struct Hit {
     pub t: f64,
     /// Number of the triangle in the list from which the structure was built.
     pub triangle: TriangleId,
-    /// Place on the triangle.
+    /// Point on the triangle.
     pub point: Barycentric,
-    /// The side that faces the origin of the line; for hits behind the origin, the side that faces an origin far before them.
+    /// Side that faces the origin of the line. For hits behind the origin, the side that faces an origin far before
+    /// them.
     pub side: Side,
 }
 
@@ -34,7 +35,7 @@ pub struct LineHits<'a> {
 }
 
 impl<'a> LineHits<'a> {
-    /// Hits line by line; those of line `i` are `hits[starts[i]..starts[i + 1]]`.
+    /// Takes the hits line by line; those of line `i` are `hits[starts[i]..starts[i + 1]]`.
     pub(crate) fn new(starts: &'a [u32], hits: &'a [Hit]) -> Self {
         Self { starts, hits }
     }

@@ -4,21 +4,22 @@ use crate::line_f32::{LineF32, Span};
 use crate::simd::backend::{F32Lanes, LEAF_WIDTH, SimdBackend};
 use crate::triangle::GridTriangle;
 
-/// Triangles in single precision, one lane each, in radii of the scene about its center.
+/// Triangles in single precision, one per lane, in radii of the scene relative to its center.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Leaf {
-    /// The first corner, per axis.
+    /// First corner, per axis.
     corner: [[f32; LEAF_WIDTH]; 3],
-    /// From the first corner to the second.
+    /// Edge from the first corner to the second.
     ab: [[f32; LEAF_WIDTH]; 3],
-    /// From the first corner to the third.
+    /// Edge from the first corner to the third.
     ac: [[f32; LEAF_WIDTH]; 3],
-    /// Edge functions farther from zero than this have the right sign in single precision; not a number in unused lanes.
+    /// Error bound of edge functions in single precision: larger absolute values have the right sign. NaN in unused
+    /// lanes.
     certain: [f32; LEAF_WIDTH],
 }
 
-/// Three coordinates, eight of each.
+/// Three coordinates of eight vectors.
 type Vectors<B> = [<B as SimdBackend>::LeafF32; 3];
 
 #[inline(always)]
@@ -45,11 +46,12 @@ fn cross<V: F32Lanes<LEAF_WIDTH>>(a: [V; 3], b: [V; 3]) -> [V; 3] {
     ]
 }
 
-/// Error bound of an edge function, as a part of the longest edge.
+/// Error bound of an edge function, relative to the longest edge.
 ///
-/// With u = 2⁻²⁴, a line that starts within 1.75 radii, and so M = 2.75 radii from any corner, and edges of length L ≤ 2:
-/// the offset of the corner is off by 6 u, its moment by 18 u, the functions of two edges by 35 u L and that of the third, the
-/// sum of these and of one that is off by 11 u L², by less than 110 u L. Twice as much is safe.
+/// Let u = 2⁻²⁴. A line starts within 1.75 radii of the center, and so within M = 2.75 radii of any corner; edges have
+/// the length L ≤ 2. Then the offset of the corner has the error 6 u, its moment 18 u, and the functions of two edges
+/// 35 u L. The function of the third edge is the sum of these and of a term with the error 11 u L², so its error is
+/// less than 110 u L. Twice as much is safe.
 const DOUBT: f32 = 1.0 / 65536.0;
 
 impl Leaf {
@@ -68,7 +70,7 @@ impl Leaf {
         leaf
     }
 
-    /// Returns the mask of the triangles that the infinite line may cross, within the span if there is one.
+    /// Returns the mask of the triangles that the infinite line may cross, within the span if one is given.
     #[inline(always)]
     pub(crate) fn candidates<B: SimdBackend>(&self, backend: B, line: &LineF32, span: Option<Span>) -> u32 {
         let (origin, direction) = (splat(backend, line.origin), splat(backend, line.direction));
@@ -85,10 +87,10 @@ impl Leaf {
         let e_bc = all.sub(e_ab).sub(e_ca);
         let (low, high) = (e_ab.min(e_ca).min(e_bc), e_ab.max(e_ca).max(e_bc));
         let certain = backend.load_leaf(&self.certain);
-        let mut may = zero.sub(certain).mask_le(low) | high.mask_le(certain);
+        let mut mask = zero.sub(certain).mask_le(low) | high.mask_le(certain);
         if let Some(Span { from, to }) = span {
-            // Height over `all` is the distance. The products are off by less than 70 u L² where the distance matters, and the
-            // distance as it is found in double precision by much less.
+            // The distance is `height / all`. The products have an error below 70 u L² where the distance matters; the
+            // distance in double precision has a much smaller error.
             let height = dot(normal, oa);
             let doubt = certain.mul(certain).mul(backend.splat_leaf(1.0 / DOUBT));
             let minus_doubt = zero.sub(doubt);
@@ -96,8 +98,8 @@ impl Leaf {
             let after_begin = height.sub(all.mul(backend.splat_leaf(from)));
             let along = zero.mask_le(all) & after_end.mask_le(doubt) & minus_doubt.mask_le(after_begin);
             let against = all.mask_le(zero) & minus_doubt.mask_le(after_end) & after_begin.mask_le(doubt);
-            may &= along | against;
+            mask &= along | against;
         }
-        may
+        mask
     }
 }

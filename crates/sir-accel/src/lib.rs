@@ -17,18 +17,18 @@
 //! # Ok::<(), sir_accel::AccelError>(())
 //! ```
 //!
-//! The crate needs positions, indices and nothing else: no scene, no materials, no files. Its plain types ([`Line`],
+//! The input is positions and indices; no scene, materials or files are needed. The plain types ([`Line`],
 //! [`TriangleId`], [`Barycentric`], [`Side`]) come from `sir-types`.
 //!
 //! # Design
 //!
-//! Some methods need *every* surface along a line, in order and with the right parity: a line must cross a closed surface an even
-//! number of times. Floating-point tests lose or double hits on edges and corners. This crate avoids that by construction
-//! instead of by tolerance:
+//! Some methods need *every* surface along a line, in order and with the right parity: a line must cross a closed
+//! surface an even number of times. Floating-point tests lose or duplicate hits on edges and corners. This crate avoids
+//! that by construction instead of by tolerance:
 //!
-//! * Corners are rounded to an integer grid of 2³¹ steps across the bounding sphere, lines to one that is 256 times
-//!   finer. From there on a crossing is a question about integers, with one right answer. Signs of edge functions are computed in
-//!   double precision where an error bound proves them, and otherwise in 128-bit integers.
+//! * Corners are rounded to an integer grid of 2³¹ steps across the bounding sphere, lines to a grid that is 256 times
+//!   finer. On these grids a crossing is an exact predicate of integers. Signs of edge functions are computed in double
+//!   precision where an error bound proves them, and otherwise in 128-bit integers.
 //! * A line that meets an edge or a corner *exactly* is treated as shifted by an infinitesimal `(ε, ε², ε³)`
 //!   (symbolic perturbation, Edelsbrunner and Mücke 1990). There is one shift for the whole line, so neighboring
 //!   triangles cannot disagree. A line therefore crosses every closed triangle mesh an even number of times.
@@ -37,30 +37,31 @@
 //!
 //! # Searches
 //!
-//! | search | one line | many lines | ends |
+//! | search | one line | many lines | range |
 //! |---|---|---|---|
 //! | first hit | [`closest`](Tracer::closest) | [`closest_each`](Tracer::closest_each) | [`Ray::range`] |
 //! | any hit | [`occluded`](Tracer::occluded) | [`occluded_each`](Tracer::occluded_each) | [`Ray::range`] |
 //! | all hits | [`all_hits`](Tracer::all_hits) | [`all_hits_each`](Tracer::all_hits_each) | none |
 //! | all hits in a range | [`all_hits_within`](Tracer::all_hits_within) | [`all_hits_within_each`](Tracer::all_hits_within_each) | [`TRange`] |
 //!
-//! Ranges are half-open ranges of signed distances along the unit direction, `start ≤ t < end`, see [`TRange`].
+//! A range is half-open and holds signed distances along the unit direction, `start ≤ t < end`; see [`TRange`].
 //!
 //! # Transparent surfaces
 //!
-//! A triangle of opacity `α` stops a line with the probability `α`, which may differ from place to place
-//! ([`Options::opacity`]). A hash of line and triangle decides, so all searches agree, and no random numbers are needed. A line
-//! that passes goes straight on, as if the triangle were not there. Parity then holds for crossings and no longer for hits: a line may
-//! pass the front of a leaf and meet its back. [`Tracer::all_crossings_each`] returns crossings and leaves opacity to the caller.
+//! A triangle of opacity `α` stops a line with the probability `α`, which may vary over the triangle
+//! ([`Options::opacity`]). A hash of line and triangle decides, so all searches agree, and no random numbers are
+//! needed. A line that passes continues straight, as if the triangle were not there. Parity then holds for crossings
+//! but no longer for hits: a line may pass the front of a leaf and hit its back. [`Tracer::all_crossings_each`] returns
+//! crossings and leaves opacity to the caller.
 //!
 //! # Speed
 //!
-//! The binary tree comes from `obvhs` and is collapsed into nodes of sixteen boxes and leaves of eight triangles. A line visits
-//! few of them, but would wait for the memory of each. So the functions for many lines keep dozens of lines active, advance each a step at a
-//! time, and prefetch what the next step needs. Boxes and triangles are culled in single precision, with a margin for
-//! rounding; the remaining triangles are tested in double precision, eight at a time. The algorithm is written once, for any set
-//! of vector instructions, and compiled for AVX-512, for AVX2 and for none. The processor chooses at run time; the hits are the same bit
-//! for bit.
+//! The binary tree comes from `obvhs` and is collapsed into nodes of sixteen boxes and leaves of eight triangles. A
+//! line visits few of them, but each visit may wait for memory. So the functions for many lines keep dozens of lines
+//! active, advance each by one step at a time, and prefetch the data of the next step. Boxes and triangles are culled
+//! in single precision, with a margin for rounding; the remaining triangles are tested in double precision, eight at a
+//! time. The algorithm is written once, generic over the SIMD backend, and compiled for AVX-512, AVX2 and plain arrays.
+//! The backend is chosen at run time; the hits are the same bit for bit.
 
 mod accel;
 mod build;
@@ -85,7 +86,7 @@ mod triangle;
 #[cfg(test)]
 mod tests;
 
-// Helpers of tests are shared with those outside, and name the crate as they do.
+// Test helpers are shared with the integration tests, which call the crate `sir_accel`.
 #[cfg(test)]
 extern crate self as sir_accel;
 

@@ -2,32 +2,32 @@
 
 use crate::grid::{GridLine, RADIUS};
 
-/// One of the bounds of a node: smallest coordinates per axis, then largest. The number inside is below 6.
+/// Index of one of the bounds of a node, below 6: smallest coordinates per axis, then largest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bound(u8);
 
 impl Bound {
-    /// The smallest or the largest coordinates of an axis.
+    /// Returns the bound that holds the smallest or the largest coordinates of an axis.
     fn new(largest: bool, axis: usize) -> Self {
         Self(3 * u8::from(largest) + (axis % 3) as u8)
     }
 
-    /// The number of the bound, below 6.
+    /// Returns the index, below 6.
     #[inline(always)]
     pub(crate) fn index(self) -> usize {
         usize::from(self.0)
     }
 }
 
-/// A line in radii of the scene about its center.
+/// A line in radii of the scene relative to its center.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LineF32 {
     pub(crate) origin: [f32; 3],
     pub(crate) direction: [f32; 3],
     pub(crate) inverse: [f32; 3],
-    /// Origin times inverse, negative.
+    /// Negative of the product of origin and inverse.
     pub(crate) offset: [f32; 3],
-    /// Per axis, the bounds of a node that are met first, and those that are met last.
+    /// Bounds of a node that the line meets first per axis, and those that it meets last.
     pub(crate) bounds: [[Bound; 3]; 2],
 }
 
@@ -36,7 +36,7 @@ impl LineF32 {
     pub(crate) fn new(line: &GridLine) -> Self {
         let origin = (line.origin * (1.0 / RADIUS)).as_vec3().to_array();
         let direction = line.direction.as_vec3().to_array();
-        // A component of zero becomes a tiny one: the slab is then passed or missed as a whole.
+        // A zero component becomes a tiny one, so that the line passes or misses the whole slab.
         let invert = |d: f32| if d == 0.0 { 1e20 } else { 1.0 / d };
         let inverse = [invert(direction[0]), invert(direction[1]), invert(direction[2])];
         let offset = [-origin[0] * inverse[0], -origin[1] * inverse[1], -origin[2] * inverse[2]];
@@ -46,19 +46,19 @@ impl LineF32 {
     }
 }
 
-/// The part of a line that matters, as distances from its origin on the grid \[radii\].
+/// Part of a line that is searched, as distances from its origin on the grid \[radii\].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
     pub(crate) from: f32,
     pub(crate) to: f32,
 }
 
-/// No point of the scene is farther from the origin of a line on the grid \[radii\].
+/// Upper bound of the distance from the origin of a line on the grid to any point of the scene \[radii\].
 const FAR: f64 = 4.0;
 
 impl Span {
-    /// The span between two distances \[steps of the grid\], enlarged by a slack on both sides that covers what single
-    /// precision loses.
+    /// Returns the span between two distances \[steps of the grid\], extended on both sides by a slack that covers the
+    /// rounding errors of single precision.
     #[inline(always)]
     pub(crate) fn new(from: f64, to: f64, slack: f64) -> Self {
         let radii = |steps: f64| (steps / RADIUS).clamp(-FAR, FAR) as f32;

@@ -8,8 +8,8 @@ pub fn prefetch<T>(what: &T) {
     prefetch_bytes(std::ptr::from_ref(what).cast(), size_of::<T>());
 }
 
-/// Collects items that will be read in random order. On Linux a large collection asks for huge pages (transparent huge pages),
-/// because a miss of the translation buffer takes as long as reading memory.
+/// Collects items that will be read in random order. On Linux a large collection requests transparent huge pages,
+/// because a TLB miss takes as long as a memory read.
 pub fn collect_in_huge_pages<T>(things: impl ExactSizeIterator<Item = T>) -> Vec<T> {
     let mut all = Vec::with_capacity(things.len());
     advise(&mut all);
@@ -17,22 +17,23 @@ pub fn collect_in_huge_pages<T>(things: impl ExactSizeIterator<Item = T>) -> Vec
     all
 }
 
-/// Size of a huge page of most processors \[bytes\].
+/// Size of a huge page on most processors \[bytes\].
 #[cfg(target_os = "linux")]
 const HUGE_PAGE: usize = 2 << 20;
 
-/// Asks for huge pages for what has not been written yet.
+/// Requests huge pages for the spare capacity of a vector.
 #[cfg(target_os = "linux")]
-#[allow(unsafe_code, reason = "a call of the system that changes nothing but how memory is organized")]
+#[allow(unsafe_code, reason = "a system call that changes only how memory is organized")]
 fn advise<T>(empty: &mut Vec<T>) {
     let room = empty.spare_capacity_mut();
     let bytes = size_of_val(room);
     let start = room.as_mut_ptr().cast::<u8>();
-    // Whole pages within.
+    // Only whole huge pages within the spare capacity.
     let before = start.align_offset(HUGE_PAGE);
     let whole = bytes.saturating_sub(before) / HUGE_PAGE * HUGE_PAGE;
     if whole > 0 {
-        // SAFETY: the range lies in memory that belongs to the vector, and the advice changes no contents. Failure does no harm.
+        // SAFETY: the range lies in memory that the vector owns, and the advice changes no contents. A failure is
+        // harmless.
         unsafe { libc::madvise(start.wrapping_add(before).cast(), whole, libc::MADV_HUGEPAGE) };
     }
 }

@@ -3,24 +3,24 @@
 use crate::line_f32::{Bound, LineF32};
 use crate::simd::backend::{F32Lanes, NODE_WIDTH, SimdBackend};
 
-/// The amount by which boxes are enlarged, in radii of the scene: more than single precision loses on the way through a node.
+/// Margin by which boxes are enlarged, in radii of the scene: more than the error of the slab test in single precision.
 pub(crate) const MARGIN: f32 = 3e-6;
 
-/// The highest bit of a child: set if it is the number of a leaf, and clear if it is that of a node.
+/// Highest bit of a child: set if the child is the number of a leaf, clear if it is the number of a node.
 pub(crate) const LEAF: u32 = 1 << 31;
 
-/// Boxes, one lane each, in radii of the scene about its center.
+/// Boxes, one per lane, in radii of the scene relative to its center.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
     /// Smallest coordinates per axis, then largest; an unused lane has an empty box.
     pub(crate) bounds: [[f32; NODE_WIDTH]; 6],
-    /// The contents of the boxes.
+    /// Node or leaf in each box, see [`LEAF`].
     pub(crate) children: [u32; NODE_WIDTH],
 }
 
 impl Node {
-    /// A node without children.
+    /// Returns a node without children.
     pub(crate) fn empty() -> Self {
         Self {
             bounds: std::array::from_fn(|i| {
@@ -30,11 +30,11 @@ impl Node {
         }
     }
 
-    /// A bound of all boxes.
+    /// Returns one of the bounds of all boxes.
     #[inline(always)]
     fn bound(&self, bound: Bound) -> &[f32; NODE_WIDTH] {
-        // SAFETY: the only constructor of a bound gives a number below 6.
-        #[allow(unsafe_code, reason = "six checks per node take a tenth of the time of a search")]
+        // SAFETY: the only constructor of `Bound` makes an index below 6.
+        #[allow(unsafe_code, reason = "six bounds checks per node take a tenth of the search time")]
         unsafe {
             self.bounds.get_unchecked(bound.index())
         }

@@ -1,18 +1,18 @@
-//! Surfaces that stop only some of the lines.
+//! Transparent surfaces, which stop only some of the lines.
 
 use std::fmt;
 use std::sync::Arc;
 
 use sir_types::{Barycentric, Line, TriangleId};
 
-/// Opacity of surfaces: the probability with which they stop a line. Implemented by functions
+/// Opacity of surfaces: the probability that they stop a line. Implemented for functions
 /// `Fn(TriangleId, Barycentric) -> f64`.
 pub trait Opacity: Send + Sync {
-    /// Returns the opacity of a triangle at a point, from 0 (open) to 1 (opaque). The same arguments must always give the same
-    /// result.
+    /// Returns the opacity of a triangle at a point, from 0 (open) to 1 (opaque). The same arguments must always give
+    /// the same result.
     fn opacity(&self, triangle: TriangleId, point: Barycentric) -> f64;
 
-    /// Memory in use \[bytes\], for [`Accel::bytes`](crate::Accel::bytes).
+    /// Returns the memory in use \[bytes\], which [`Accel::bytes`](crate::Accel::bytes) includes.
     fn bytes(&self) -> usize {
         0
     }
@@ -24,13 +24,13 @@ impl<F: Fn(TriangleId, Barycentric) -> f64 + Send + Sync> Opacity for F {
     }
 }
 
-/// Decides which crossings stop their lines.
+/// Opacity test: decides which crossings stop their lines.
 ///
-/// A crossing stops its line with a probability equal to the opacity there. The decision is no random number but a hash of line
-/// and triangle: a line meets the same surfaces alone and among others, in all searches.
+/// A crossing stops its line with a probability equal to the opacity there. The decision is a hash of line and
+/// triangle, not a random number: a line hits the same surfaces in all searches, traced alone or with others.
 #[derive(Clone)]
 pub(crate) struct OpacityTest {
-    /// Triangles whose opacity is asked for; all others are opaque.
+    /// True for triangles whose opacity is evaluated; all others are opaque.
     is_transparent: Vec<bool>,
     opacity: Arc<dyn Opacity>,
 }
@@ -40,12 +40,12 @@ impl OpacityTest {
         Self { is_transparent, opacity }
     }
 
-    /// Number of triangles for which it was made.
+    /// Returns the number of triangles for which the test was made.
     pub(crate) fn triangles(&self) -> usize {
         self.is_transparent.len()
     }
 
-    /// Returns true if some triangle is transparent.
+    /// Returns true if any triangle is transparent.
     pub(crate) fn is_needed(&self) -> bool {
         self.is_transparent.contains(&true)
     }
@@ -57,7 +57,7 @@ impl OpacityTest {
         !is_transparent || uniform(line, triangle) < self.opacity.opacity(triangle, point)
     }
 
-    /// Memory in use \[bytes\].
+    /// Returns the memory in use \[bytes\].
     pub(crate) fn bytes(&self) -> usize {
         self.is_transparent.len() + self.opacity.bytes()
     }
@@ -70,7 +70,7 @@ impl fmt::Debug for OpacityTest {
     }
 }
 
-/// Returns a number in `[0, 1)`, a hash of line and triangle that behaves like a uniform random number.
+/// Returns a hash of line and triangle in `[0, 1)` that behaves like a uniform random number.
 fn uniform(line: &Line, triangle: TriangleId) -> f64 {
     let numbers = [line.origin, line.direction].map(|v| v.to_array().map(f64::to_bits));
     let hash = |hash, number| mix(hash ^ number);
@@ -79,7 +79,8 @@ fn uniform(line: &Line, triangle: TriangleId) -> f64 {
     (hash >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// Does a step of SplitMix64 (Steele, Lea and Flood 2014): every bit of the result depends on every bit of the number.
+/// Performs a step of SplitMix64 (Steele, Lea and Flood 2014): every bit of the result depends on every bit of the
+/// number.
 fn mix(number: u64) -> u64 {
     let mut z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,4 +1,4 @@
-//! The questions asked of rays: the closest hit, and whether there is any.
+//! Queries for rays: the closest hit, and occlusion (any hit).
 
 use crate::accel::Accel;
 use crate::contact::CONTACT;
@@ -9,13 +9,13 @@ use crate::ray::Ray;
 use crate::search::first_hit::Rays;
 use crate::triangle::Crossing;
 
-/// How many rays ahead memory is prefetched.
+/// Number of rays by which prefetching runs ahead.
 const AHEAD: usize = 16;
 
-/// Distance within which the first hits are compared by the rule for surfaces in contact \[steps of the grid\].
+/// Distance from the nearest hit within which the contact order chooses the first hit \[steps of the grid\].
 const SLACK: f64 = 2.0 * CONTACT;
 
-/// Hands out rays one by one.
+/// Source of rays, which it converts to the grid one by one.
 struct Feed<'a> {
     accel: &'a Accel,
     rays: &'a [Ray],
@@ -23,8 +23,8 @@ struct Feed<'a> {
 }
 
 impl Feed<'_> {
-    /// Returns the next ray that comes near the scene: its index, its line, the part of the line that is searched, and the place of
-    /// the triangle that it leaves. Calls `miss` with the indices of rays that pass far from the scene.
+    /// Returns the next ray that comes near the scene: its index, its line, the part of the line that is searched, and
+    /// the place of the triangle that it leaves. Calls `miss` with the indices of rays that pass far from the scene.
     #[inline(always)]
     fn next(&mut self, mut miss: impl FnMut(usize)) -> Option<(usize, GridLine, Span, u32)> {
         loop {
@@ -44,7 +44,7 @@ impl Feed<'_> {
             };
             let span = Span::new(start, grid.steps(ray.range.end) - line.start, SLACK);
             let leaving = ray.leaving.and_then(|id| tree.place(id)).unwrap_or(u32::MAX);
-            // The next rays leave triangles that may not be in the caches.
+            // The triangles that the next rays leave may not be in the cache.
             if let Some(id) = self.rays.get(index + AHEAD).and_then(|ray| ray.leaving) {
                 tree.prefetch_place(id);
             }
@@ -71,20 +71,20 @@ impl Feed<'_> {
     }
 }
 
-/// The search for closest hits.
+/// Query for closest hits.
 pub(crate) struct ClosestHits<'a, F> {
     feed: Feed<'a>,
-    /// Crossings that lie close to another one, with the index of their ray.
+    /// Crossings that are close to another one, with the index of their ray.
     close: Vec<(usize, Crossing)>,
     visit: F,
 }
 
-/// The closest hit of a ray so far.
+/// Closest hit of a ray so far.
 pub(crate) struct Closest {
     index: usize,
-    /// The crossing with the smallest distance.
+    /// Crossing with the smallest distance.
     best: Option<Crossing>,
-    /// True if there were others close to it.
+    /// True if another crossing is close to it.
     close: bool,
 }
 
@@ -93,15 +93,15 @@ impl<'a, F> ClosestHits<'a, F> {
         Self { feed: Feed { accel, rays, next: 0 }, close: Vec::new(), visit }
     }
 
-    /// Notes that two crossings are so close that the rule for contacts may order them: those within the slack of the first one, in
-    /// whatever order they are found.
+    /// Records two crossings so close that the contact order may apply to them. This records all crossings within
+    /// [`SLACK`] of the nearest one, in whatever order they are found.
     #[cold]
     fn note_close(&mut self, ray: &mut Closest, one: Crossing, other: Crossing) {
         ray.close = true;
         self.close.extend([(ray.index, one), (ray.index, other)]);
     }
 
-    /// Returns the first of hits that are close together, by the rule for contacts.
+    /// Returns the first of the hits that are close together, by the contact order.
     #[cold]
     fn first_of_close(&mut self, index: usize, best: Crossing, line: &GridLine) -> Hit {
         let grid = &self.feed.accel.grid;
@@ -154,13 +154,13 @@ impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
     }
 }
 
-/// The search for any hit.
+/// Query for any hit.
 pub(crate) struct Occlusions<'a, F> {
     feed: Feed<'a>,
     visit: F,
 }
 
-/// True if a ray is occluded, as far as is known.
+/// Occlusion of a ray so far.
 pub(crate) struct Occlusion {
     index: usize,
     is_occluded: bool,

@@ -6,10 +6,10 @@ use sir_types::{Line, TriangleId};
 
 /// A part of a line: the points whose signed distance `t` from the origin satisfies `start ≤ t < end`.
 ///
-/// Distances have the unit of the coordinates, because directions have unit length. The range is half-open, so that
-/// consecutive ranges have every hit of a line exactly once, and a shadow ray that ends on a light, `0.0..distance`, does not
-/// meet the light. Bounds are compared with [`Hit::t`](crate::Hit::t) as it is returned, without any tolerance. Either bound may be infinite; a
-/// range with a bound that is NaN, or with `end ≤ start`, is empty.
+/// Distances have the unit of the coordinates, because directions have unit length. The range is half-open, so
+/// consecutive ranges contain every hit of a line exactly once, and a shadow ray that ends on a light, `0.0..distance`,
+/// does not hit the light. Bounds are compared with [`Hit::t`](crate::Hit::t) as returned, without any tolerance.
+/// Either bound may be infinite. A range is empty if a bound is NaN or `end ≤ start`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TRange {
     /// Smallest distance, included.
@@ -64,28 +64,28 @@ pub struct Ray {
     pub line: Line,
     /// The part of the line that is searched.
     pub range: TRange,
-    /// The triangle on which the origin lies, if the ray leaves a surface. That triangle is not met again, and of the surfaces
-    /// in contact with it only those are met that lie on top of the side which the ray leaves. This decides where the ray begins;
-    /// the start of the range counts only if it is above zero.
+    /// Triangle on which the origin lies, if the ray leaves a surface. The ray does not hit this triangle again. Of the
+    /// surfaces in contact with it, the ray hits only those on top of the side that it leaves. This rule decides where
+    /// the ray begins; the start of the range counts only if it is above zero.
     pub leaving: Option<TriangleId>,
 }
 
 impl Ray {
-    /// A ray from the origin of a line to infinity.
+    /// Returns a ray from the origin of a line to infinity.
     #[inline]
     #[must_use]
     pub fn new(line: Line) -> Self {
         Self { line, range: TRange::AHEAD, leaving: None }
     }
 
-    /// A ray from a point of a triangle, the origin of the line, to infinity.
+    /// Returns a ray from a point of a triangle, the origin of the line, to infinity.
     #[inline]
     #[must_use]
     pub fn leaving(line: Line, triangle: TriangleId) -> Self {
         Self { line, range: TRange::AHEAD, leaving: Some(triangle) }
     }
 
-    /// The same ray with another range of distances: `Ray::new(line).within(0.0..5.0)`.
+    /// Returns the same ray with another range of distances: `Ray::new(line).within(0.0..5.0)`.
     #[inline]
     #[must_use]
     pub fn within(self, range: impl Into<TRange>) -> Self {
@@ -94,7 +94,7 @@ impl Ray {
 }
 
 impl From<Line> for Ray {
-    /// A ray from the origin of the line to infinity, which leaves no surface.
+    /// Returns a ray from the origin of the line to infinity, which leaves no surface.
     #[inline]
     fn from(line: Line) -> Self {
         Self::new(line)

@@ -1,4 +1,4 @@
-//! Tracing lines.
+//! The tracer: searches for the hits of lines and rays.
 
 use sir_types::Line;
 
@@ -13,17 +13,17 @@ use crate::search::queue::MAX_LINES;
 use crate::simd::dispatch::Backend;
 
 impl Accel {
-    /// Returns a tracer of lines; make one per thread.
+    /// Returns a tracer. Each thread needs its own.
     #[must_use]
     pub fn tracer(&self) -> Tracer<'_> {
         Tracer::new(self, Backend::best())
     }
 }
 
-/// Traces lines. Holds scratch memory, so it belongs to one thread.
+/// Tracer of lines and rays. It holds scratch memory, so it belongs to one thread.
 ///
-/// The hits of a line depend on nothing but the line and the triangles: not on other lines that are traced with it, nor on the
-/// processor. A line with a coordinate that is not finite meets nothing. Directions must have unit length.
+/// The hits of a line depend only on the line and the triangles, not on other lines that are traced with it, nor on the
+/// processor. A line with a coordinate that is not finite hits nothing. Directions must have unit length.
 #[derive(Clone, Debug)]
 pub struct Tracer<'a> {
     accel: &'a Accel,
@@ -37,71 +37,72 @@ impl<'a> Tracer<'a> {
         Self { accel, backend, first_hit: FirstHitScratch::default(), all_hits: AllHitsScratch::default() }
     }
 
-    /// Returns the structure in which lines are traced.
+    /// Returns the acceleration structure.
     #[must_use]
     pub fn accel(&self) -> &'a Accel {
         self.accel
     }
 
-    /// Returns the first hit of a ray, transparent triangles that let it pass left out.
+    /// Returns the first hit of a ray. Transparent triangles that let it pass are skipped.
     pub fn closest(&mut self, ray: &Ray) -> Option<Hit> {
         let mut first = None;
         self.closest_each(std::slice::from_ref(ray), |_, hit| first = hit);
         first
     }
 
-    /// Finds the first hits of rays: calls `visit` with the index of each ray and its hit, in any order.
+    /// Finds the first hits of rays. Calls `visit` with the index of each ray and its hit, in any order.
     ///
-    /// Many rays at once are several times faster than each by itself.
+    /// Tracing many rays at once is several times faster than tracing them one by one.
     pub fn closest_each(&mut self, rays: &[Ray], visit: impl FnMut(usize, Option<Hit>)) {
         let mut rays = ClosestHits::new(self.accel, rays, visit);
         let (tree, scratch) = (&self.accel.tree, &mut self.first_hit);
         self.backend.run(FirstHits { tree, scratch, rays: &mut rays });
     }
 
-    /// Returns true if a ray has a hit: exactly if [`closest`](Self::closest) finds one, but without a search for the first one.
+    /// Returns true exactly if [`closest`](Self::closest) finds a hit. This is faster, because any hit ends the search.
     pub fn occluded(&mut self, ray: &Ray) -> bool {
         let mut is_occluded = false;
         self.occluded_each(std::slice::from_ref(ray), |_, is| is_occluded = is);
         is_occluded
     }
 
-    /// Finds out which rays have a hit: calls `visit` with the index of each ray and true if it has one, in any order.
+    /// Determines which rays have a hit. Calls `visit` with the index of each ray and true if it has one, in any order.
     ///
-    /// Many rays at once are several times faster than each by itself.
+    /// Tracing many rays at once is several times faster than tracing them one by one.
     pub fn occluded_each(&mut self, rays: &[Ray], visit: impl FnMut(usize, bool)) {
         let mut rays = Occlusions::new(self.accel, rays, visit);
         let (tree, scratch) = (&self.accel.tree, &mut self.first_hit);
         self.backend.run(FirstHits { tree, scratch, rays: &mut rays });
     }
 
-    /// Returns all hits of an infinite line, in order along it, those behind its origin included and transparent triangles that
-    /// let it pass left out.
+    /// Returns all hits of an infinite line, in order along it, including those behind its origin. Transparent
+    /// triangles that let it pass are skipped.
     pub fn all_hits(&mut self, line: &Line) -> &[Hit] {
         self.find_hits(std::slice::from_ref(line));
         self.all_hits.hits()
     }
 
-    /// Finds all hits of infinite lines, as [`all_hits`](Self::all_hits) does: calls `visit` with the hits of some lines at a time, in order.
+    /// Finds all hits of infinite lines, as [`all_hits`](Self::all_hits) does. Calls `visit` with the hits of some
+    /// consecutive lines at a time, in order.
     ///
-    /// Many lines at once are several times faster than each by itself.
+    /// Tracing many lines at once is several times faster than tracing them one by one.
     pub fn all_hits_each(&mut self, lines: &[Line], visit: impl FnMut(&LineHits<'_>)) {
         self.each(lines, Self::find_hits, visit);
     }
 
-    /// Returns those of [`all_hits`](Self::all_hits) whose distance lies in a range.
+    /// Returns the hits of [`all_hits`](Self::all_hits) whose distance lies in a range.
     pub fn all_hits_within(&mut self, line: &Line, range: impl Into<TRange>) -> &[Hit] {
         self.find_hits(&[(*line, range.into())]);
         self.all_hits.hits()
     }
 
-    /// Finds all hits of parts of lines, as [`all_hits_each`](Self::all_hits_each) does of whole lines.
+    /// Finds all hits of parts of lines, as [`all_hits_each`](Self::all_hits_each) does for whole lines.
     pub fn all_hits_within_each(&mut self, parts: &[(Line, TRange)], visit: impl FnMut(&LineHits<'_>)) {
         self.each(parts, Self::find_hits, visit);
     }
 
-    /// As [`all_hits_each`](Self::all_hits_each), but no line passes a transparent triangle: the opacity of each hit is left to the
-    /// caller.
+    /// Finds all crossings of infinite lines, as [`all_hits_each`](Self::all_hits_each) does, but includes the
+    /// transparent triangles that let a line pass. The caller applies the opacity of each hit.
     pub fn all_crossings_each(&mut self, lines: &[Line], visit: impl FnMut(&LineHits<'_>)) {
         self.each(lines, Self::find_crossings, visit);
     }
@@ -114,7 +115,7 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Finds the crossings of some lines that stop them.
+    /// Finds the crossings that stop their lines, for at most [`MAX_LINES`] lines.
     fn find_hits<P: Part>(&mut self, lines: &[P]) {
         self.find_crossings(lines);
         if let Some(test) = &self.accel.opacity {
@@ -123,7 +124,7 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Finds the crossings of some lines, [`MAX_LINES`] at most.
+    /// Finds the crossings of at most [`MAX_LINES`] lines.
     fn find_crossings<P: Part>(&mut self, lines: &[P]) {
         let Self { accel: Accel { grid, tree, .. }, backend, all_hits, .. } = self;
         backend.run(AllHits { grid, tree, lines, scratch: all_hits });

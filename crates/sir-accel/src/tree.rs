@@ -1,4 +1,4 @@
-//! The bounding volume hierarchy as it is searched: nodes of many boxes, leaves of many triangles.
+//! The bounding volume hierarchy as it is searched: wide nodes, and leaves of several triangles.
 
 use std::ops::Range;
 
@@ -11,23 +11,23 @@ use crate::node::{LEAF, Node};
 use crate::simd::prefetch::prefetch as prefetch_bytes;
 use crate::triangle::GridTriangle;
 
-/// The hierarchy. Node 0 is the root.
+/// Bounding volume hierarchy. Node 0 is the root.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
     pub(crate) leaves: Vec<Leaf>,
-    /// Place in `triangles` of the first one of each leaf.
+    /// Place of the first triangle of each leaf: its index in `triangles`.
     pub(crate) firsts: Vec<u32>,
-    /// In the order of the leaves.
+    /// Triangles in the order of the leaves.
     pub(crate) triangles: Vec<GridTriangle>,
-    /// Place in `triangles` of each triangle, by its number.
+    /// Place of each triangle, by its number.
     places: Vec<u32>,
     /// Largest number of entries on the stack of a depth-first search.
     pub(crate) stack_size: usize,
 }
 
 impl Tree {
-    /// Builds the tree of triangles that are in the order of their numbers.
+    /// Builds the tree of triangles, which are given in the order of their numbers.
     pub(crate) fn new(triangles: &[GridTriangle]) -> Self {
         let Hierarchy { nodes, leaves: ranges, order } = hierarchy(triangles);
         let mut places = vec![0; triangles.len()];
@@ -41,7 +41,7 @@ impl Tree {
         Self { nodes, leaves, firsts, triangles, places, stack_size }
     }
 
-    /// Prefetches a child.
+    /// Prefetches a child of a node: a node or a leaf.
     #[inline(always)]
     pub(crate) fn prefetch(&self, child: u32) {
         let (nodes, leaves) = (self.nodes.as_ptr().cast::<u8>(), self.leaves.as_ptr().cast::<u8>());
@@ -59,19 +59,19 @@ impl Tree {
         }
     }
 
-    /// Prefetches a triangle.
+    /// Prefetches the triangle at a place.
     #[inline(always)]
     pub(crate) fn prefetch_triangle(&self, place: u32) {
         let triangle = self.triangles.as_ptr().wrapping_add(place as usize);
         prefetch_bytes(triangle.cast(), size_of::<GridTriangle>());
     }
 
-    /// Returns the triangle with a number.
+    /// Returns the triangle with the given number.
     pub(crate) fn triangle(&self, id: TriangleId) -> Option<&GridTriangle> {
         self.triangles.get(self.place(id)? as usize)
     }
 
-    /// Returns the place in `triangles` of the triangle with a number.
+    /// Returns the place of the triangle with the given number.
     pub(crate) fn place(&self, id: TriangleId) -> Option<u32> {
         self.places.get(id.index()).copied()
     }

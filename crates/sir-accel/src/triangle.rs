@@ -12,14 +12,14 @@ use crate::simd::backend::F64Lanes;
 pub(crate) struct GridTriangle {
     pub(crate) corners: [[i32; 3]; 3],
     pub(crate) id: TriangleId,
-    /// Edge functions farther from zero than this have the right sign in double precision.
+    /// Error bound of edge functions in double precision: larger absolute values have the right sign.
     pub(crate) certain: f32,
 }
 
 /// A crossing of a line and a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
-    /// Distance along the line in steps of the grid, from the line's origin on the grid.
+    /// Distance along the line from its origin on the grid \[steps of the grid\].
     pub(crate) t: f64,
     pub(crate) point: Barycentric,
     /// The side that faces the origin of the line.
@@ -27,22 +27,22 @@ pub(crate) struct Crossing {
     pub(crate) id: TriangleId,
 }
 
-/// The edge functions of pairs of a line and a triangle, a pair per lane, and what follows from their signs.
+/// Edge functions of pairs of a line and a triangle, one pair per lane, and the decisions that follow from their signs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EdgeTest<N> {
-    /// Mask of the triangles that the (infinite, infinitesimally shifted) line certainly crosses, with the back towards
-    /// its origin.
+    /// Mask of the triangles that the (infinite, infinitesimally shifted) line certainly crosses, with their back
+    /// towards its origin.
     pub(crate) back: u32,
-    /// The same with the front towards the origin.
+    /// Mask of the triangles that it certainly crosses, with their front towards its origin.
     pub(crate) front: u32,
-    /// Mask of the triangles for which rounding leaves it open.
+    /// Mask of the triangles that need the exact test, because rounding may have changed a sign.
     pub(crate) doubt: u32,
-    /// The numbers from which the crossing follows, see [`Crossing::locate`].
+    /// Input of [`Crossing::locate`].
     pub(crate) factors: Factors<N>,
 }
 
-/// The edge functions of the edges `ab` and `ca`, and their sum for all three edges; and how far, along the line, the first
-/// corner lies from the origin, and the second and the third from the first.
+/// Edge functions of the edges `ab` and `ca`, and the sum over all three edges; then the distances along the line from
+/// the origin to the first corner, and from the first corner to the second and the third.
 pub(crate) type Factors<N> = [N; 6];
 
 /// Three coordinates.
@@ -93,20 +93,20 @@ impl<D: F64Lanes> EdgeTest<D> {
 }
 
 impl Crossing {
-    /// Returns the crossing as a hit.
+    /// Converts the crossing to a hit.
     #[inline(always)]
     pub(crate) fn hit(&self, grid: &Grid, line: &GridLine) -> Hit {
         let Self { t, point, side, id } = *self;
         Hit { t: grid.length(t + line.start), triangle: id, point, side }
     }
 
-    /// Returns the distance and the place of a crossing.
+    /// Returns the distance of a crossing along the line, and its point on the triangle.
     ///
-    /// Weights are clamped so that a crossing is a point of the triangle whatever rounding does: this keeps the distance
-    /// meaningful on slivers and at grazing incidence.
+    /// Weights are clamped so that the crossing is a point of the triangle in spite of rounding. This keeps the
+    /// distance meaningful on slivers and at grazing incidence.
     #[inline(always)]
     pub(crate) fn locate([e_ab, e_ca, all, a, ab, ac]: Factors<f64>) -> (f64, Barycentric) {
-        // Comparisons that also turn 0/0 into 0.
+        // These comparisons also turn 0/0 into 0.
         let clamp = |x: f64, most: f64| {
             let x = if x > 0.0 { x } else { 0.0 };
             if x < most { x } else { most }
@@ -126,19 +126,19 @@ impl GridTriangle {
     pub(crate) fn new(corners: [[i32; 3]; 3], id: TriangleId) -> Self {
         let [a, b, c] = corners.map(position);
         let longest = [b - a, c - a].map(|e| e.abs().element_sum()).into_iter().fold(0.0, f64::max);
-        // With u = 2⁻⁵³, offsets below M = 2³² and edges of 1-norm L, the edge functions are off by at most 50 u (M + L) L;
-        // L < 2³³, so 64 u · 3M · L = 2⁻¹³·⁴ L is safe. 2⁻¹³ L also covers rounding it to f32.
+        // With u = 2⁻⁵³, offsets below M = 2³² and edges of 1-norm L, the edge functions have an error of at most
+        // 50 u (M + L) L. L < 2³³, so 64 u · 3M · L = 2⁻¹³·⁴ L is a safe bound. 2⁻¹³ L also covers its rounding to f32.
         let certain = (longest / 8192.0) as f32;
         Self { corners, id, certain }
     }
 
-    /// Normal of the front, twice as long as the area.
+    /// Returns the normal of the front; its length is twice the area.
     pub(crate) fn scaled_normal(&self) -> DVec3 {
         let [a, b, c] = self.corners.map(position);
         (b - a).cross(c - a)
     }
 
-    /// First corner, and the edges from there to the second and the third, in radii of the scene.
+    /// Returns the first corner, and the edges from it to the second and the third, in radii of the scene.
     pub(crate) fn in_radii(&self) -> [DVec3; 3] {
         let [a, b, c] = self.corners.map(position);
         [a / RADIUS, (b - a) / RADIUS, (c - a) / RADIUS]
@@ -165,7 +165,8 @@ impl GridTriangle {
         Some(Crossing { t, point, side, id: self.id })
     }
 
-    /// Returns the side that faces the origin if all three edges pass on the same side of the line.
+    /// Returns the side that faces the origin of the line; `None` unless all three edges pass on the same side of the
+    /// line. The test is exact.
     #[cold]
     #[inline(never)]
     pub(crate) fn exact_crossing(&self, line: &GridLine) -> Option<Side> {

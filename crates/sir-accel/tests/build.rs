@@ -1,4 +1,4 @@
-//! What is built, and what is refused.
+//! Input that is accepted, and input that is rejected.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use glam::DVec3;
@@ -71,14 +71,14 @@ fn nothing_is_hit_where_nothing_has_an_area() {
         assert!(!tracer.occluded(&line.into()));
         assert!(tracer.all_hits(&line).is_empty());
     }
-    // They keep their numbers.
+    // Degenerate triangles keep their numbers.
     let indices = [degenerate[1], HALVES[0], degenerate[0], HALVES[1]];
     let accel = Accel::build(&SQUARE, &indices, Options::default()).unwrap();
     let line = Line { origin: DVec3::new(0.25, 0.75, 1.0), direction: DVec3::NEG_Z };
     assert_eq!(accel.tracer().closest(&line.into()).map(|hit| hit.triangle.0), Some(3));
 }
 
-/// Numbers that no line should have.
+/// Lines with NaN, infinite or huge coordinates, and empty ranges.
 #[test]
 fn impossible_lines_and_rays_meet_nothing() {
     let accel = Accel::build(&SQUARE, &HALVES, Options::default()).unwrap();
@@ -100,11 +100,11 @@ fn impossible_lines_and_rays_meet_nothing() {
     let hit = tracer.closest(&line.into()).unwrap();
     assert!(tracer.occluded(&Ray::new(line).within(hit.t..1.1)));
     assert!(!tracer.occluded(&Ray::new(line).within(0.5..hit.t)));
-    // A ray that leaves a triangle which does not exist meets what is ahead of it.
+    // A ray that leaves a triangle that does not exist hits what is ahead of it.
     assert!(tracer.occluded(&Ray::leaving(line, TriangleId(7))));
 }
 
-/// Of two copies of a triangle the one with the higher priority shows its front; of equal ones, the later one.
+/// Of two copies of a triangle, the one with the higher priority shows its front; if they are equal, the later one.
 #[test]
 fn priorities_order_surfaces_in_contact() {
     let indices = [HALVES[0], HALVES[0], HALVES[0]];
@@ -127,7 +127,7 @@ fn priorities_order_surfaces_in_contact() {
     assert_eq!(numbers(given([4, 4, 0]), &down), [1, 0, 2]);
 }
 
-/// Opacity is not asked for where a triangle is opaque.
+/// The opacity of opaque triangles is not evaluated.
 #[test]
 fn only_transparent_triangles_ask_for_their_opacity() {
     let open = |triangle: TriangleId, _: Barycentric| {

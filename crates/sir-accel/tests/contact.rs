@@ -1,4 +1,4 @@
-//! Surfaces in contact are put in order by their rule, in both directions.
+//! Surfaces in contact are ordered by priority, in both directions of the line.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 mod common;
@@ -8,11 +8,11 @@ use glam::DVec3;
 use sir_accel::Ray;
 use sir_geom::{Line, Material, Rgb, Scene, SceneBuilder, Side, shapes};
 
-/// Squares in the plane through `height`, facing up or down, in the order given.
+/// Returns squares in planes at the given heights, facing up or down, in the order given.
 fn sheets(sheets: &[(f64, Side)]) -> Scene {
     let mut b = SceneBuilder::new();
     let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
-    // Tilted, so that rounding has something to decide.
+    // Tilted, so that rounding affects the distances.
     let tilt = glam::DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.7);
     for (i, &(height, facing)) in sheets.iter().enumerate() {
         let r = 1.0 + 0.37 * i as f64;
@@ -50,7 +50,7 @@ fn of_two_sheets_back_to_back_each_shows_its_front() {
     }
 }
 
-/// Exact copies, as many as make the square of their number felt.
+/// So many exact copies that quadratic running time would be noticed.
 #[test]
 fn a_thick_stack_of_copies_is_in_order() {
     const COPIES: u32 = 4000;
@@ -72,7 +72,7 @@ fn a_thick_stack_of_copies_is_in_order() {
     assert_eq!(met, fronts.chain(backs).collect::<Vec<_>>());
 }
 
-/// The other half of a square is in the same plane, but not on top of the first.
+/// The other half of a square is in the same plane as the first, but not on top of it.
 #[test]
 fn a_ray_from_the_common_edge_of_coplanar_triangles_is_free() {
     let scene = sheets(&[(0.0, Side::Front)]);
@@ -94,7 +94,7 @@ fn a_gap_wider_than_contact_is_a_gap() {
     assert_eq!(order(&scene, false), [(0, Side::Front), (1, Side::Front)]);
 }
 
-/// A ray that leaves the lower of two fronts is stopped by the upper one, and not the other way round.
+/// A ray that leaves the lower of two fronts is stopped by the upper one, and not vice versa.
 #[test]
 fn rays_follow_the_same_rule() {
     let scene = sheets(&[(0.0, Side::Front), (0.0, Side::Front)]);

@@ -1,4 +1,4 @@
-//! Lines pass where surfaces are open, and only there.
+//! Lines pass surfaces exactly where they are open.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 mod common;
@@ -9,7 +9,7 @@ use sir_accel::Ray;
 use sir_geom::{Line, Material, MaterialId, Opacity, Rgb, Scene, SceneBuilder, Texture, TextureMap, Wrap};
 use sir_lines::{Purpose, Streams};
 
-/// Unit squares `[0, 1]² × z` with coordinates equal to `x` and `y`.
+/// Returns unit squares `[0, 1]² × z` with texture coordinates equal to `x` and `y`.
 fn squares(heights: &[f64], material: impl FnOnce(&mut SceneBuilder) -> MaterialId) -> Scene {
     let mut b = SceneBuilder::new();
     let m = material(&mut b);
@@ -25,7 +25,8 @@ fn squares(heights: &[f64], material: impl FnOnce(&mut SceneBuilder) -> Material
     b.build().unwrap().scene
 }
 
-/// A checkerboard of 8 × 8 fields whose first one, at the origin, is open, and of the given alpha elsewhere.
+/// Adds a checkerboard of 8 × 8 fields: the first one, at the origin, and every other one are open; the rest have the
+/// given alpha.
 fn checkerboard(b: &mut SceneBuilder, alpha: u8, cutoff: Option<f64>) -> MaterialId {
     let texel = |i: u32| [0, 0, 0, if (i % 8 + i / 8).is_multiple_of(2) { 0 } else { alpha }];
     let texture = b.add_texture(Texture::new(8, 8, (0..64).map(texel).collect()).unwrap());
@@ -39,7 +40,7 @@ fn even(opacity: f64) -> impl FnOnce(&mut SceneBuilder) -> MaterialId {
     move |b| b.add_material(Material { opacity, ..Material::diffuse("veil", Rgb::splat(0.5)) })
 }
 
-/// A slanted line through a point of the unit square at height 0.
+/// Returns a slanted line through a point of the unit square at height 0.
 fn line_through(x: f64, y: f64, i: u64) -> Line {
     let mut s = Streams::new(5, Purpose::PROBE).line(i);
     let direction = DVec3::new(s.unit() - 0.5, s.unit() - 0.5, -1.0).normalize();
@@ -48,13 +49,13 @@ fn line_through(x: f64, y: f64, i: u64) -> Line {
 
 #[test]
 fn a_mask_stops_lines_exactly_where_it_is_closed() {
-    // With a cutoff half covered fields are closed, too.
+    // With a cutoff, half-covered fields are closed, too.
     for (alpha, cutoff) in [(255, None), (255, Some(0.5)), (140, Some(0.5))] {
         let scene = squares(&[0.0], |b| checkerboard(b, alpha, cutoff));
         let accel = arrange(&scene);
         let mut tracer = accel.tracer();
         let mut stopped = 0;
-        // The middles of 16² cells in each of the fields.
+        // Centers of 16² cells in each of the fields.
         for i in 0..128 * 128u64 {
             let (column, row) = (i % 128, i / 128);
             let line = line_through((column as f64 + 0.5) / 128.0, (row as f64 + 0.5) / 128.0, i);
@@ -67,8 +68,8 @@ fn a_mask_stops_lines_exactly_where_it_is_closed() {
     }
 }
 
-/// Of 200,000 lines as many are stopped as a binomial distribution lets expect, within five deviations: a right program would
-/// fail with one seed in a million.
+/// The number of 200,000 lines that are stopped agrees with a binomial distribution within five standard deviations: a
+/// correct program would fail with one seed in a million.
 #[test]
 fn opacity_is_the_share_of_lines_that_are_stopped() {
     const LINES: u64 = 200_000;
@@ -88,7 +89,7 @@ fn opacity_is_the_share_of_lines_that_are_stopped() {
         by_number[tracer.all_hits(&line).len()] += 1;
         first_is_upper += u64::from(tracer.closest(&line.into()).is_some_and(|hit| hit.triangle.0 < 2));
     }
-    // One after the other, they stop lines independently.
+    // The two squares stop lines independently.
     assert_share(by_number[0], 0.49);
     assert_share(by_number[1], 0.42);
     assert_share(by_number[2], 0.09);
@@ -113,10 +114,10 @@ fn closest_hits_are_the_first_of_all_hits() {
     });
     let mut later = 0;
     for ((line, first), all) in lines.iter().zip(&firsts).zip(&all) {
-        // Alone, a line has the same hits as among others.
+        // A line traced alone has the same hits as among others.
         assert_eq!(other.all_hits(line), &all[..]);
         assert_eq!(other.closest(&(*line).into()), *first);
-        // What lies at the origin may be before or behind it by rounding.
+        // Rounding may put hits at the origin before or behind it.
         if all.iter().all(|hit| hit.t.abs() > 1e-5) {
             let ahead = all.iter().find(|hit| hit.t > 0.0);
             assert_eq!(ahead.map(|hit| hit.triangle), first.map(|hit| hit.triangle), "{line:?}");

@@ -10,7 +10,7 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Line, Material, Rgb, Scene, SceneBuilder, Side};
 use sir_lines::{Purpose, Streams};
 
-/// A sphere with this many halvings of an icosahedron's edges.
+/// Returns a sphere: an icosahedron whose edges are halved `level` times.
 fn ball(level: u32) -> Scene {
     let mut b = SceneBuilder::new();
     let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
@@ -52,7 +52,7 @@ fn a_convex_solid_is_entered_once_and_left_once() {
     assert!(met > 400_000, "{met}");
 }
 
-/// The hits of a line in the opposite direction are the same ones, from the other sides, in reverse.
+/// A line in the opposite direction has the same hits, from the other sides, in reverse.
 #[test]
 fn both_directions_see_the_same_surfaces() {
     let scene = furnished_room();
@@ -60,7 +60,7 @@ fn both_directions_see_the_same_surfaces() {
     let mut backwards = accel.tracer();
     let sphere = scene.bounding_sphere();
     each_line(&scene, 3, 100_000, |line, hits| {
-        // Origins far away are moved differently in the two directions: not the same line to the last bit.
+        // Origins far away are moved differently in the two directions, so the lines are not the same to the last bit.
         if line.origin.distance(sphere.center) > 1.5 * sphere.radius {
             return;
         }
@@ -89,7 +89,7 @@ fn hits_lie_where_they_say_and_in_order() {
     });
 }
 
-/// A ray from outside meets first what the line meets first.
+/// The closest hit of a ray from outside is the first hit of its line.
 #[test]
 fn the_closest_hit_is_the_first_of_all() {
     let scene = furnished_room();
@@ -105,7 +105,7 @@ fn the_closest_hit_is_the_first_of_all() {
     }
 }
 
-/// A ray that leaves a triangle meets what comes next on the whole line.
+/// The closest hit of a ray that leaves a triangle is the next hit of the whole line.
 #[test]
 fn the_next_surface_is_the_next_of_all() {
     let scene = furnished_room();

@@ -1,4 +1,4 @@
-//! A program that contains `sir`: it writes a pipeline, then checks and runs it by the command line of `sir`.
+//! A program that embeds `sir`: it writes a pipeline, then checks and runs it with the commands of `sir`.
 //!
 //!     cargo run --release -p sir-cli --example own_command
 

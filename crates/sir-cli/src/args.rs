@@ -1,4 +1,4 @@
-//! The command line.
+//! The command-line arguments of the program.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -15,18 +15,18 @@ use crate::viewfactors::options::ViewFactorsArgs;
 
 const EXAMPLES: &str = "\
 Examples:
-  sir info room.gltf                             what is in this scene, and what should a pipeline set?
-  sir check scenes/cornell-box/pipeline.ron      what will it do, and how long will it take?
-  sir run scenes/cornell-box/pipeline.ron        light the scene; the files go to results/cornell-box
+  sir info room.gltf                             show the contents of a scene, and suggest settings
+  sir check scenes/cornell-box/pipeline.ron      check a pipeline, and estimate its time and memory
+  sir run scenes/cornell-box/pipeline.ron        light the scene; write files to results/cornell-box
   sir compare results/cornell-box results/cornell-box-2
-  sir resume results/cornell-box                 go on where it was stopped, by Ctrl-C or a power cut
-  mpirun -n 4 sir run room.ron                   on several machines, if built with --features mpi
-  sir scaling room.ron --threads 1,2,4           how much faster are more threads?
-  sir viewfactors room.obj --by group            which share of the flux of a part arrives where?
-  sir experiment --scale 0.01                    what does the paper of 2009 claim, and does it hold?
-  sir validate --quick                           are answers right where they are known?
+  sir resume results/cornell-box                 continue a run stopped by Ctrl-C or a power cut
+  mpirun -n 4 sir run room.ron                   run on several machines, if built with --features mpi
+  sir scaling room.ron --threads 1,2,4           measure the speed-up by more threads
+  sir viewfactors room.obj --by group            compute the view factors between named parts
+  sir experiment --scale 0.01                    check the claims of the paper of 2009, with 1 % of the lines
+  sir validate --quick                           compare results with known answers
 
-A pipeline is a text file like this one (docs/pipeline.md tells all):
+A pipeline is a text file like this one (reference: docs/pipeline.md):
   Pipeline(
       stages: [
           Load(path: \"room.gltf\"),
@@ -37,18 +37,18 @@ A pipeline is a text file like this one (docs/pipeline.md tells all):
       ],
   )
 
-Results go to files and to the standard output, progress and warnings to the standard error stream.
+Results go to files and standard output, progress and warnings to standard error.
 
-Exit codes: 0 done; 1 failed; 2 wrong usage or pipeline; 130 interrupted.";
+Exit codes: 0 success; 1 failure; 2 invalid usage or pipeline; 130 interrupted.";
 
-/// Lights scenes: global-line Monte Carlo radiosity.
+/// Lights scenes by global-line Monte Carlo radiosity.
 ///
-/// Computes how much light every part of every surface of a scene gets, by diffuse reflection between all of them,
-/// and states how accurate the result is.
+/// Computes the light on every part of every surface of a scene, with all diffuse reflections between the surfaces, and
+/// states the accuracy of the result.
 #[derive(Debug, Parser)]
 #[command(name = "sir", version, after_long_help = EXAMPLES, after_help = "`sir --help` shows examples and exit codes.")]
 pub struct Args {
-    /// What to do.
+    /// Command to execute.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -56,86 +56,89 @@ pub struct Args {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run a pipeline: light its scene and write the files that it asks for.
+    /// Run a pipeline: light its scene and write its output files.
     ///
-    /// Prints the files that it wrote, pictures first, and what each stage did. The run directory also gets a
-    /// result.json with all of this for programs. The same pipeline gives the same files every time; only the times
-    /// in result.json differ.
+    /// Prints the paths of the files, images first, and a summary of each stage. Also writes all of this to result.json
+    /// in the run directory, for other programs. The same pipeline always gives the same files, except for the times in
+    /// result.json.
     Run(RunArgs),
-    /// Go on with a run that was interrupted.
+    /// Continue an interrupted run.
     ///
-    /// A run saves its state every few minutes, and when it is stopped by Ctrl-C or SIGTERM. The result has the same
-    /// bytes as that of a run which was never stopped, on any number of threads and ranks.
+    /// A run writes a checkpoint every few minutes, and when Ctrl-C or SIGTERM stops it. The result has the same bytes
+    /// as that of an uninterrupted run, on any number of threads and ranks.
     Resume {
         /// The run directory.
         directory: PathBuf,
-        /// How to go about it.
+        /// Options of the execution.
         #[command(flatten)]
         how: HowArgs,
     },
     /// Check a pipeline without running it.
     ///
-    /// Reports all problems of the file at once. If there are none, reads the scene, tries some lines, and
-    /// prints counts, light sources, memory and an estimate of the time. Writes nothing.
+    /// Reports all problems of the file at once. If there are none, reads the scene, traces some lines, and prints
+    /// counts, light sources, memory and an estimate of the time. Writes nothing.
     Check {
         /// The pipeline file.
         pipeline: PathBuf,
     },
-    /// Say what is in a scene, and what to set to light it.
+    /// Show the contents of a scene, and suggest pipeline settings.
     ///
-    /// Reads a glTF, GLB or OBJ file and prints counts, sizes, materials, light sources, how closed it is and which sides of
-    /// its surfaces face each other; then what is strange, and what a pipeline should set. Writes nothing.
+    /// Reads a glTF, GLB or OBJ file and prints counts, sizes, materials, light sources, how closed the scene is and
+    /// which sides of its surfaces face each other; then likely mistakes and suggested pipeline settings. Writes
+    /// nothing.
     Info(InfoArgs),
     /// Compare two results: relative RMS, bias and the worst patches.
     ///
-    /// Both must be of the same scene, cut into the same patches. Differences are relative to the mean radiosity
-    /// of the first; z is the difference of a row in standard errors.
+    /// Both must be of the same scene, cut into the same patches. Differences are relative to the mean radiosity of the
+    /// first; z is the difference of a row in standard errors.
     Compare {
         /// A run directory, or a table (.csv or .npy).
         a: PathBuf,
-        /// Another one.
+        /// Another run directory or table.
         b: PathBuf,
         /// Print JSON.
         #[arg(long)]
         json: bool,
     },
-    /// Measure how much faster a pipeline runs on more threads and ranks.
+    /// Measure the speed-up of a pipeline on more threads and ranks.
     ///
-    /// Runs it with every number of ranks and every number of threads, several times, and prints times,
-    /// speed-ups S(p) = T(1)/T(p) and efficiencies E(p) = S(p)/p of the first shot, of multipath and of the
-    /// whole run. Checks that all results are the same. The output directory gets scaling.csv, scaling.json,
-    /// scaling.md and scaling.svg.
+    /// Runs it several times with every number of ranks and every number of threads, and prints times, speed-ups S(p) =
+    /// T(1)/T(p) and efficiencies E(p) = S(p)/p of the first shot, of multipath and of the whole run. Checks that all
+    /// results are the same. Writes scaling.csv, scaling.json, scaling.md and scaling.svg to the output directory.
     Scaling(ScalingArgs),
     /// Repeat the experiment of Martínez, Forés and Martín (2009), section 5.
     ///
-    /// Measures speed-up and efficiency, error, the best share of local lines, how many global lines miss the scene, how evenly
-    /// their work is shared, and what the mean of independent replicas loses. The output directory gets report.md with diagrams
-    /// and pictures, report.json, and all runs with their pipelines. Takes hours; a small --scale, minutes.
+    /// Measures speed-up and efficiency, the error, the best share of local lines, the share of global lines that miss
+    /// the scene, the spread of the cost of lines, and the light that the mean of independent replicas loses. Writes
+    /// report.md with diagrams and images, report.json, and all runs with their pipelines to the output directory.
+    /// Takes hours; with a small --scale, minutes.
     Experiment(ExperimentArgs),
     /// Compute the view factors between the materials or named parts of a scene.
     ///
-    /// F_ij is the share of the diffuse flux leaving group i that arrives directly at group j; what the backs of one-sided surfaces absorb
-    /// is `blocked`, what leaves the scene `escaped`, and each row adds up to 1. Every factor has a standard error. The scene
-    /// needs no light. docs/viewfactors.md has the columns of the files.
+    /// F_ij is the share of the diffuse flux leaving group i that arrives directly at group j. The share that the backs
+    /// of one-sided surfaces absorb is `blocked`, the share that leaves the scene is `escaped`, and the sum of each row
+    /// is 1. Every factor has a standard error. The scene needs no light. docs/viewfactors.md lists the columns of the
+    /// files.
     #[command(name = "viewfactors")]
     ViewFactors(ViewFactorsArgs),
-    /// Check the program against cases whose answers are known.
+    /// Check the program against cases with known answers.
     ///
-    /// View factors, the analytical cases of CIE 171:2006, and exact solutions of radiosity. Prints exact answers, ours, their standard
-    /// errors and the differences, and ends with 1 if one is off by more than four standard errors. Takes minutes; --quick, half a minute.
+    /// The cases are view factors, the analytical cases of CIE 171:2006, and exact radiosity solutions. Prints exact
+    /// and computed answers, standard errors and differences. Exits with code 1 if an answer is off by more than four
+    /// standard errors. Takes minutes; with --quick, half a minute.
     Validate(ValidateArgs),
 }
 
-/// How to run a pipeline.
+/// Arguments of `sir run`.
 #[derive(Debug, clap::Args)]
 pub struct RunArgs {
     /// The pipeline file.
     pub pipeline: PathBuf,
-    /// Where to write; default: a new directory results/NAME, where NAME is that of the pipeline.
+    /// Output directory; default: a new directory results/NAME, where NAME is the name of the pipeline.
     ///
-    /// NAME is the pipeline's file name without extension, or its folder's name if the file is pipeline.ron. If
-    /// there is such a directory, results/NAME-2 is made, and so on. A directory given here is refused if it
-    /// holds a result, unless there is --force.
+    /// NAME is the pipeline's file name without extension, or its folder's name if the file is pipeline.ron. If that
+    /// directory exists, results/NAME-2 is created, and so on. A directory given here is refused if it holds a result,
+    /// unless --force is given.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Seed of the random numbers, instead of the pipeline's.
@@ -144,18 +147,18 @@ pub struct RunArgs {
     /// Replace the result in the directory given with --out.
     #[arg(long)]
     pub force: bool,
-    /// How to go about it.
+    /// Options of the execution.
     #[command(flatten)]
     pub how: HowArgs,
 }
 
-/// How to go about a run. None of this changes the result.
+/// Options of the execution of a run. None of them changes the result.
 #[derive(Debug, clap::Args)]
 pub struct HowArgs {
     /// Threads of each process, 1 to 4096; default: one per processor core. The result does not depend on it.
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
-    /// Seconds from one checkpoint to the next, from which `sir resume` can go on.
+    /// Seconds between checkpoints, from which `sir resume` can continue.
     #[arg(long, value_name = "SECONDS", default_value = "300", value_parser = seconds)]
     pub checkpoint_every: Duration,
     /// Show no progress; warnings and errors are still shown.

@@ -1,9 +1,9 @@
-//! What `sir compare` prints.
+//! The texts that `sir compare` prints.
 
 use serde_json::{Value, json};
 use sir_view::{BandComparison, Comparison};
 
-/// A comparison for people.
+/// Formats a comparison as text.
 #[must_use]
 pub fn text(c: &Comparison) -> String {
     let [red, green, blue] = c.bands;
@@ -20,10 +20,10 @@ pub fn text(c: &Comparison) -> String {
     }
     match c.largest_z {
         Some(z) => out += &format!("\nlargest difference of a row in standard errors: {z:.1}\n"),
-        None => out += "\nthe tables do not both state standard errors\n",
+        None => out += "\nno differences in standard errors: at least one table does not state them\n",
     }
     if !c.worst.is_empty() {
-        out += "\nrows that add most to the difference in luminance:\n";
+        out += "\nrows that contribute most to the difference in luminance:\n";
         out += "       row      patch   triangle          first         second      z\n";
         for w in &c.worst {
             let [first, second] = w.luminance;
@@ -37,7 +37,7 @@ pub fn text(c: &Comparison) -> String {
     out
 }
 
-/// A comparison for programs; numbers that are not finite are `null`.
+/// Returns a comparison as JSON. Non-finite numbers are `null`.
 #[must_use]
 pub fn to_json(c: &Comparison) -> Value {
     let band = |b: &BandComparison| json!({"mean": b.mean, "relative_rms": b.relative_rms, "relative_bias": b.relative_bias});

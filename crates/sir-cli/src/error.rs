@@ -1,4 +1,4 @@
-//! Why a command fails.
+//! The error type of the commands.
 
 use sir_parallel::ConnectError;
 use sir_pipeline::ErrorKind;
@@ -8,16 +8,16 @@ use thiserror::Error;
 
 use crate::validate::error::ValidationError;
 
-/// Why a command fails. Every message ends with what to do, where that is not obvious.
+/// Failure of a command. Every message ends with what to do, unless that is obvious.
 #[derive(Debug, Error)]
 pub enum CliError {
-    /// A pipeline is wrong, or its run failed.
+    /// Invalid pipeline, or failed run.
     #[error(transparent)]
     Pipeline(#[from] sir_pipeline::Error),
-    /// A study failed.
+    /// Failed study.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// Answers are wrong, or cannot be checked.
+    /// Wrong answers, or answers that cannot be checked.
     #[error(transparent)]
     Validation(#[from] ValidationError),
 }

@@ -1,4 +1,4 @@
-//! What the program says and returns when a command fails: exit codes, and hints that name options.
+//! Exit codes and printed messages of failed commands, with hints that name command-line options.
 
 use std::process::ExitCode;
 
@@ -13,7 +13,7 @@ use crate::error::CliError;
 /// Exit code of an interrupted program.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// Returns the exit code of the program: 2 for wrong usage or a wrong pipeline, 130 if interrupted, else 1.
+/// Returns the exit code: 2 for invalid usage or an invalid pipeline, 130 after an interrupt, otherwise 1.
 pub(crate) fn code(kind: ErrorKind) -> ExitCode {
     ExitCode::from(match kind {
         ErrorKind::Usage => 2,
@@ -22,7 +22,7 @@ pub(crate) fn code(kind: ErrorKind) -> ExitCode {
     })
 }
 
-/// Returns what is shown of an error: nothing if another rank shows it.
+/// Returns the text to print for an error; it is empty if another rank prints it.
 pub(crate) fn message(error: &CliError) -> String {
     match error {
         CliError::Pipeline(Error::Pipeline(problems)) => problems.to_string(),
@@ -34,7 +34,7 @@ pub(crate) fn message(error: &CliError) -> String {
     }
 }
 
-/// Returns how to follow the advice of an error on the command line. The libraries know neither options nor commands.
+/// Returns the options or commands that follow the advice of an error. The libraries know neither options nor commands.
 fn hint(error: &CliError) -> Option<String> {
     match error {
         CliError::Pipeline(error) => pipeline_hint(error),
@@ -47,12 +47,12 @@ fn hint(error: &CliError) -> Option<String> {
 
 fn pipeline_hint(error: &Error) -> Option<String> {
     Some(match error {
-        Error::NotText { .. } | Error::LongPipeline { .. } => "`sir --help` shows a pipeline".into(),
+        Error::NotText { .. } | Error::LongPipeline { .. } => "`sir --help` shows an example pipeline".into(),
         Error::Exists { .. } | Error::ViewFactors(ViewFactorsError::Exists { .. }) => {
-            "`--out DIR` chooses another directory, `--force` replaces what is there".into()
+            "`--out DIR` chooses another directory, `--force` replaces the existing result".into()
         }
         Error::ExistsInterrupted { directory } => format!(
-            "`sir resume {}` continues the run, `--out DIR` chooses another directory, `--force` replaces what is there",
+            "`sir resume {}` continues the run, `--out DIR` chooses another directory, `--force` replaces the existing run",
             directory.display()
         ),
         Error::Directory { .. } => "`--out DIR` chooses another directory".into(),
@@ -73,7 +73,7 @@ fn scaling_hint(error: &ScalingError) -> Option<String> {
     Some(match error {
         ScalingError::NoMpi => "leave out `--ranks`".into(),
         ScalingError::Mpirun { .. } | ScalingError::NoReport { .. } => {
-            "`--mpirun COMMAND` says what starts the processes".into()
+            "`--mpirun COMMAND` sets the command that starts the processes".into()
         }
         ScalingError::Exists { .. } => "`--out DIR` chooses another directory".into(),
         _ => return None,
@@ -82,7 +82,7 @@ fn scaling_hint(error: &ScalingError) -> Option<String> {
 
 fn experiment_hint(error: &ExperimentError) -> Option<String> {
     Some(match error {
-        ExperimentError::NoScenes { .. } => "`sir experiment room.ron` takes another pipeline".into(),
+        ExperimentError::NoScenes { .. } => "`sir experiment room.ron` uses another pipeline".into(),
         ExperimentError::Interrupted { directory } => {
             format!("the same command with `--out {}` continues", directory.display())
         }
@@ -98,17 +98,17 @@ mod tests {
     #[test]
     fn errors_end_with_the_option_that_helps() {
         let directory = PathBuf::from("results/room");
-        let told = |error: Error| message(&error.into());
-        insta::assert_snapshot!(told(Error::Exists { directory: directory.clone() }), @r"
-        error: results/room holds a result already; choose another run directory, or allow it to be replaced
-          = help: `--out DIR` chooses another directory, `--force` replaces what is there
+        let shown = |error: Error| message(&error.into());
+        insta::assert_snapshot!(shown(Error::Exists { directory: directory.clone() }), @r"
+        error: results/room already holds a result; choose another run directory, or allow it to be replaced
+          = help: `--out DIR` chooses another directory, `--force` replaces the existing result
         ");
-        insta::assert_snapshot!(told(Error::Interrupted { done: 3, total: 9, directory }), @r"
+        insta::assert_snapshot!(shown(Error::Interrupted { done: 3, total: 9, directory }), @r"
         error: interrupted after 3 of 9 lines; resume the run in results/room to continue
           = help: `sir resume results/room` continues the run
         ");
         let path = PathBuf::from("x.ron");
-        insta::assert_snapshot!(told(Error::ReadPipeline { path, source: std::io::ErrorKind::NotFound.into() }), @"error: cannot read the pipeline x.ron: entity not found");
-        assert_eq!(told(Error::Elsewhere { rank: 1, kind: ErrorKind::Failed }), "");
+        insta::assert_snapshot!(shown(Error::ReadPipeline { path, source: std::io::ErrorKind::NotFound.into() }), @"error: cannot read the pipeline x.ron: entity not found");
+        assert_eq!(shown(Error::Elsewhere { rank: 1, kind: ErrorKind::Failed }), "");
     }
 }

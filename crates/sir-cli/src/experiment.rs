@@ -1,4 +1,4 @@
-//! `sir experiment`: section 5 of Martínez, Forés and Martín (2009), repeated on any pipelines.
+//! `sir experiment`: repeats section 5 of Martínez, Forés and Martín (2009) on any pipelines.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -13,17 +13,18 @@ use crate::interrupt;
 use crate::numbers::{command_words, reference, scale, workers};
 use crate::progress::Stderr;
 
-/// What to redo, and how.
+/// Arguments of `sir experiment`.
 #[derive(Debug, clap::Args)]
 pub struct ExperimentArgs {
-    /// Pipeline files; default: those of the museum stairs and of the airplane cabin, in `scenes` of the current folder.
+    /// Pipeline files; default: those of the museum stairs and of the airplane cabin, in `scenes` in the current
+    /// folder.
     pub pipelines: Vec<PathBuf>,
-    /// Where to write; default: a new directory results/experiment.
+    /// Output directory; default: a new directory results/experiment.
     ///
-    /// The same command with the directory of an earlier one goes on there: finished runs are not repeated.
+    /// The same command with the directory of an earlier experiment continues it: finished runs are not repeated.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// What all numbers of lines are multiplied by, above 0 and at most 1. Patches stay.
+    /// Factor on all numbers of lines, above 0 and at most 1. The patches stay the same.
     #[arg(long, value_name = "S", default_value = "1", value_parser = scale)]
     pub scale: f64,
     /// Numbers of threads to measure speed-ups with, such as 1,2,4; default: 1 up to the number of cores.
@@ -33,13 +34,13 @@ pub struct ExperimentArgs {
     /// built with --features mpi.
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = workers)]
     pub ranks: Vec<NonZeroUsize>,
-    /// What starts several processes, as for `sir scaling`.
+    /// Command that starts several processes, as for `sir scaling`.
     #[arg(long, value_name = "COMMAND", default_value = MPIRUN, value_parser = command_words)]
     pub mpirun: String,
-    /// Lines of the reference, to which results are compared, as a multiple of those of the pipeline: from 1 to 10000.
+    /// Lines of the reference run, with which results are compared, as a multiple of the pipeline's: from 1 to 10000.
     #[arg(long, value_name = "F", default_value = "20", value_parser = reference)]
     pub reference: f64,
-    /// What to do, such as scaling,mix; default: everything.
+    /// Parts to do, such as scaling,mix; default: all.
     #[arg(long, value_name = "PART,…", value_delimiter = ',', value_enum)]
     pub parts: Vec<PartOption>,
 }
@@ -49,17 +50,17 @@ pub struct ExperimentArgs {
 pub enum PartOption {
     /// Times, speed-ups and efficiencies of threads and ranks.
     Scaling,
-    /// How far the result is from a run with many more lines.
+    /// Error against a run with many more lines.
     Error,
-    /// Which share of local lines is best.
+    /// Best share of local lines.
     Mix,
-    /// How many global lines miss the scene.
+    /// Share of global lines that miss the scene.
     Domains,
-    /// How evenly the work of lines is shared.
+    /// Spread of the cost of lines.
     Spread,
-    /// What averaging independent replicas loses.
+    /// Light that the mean of independent replicas loses.
     Farm,
-    /// The picture.
+    /// Images of the pipeline.
     Pictures,
 }
 
@@ -78,7 +79,7 @@ impl From<PartOption> for Part {
 }
 
 impl ExperimentArgs {
-    /// What to redo.
+    /// Returns the options of the experiment.
     fn options(&self) -> ExperimentOptions {
         ExperimentOptions {
             pipelines: self.pipelines.clone(),
@@ -93,7 +94,7 @@ impl ExperimentArgs {
     }
 }
 
-/// The command: makes the runs, writes the report, and returns what is to be printed.
+/// Executes the command: makes the runs, writes the report, and returns the text to print.
 pub(crate) fn command(args: &ExperimentArgs) -> Result<String, CliError> {
     let files = experiment(&args.options(), Arc::new(Stderr::Lines), interrupt::flag())?;
     Ok(files.iter().map(|file| format!("{}\n", file.display())).collect())

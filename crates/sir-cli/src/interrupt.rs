@@ -1,4 +1,4 @@
-//! Ctrl-C, SIGTERM, and SIGUSR1, by which batch systems announce that time is nearly up.
+//! Handlers of Ctrl-C, SIGTERM and SIGUSR1. Batch systems send SIGUSR1 shortly before the time limit.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -8,11 +8,12 @@ use signal_hook::flag::{register, register_conditional_shutdown};
 
 use crate::exit::INTERRUPTED;
 
-/// A flag that the first of these signals sets. The second one ends the program at once.
+/// Installs the handlers and returns a flag that the first signal sets. The second signal ends the program at once.
 pub(crate) fn flag() -> Arc<AtomicBool> {
     let flag = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGUSR1] {
-        // In this order: the first signal finds the flag unset. Where it fails, signals do what they always do.
+        // In this order, so that the first signal finds the flag unset and does not end the program. If registering
+        // fails, signals keep their previous action.
         let _ = register_conditional_shutdown(signal, INTERRUPTED.into(), Arc::clone(&flag));
         let _ = register(signal, Arc::clone(&flag));
     }

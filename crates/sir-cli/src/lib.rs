@@ -1,8 +1,10 @@
-//! The program `sir`: its arguments, progress bars, signals, texts and exit codes. What it does lies in the crates below:
-//! pipelines in [`sir_pipeline`], studies in [`sir_study`], known answers in [`sir_validate`].
+//! The command-line program `sir`: arguments, progress bars, signals, printed texts and exit codes. The crates below do
+//! the work: [`sir_pipeline`] runs pipelines, [`sir_study`] makes studies, and [`sir_validate`] compares with known
+//! answers.
 //!
-//! Results go to files and standard output, everything else to the standard error stream. [`main`] is the whole program, [`main_from`]
-//! the same with given arguments (`examples/own_command.rs`); the texts that it prints are public for other programs.
+//! Results go to files and standard output, everything else to standard error. [`main`] is the whole program;
+//! [`main_from`] is the same with given arguments (`examples/own_command.rs`). The functions that format the printed
+//! texts are public, so that other programs can use them.
 //!
 //! # Example
 //!
@@ -49,14 +51,16 @@ pub fn main() -> ExitCode {
     main_from(std::env::args_os())
 }
 
-/// Runs the program on given arguments, of which the first is its name. `scaling` and `experiment` start the current executable
-/// with other arguments, and need one that passes its arguments on to [`main`].
+/// Runs the program on the given arguments; the first one is the program's name.
+///
+/// The commands `scaling` and `experiment` start the current executable again with other arguments. They need an
+/// executable that passes its arguments on to [`main`].
 #[must_use]
 pub fn main_from(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
     let args = match Args::try_parse_from(args) {
         Ok(args) => args,
         Err(error) => {
-            // Help and version are errors, too, for the parser. If they cannot be printed, there is nobody left to tell.
+            // The parser returns help and version as errors, too. A failure to print them cannot be reported.
             let _ = error.print();
             return if error.use_stderr() { exit::code(ErrorKind::Usage) } else { ExitCode::SUCCESS };
         }
@@ -64,43 +68,44 @@ pub fn main_from(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) ->
     match execute(args.command) {
         Ok(text) => match std::io::stdout().write_all(text.as_bytes()) {
             Ok(()) => ExitCode::SUCCESS,
-            // Whoever reads the output has seen enough, or cannot take it: there is nobody left to tell.
+            // The reader has closed the output or cannot take it. The failure cannot be reported there.
             Err(_) => ExitCode::FAILURE,
         },
         Err(code) => code,
     }
 }
 
-/// Executes a command; returns what it has to say on standard output. Errors have been shown.
+/// Executes a command and returns its text for standard output. If it fails, prints the error and returns the exit
+/// code.
 fn execute(command: Command) -> Result<String, ExitCode> {
     match command {
         Command::Run(_) | Command::Resume { .. } | Command::ViewFactors(_) => {
-            // Before anything that takes time: a signal must never find the program unprepared.
+            // Before anything that takes time: the handlers must be installed when a signal arrives.
             let stop = interrupt::flag();
             let comm = connect().map_err(|error| show(&error.into()))?;
             work(command, &*comm, stop).map_err(|error| show(&error))
         }
-        alone => work(alone, &SingleProcess, Arc::default()).map_err(|error| show(&error)),
+        other => work(other, &SingleProcess, Arc::default()).map_err(|error| show(&error)),
     }
 }
 
-/// Shows an error; returns the exit code.
+/// Prints an error to standard error and returns its exit code.
 fn show(error: &CliError) -> ExitCode {
     eprint!("{}", exit::message(error));
     exit::code(error.kind())
 }
 
-/// Executes a command, together with the other ranks, until it is done or `stop` becomes true.
+/// Executes a command together with the other ranks, until it is done or `stop` becomes true.
 fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Result<String, CliError> {
     match command {
         Command::Run(RunArgs { pipeline, out, seed, force, how }) => {
             let options = RunOptions { out, seed, force, ..options(&how, stop) };
             run_together(Pipeline::read(&pipeline), &options, comm)
-                .map(|result| told(&result, &how, comm))
+                .map(|result| result_text(&result, &how, comm))
                 .map_err(CliError::from)
         }
         Command::Resume { directory, how } => resume_together(&directory, &options(&how, stop), comm)
-            .map(|result| told(&result, &how, comm))
+            .map(|result| result_text(&result, &how, comm))
             .map_err(CliError::from),
         Command::Check { pipeline } => {
             let pipeline = Pipeline::read(&pipeline)?;
@@ -122,7 +127,7 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
     }
 }
 
-/// Options of a run that can be stopped.
+/// Returns the options of a run that `stop` can interrupt.
 fn options(how: &HowArgs, stop: Arc<AtomicBool>) -> RunOptions {
     RunOptions {
         threads: how.threads,
@@ -133,8 +138,8 @@ fn options(how: &HowArgs, stop: Arc<AtomicBool>) -> RunOptions {
     }
 }
 
-/// What is printed when a run is done: by the first rank.
-fn told(result: &RunResult, how: &HowArgs, comm: &dyn Communicator) -> String {
+/// Returns the text to print after a run; it is empty on all ranks except the first.
+fn result_text(result: &RunResult, how: &HowArgs, comm: &dyn Communicator) -> String {
     match (comm.is_first(), how.json) {
         (false, _) => String::new(),
         (true, true) => result.report.to_json(),

@@ -1,4 +1,4 @@
-//! Values of options, checked.
+//! Parsers of option values, with range checks.
 
 use std::num::NonZeroUsize;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! What a run says while it runs, on the standard error stream.
+//! Progress and warnings of a run on standard error.
 
 use std::io::IsTerminal;
 use std::time::Instant;
@@ -8,10 +8,10 @@ use sir_pipeline::Progress;
 use sir_pipeline::format::grouped;
 use sir_pipeline::progress::{Meter, PAUSE, StageKind};
 
-/// Most warnings that are shown one by one.
-const WARNINGS: usize = 10;
+/// Maximum number of warnings that are printed one by one.
+const MAX_WARNINGS: usize = 10;
 
-/// Shows progress and warnings on the standard error stream.
+/// Display of progress and warnings on standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stderr {
     /// Warnings only.
@@ -23,13 +23,13 @@ pub enum Stderr {
 }
 
 impl Stderr {
-    /// A bar if the standard error stream is a terminal, else lines.
+    /// Returns [`Bar`](Self::Bar) if standard error is a terminal, otherwise [`Lines`](Self::Lines).
     #[must_use]
     pub fn new() -> Self {
         if std::io::stderr().is_terminal() { Self::Bar } else { Self::Lines }
     }
 
-    /// As [`new`](Self::new), or warnings only.
+    /// Returns [`Quiet`](Self::Quiet) if `quiet` is true, otherwise the same as [`new`](Self::new).
     #[must_use]
     pub fn unless(quiet: bool) -> Self {
         if quiet { Self::Quiet } else { Self::new() }
@@ -44,11 +44,11 @@ impl Default for Stderr {
 
 impl Progress for Stderr {
     fn warnings(&self, warnings: &[String]) {
-        for warning in warnings.iter().take(WARNINGS) {
+        for warning in warnings.iter().take(MAX_WARNINGS) {
             eprintln!("warning: {warning}");
         }
-        if warnings.len() > WARNINGS {
-            eprintln!("warning: … and {} more, see result.json", warnings.len() - WARNINGS);
+        if warnings.len() > MAX_WARNINGS {
+            eprintln!("warning: … and {} more, see result.json", warnings.len() - MAX_WARNINGS);
         }
     }
 
@@ -63,7 +63,7 @@ impl Progress for Stderr {
             Self::Bar => {
                 let bar = ProgressBar::new(total);
                 let template = "{prefix}{bar:30} {percent:>3} %  {human_pos} lines  {per_sec}  {eta} left";
-                // A wrong template would be a slip in the line above; indicatif's own style then serves as well.
+                // Only a mistake in the template above makes it invalid; indicatif's default style is then good enough.
                 if let Ok(style) = ProgressStyle::with_template(template) {
                     bar.set_style(style);
                 }
@@ -78,7 +78,7 @@ impl Progress for Stderr {
         let lines = *self == Self::Lines;
         Box::new(StageMeter {
             lines,
-            says_end: lines && kind == StageKind::Whole,
+            announces_end: lines && kind == StageKind::Whole,
             name: title.to_owned(),
             bar,
             start: now,
@@ -89,23 +89,23 @@ impl Progress for Stderr {
     }
 }
 
-/// Watches one stage.
+/// Progress meter of one stage.
 struct StageMeter {
     lines: bool,
-    /// Whether the end is worth a line.
-    says_end: bool,
+    /// True if the end of the stage is printed as a line.
+    announces_end: bool,
     name: String,
     bar: ProgressBar,
     start: Instant,
     last: Instant,
-    /// Lines done when the first progress was reported: more than a few after a restart.
+    /// Number of lines done at the first report of progress; it is large after a resume.
     first: Option<u64>,
     done: u64,
 }
 
 impl Meter for StageMeter {
     fn progress(&mut self, done: u64, total: u64) {
-        // How many lines it takes may be known better in the course of them.
+        // The estimate of the total may improve during the stage.
         self.bar.set_length(total);
         self.bar.set_position(done);
         let first = *self.first.get_or_insert(done);
@@ -131,7 +131,7 @@ impl Meter for StageMeter {
 impl Drop for StageMeter {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
-        if self.says_end {
+        if self.announces_end {
             let seconds = self.start.elapsed().as_secs_f64();
             eprintln!("{}: {} lines after {seconds:.1} s", self.name, grouped(self.done));
         }

@@ -1,4 +1,4 @@
-//! `sir scaling`: how much faster more workers are.
+//! `sir scaling`: speed-up on several threads and ranks.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use crate::interrupt;
 use crate::numbers::{command_words, repeats, workers};
 use crate::progress::Stderr;
 
-/// What to measure.
+/// Arguments of `sir scaling`.
 #[derive(Debug, clap::Args)]
 pub struct ScalingArgs {
     /// The pipeline file.
@@ -18,7 +18,7 @@ pub struct ScalingArgs {
     /// Numbers of threads of each process, such as 1,2,4; default: powers of two up to the number of cores.
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = workers)]
     pub threads: Vec<NonZeroUsize>,
-    /// Numbers of processes, such as 1,2,4. More than one need a program built with --features mpi.
+    /// Numbers of processes, such as 1,2,4. More than one process needs a program built with --features mpi.
     ///
     /// Every number of ranks is run with every number of threads.
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = workers, default_value = "1")]
@@ -26,14 +26,14 @@ pub struct ScalingArgs {
     /// Runs of each combination; medians are reported.
     #[arg(long, value_name = "N", default_value = "3", value_parser = repeats)]
     pub repeats: NonZeroUsize,
-    /// Where to write; default: a new directory results/NAME-scaling. See `sir run --help` for NAME.
+    /// Output directory; default: a new directory results/NAME-scaling. See `sir run --help` for NAME.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// What starts several processes; it is split at spaces, and `-n RANKS sir run …` is added.
+    /// Command that starts several processes. It is split at spaces, and `-n RANKS sir run …` is appended.
     ///
-    /// The default is for one machine: it allows more processes than cores, and does not tie a process with
-    /// several threads to one core. On a cluster one gives for instance --mpirun "srun", or --mpirun "mpirun
-    /// --hostfile hosts"; all machines must then see the output directory under the same name.
+    /// The default is for one machine: it allows more processes than cores, and does not bind a process with several
+    /// threads to one core. On a cluster, use for instance --mpirun "srun" or --mpirun "mpirun --hostfile hosts". All
+    /// machines must then see the output directory under the same path.
     #[arg(long, value_name = "COMMAND", default_value = MPIRUN, value_parser = command_words)]
     pub mpirun: String,
     /// Print the content of scaling.json instead of a table.
@@ -42,7 +42,7 @@ pub struct ScalingArgs {
 }
 
 impl ScalingArgs {
-    /// What to measure.
+    /// Returns the options of the measurement.
     fn options(&self) -> ScalingOptions {
         ScalingOptions {
             pipeline: self.pipeline.clone(),
@@ -55,7 +55,7 @@ impl ScalingArgs {
     }
 }
 
-/// The command: measures, writes the files, and returns what is to be printed.
+/// Executes the command: measures, writes the files, and returns the text to print.
 pub(crate) fn command(args: &ScalingArgs) -> Result<String, CliError> {
     let Measured { study, files } =
         scaling(&args.options(), &Stderr::Lines, interrupt::flag()).map_err(CliError::from)?;

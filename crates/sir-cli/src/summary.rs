@@ -1,11 +1,11 @@
-//! What `sir run` prints when it is done.
+//! The summary that `sir run` prints at the end.
 
 use sir_pipeline::format::{duration, grouped};
 use sir_pipeline::report::{FILE_NAME, LinesReport, Report};
 use sir_pipeline::run::absolute;
 use sir_pipeline::{RunResult, Units};
 
-/// The files of a run, pictures first, and a line for each stage of lines.
+/// Returns the paths of a run's files, images first, and a summary of each stage that traces lines.
 #[must_use]
 pub fn summary(result: &RunResult) -> String {
     let RunResult { directory, report } = result;
@@ -27,7 +27,7 @@ pub fn summary(result: &RunResult) -> String {
     for stage in report.stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.stages)) {
         if let Some(repeats) = stage.repeats {
             text += &format!(
-                "{:<10} {} times in {}; of its stages the lines are those of all, the balance is the mean\n",
+                "{:<10} {} times in {}; lines of its stages are totals, balances are means\n",
                 stage.name,
                 grouped(repeats),
                 duration(stage.time.seconds),
@@ -58,7 +58,7 @@ pub fn summary(result: &RunResult) -> String {
     text + &error(report)
 }
 
-/// Where the power of a stage went, as shares of the sum over all bands.
+/// Returns the energy balance of a stage, as shares of the power summed over all bands.
 fn balance(lines: &LinesReport, units: Units) -> String {
     let sum = |bands: [f64; 3]| bands.iter().sum::<f64>();
     let b = &lines.balance;
@@ -74,7 +74,7 @@ fn balance(lines: &LinesReport, units: Units) -> String {
     )
 }
 
-/// The error of all light.
+/// Returns the relative error of all light.
 fn error(report: &Report) -> String {
     let last = report.stages.iter().rev().find_map(|s| s.light.as_ref());
     last.map_or(String::new(), |light| {

@@ -1,4 +1,4 @@
-//! What `sir run` prints of a report.
+//! The summary that `sir run` prints.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::Path;
@@ -6,7 +6,8 @@ use std::path::Path;
 use sir_cli::summary::summary;
 use sir_pipeline::{RunOptions, run};
 
-/// The furnace, lit by a pipeline with these fields of `Multipath` and these stages after it.
+/// Lights the furnace by a pipeline with these fields of `Multipath` and these stages after it. Returns the summary and
+/// the surface of the domain \[m²\].
 fn shown(fields: &str, stages: &str) -> (String, f64) {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/furnace/furnace.gltf");
     let folder = tempfile::tempdir().unwrap();

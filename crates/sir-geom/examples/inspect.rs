@@ -1,4 +1,4 @@
-//! Prints what is in a scene file: `cargo run -p sir-geom --example inspect -- room.glb`.
+//! Prints the contents of a scene file: `cargo run -p sir-geom --example inspect -- room.glb`.
 #![allow(clippy::print_stdout, reason = "this is a program for the terminal")]
 
 use std::error::Error;

@@ -1,4 +1,4 @@
-//! What lets the properties of surfaces vary on them: textures, and values at the corners of triangles.
+//! Textures and corner values: the properties of surfaces that vary from point to point.
 
 use glam::{DVec2, DVec4, Vec2, Vec4};
 
@@ -7,36 +7,36 @@ use crate::material::Opacity;
 use crate::texture::{Texture, TextureMap};
 use sir_types::Barycentric;
 
-/// Textures, and what triangles have at their corners.
+/// Textures of a scene, and values at the corners of its triangles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Appearance {
     pub(crate) textures: Vec<Texture>,
-    /// Coordinates of the corners of triangles.
+    /// Texture coordinates of triangle corners.
     pub(crate) coordinates: Vec<[Vec2; 3]>,
-    /// Colors, and in the last place opacities, of the corners of triangles.
+    /// Colors (`xyz`) and opacities (`w`) of triangle corners.
     pub(crate) tints: Vec<[Vec4; 3]>,
 }
 
-/// Where the values at the corners of a triangle are.
+/// Location of the corner values of a triangle in `Appearance`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Corners {
-    /// The first of its sets of coordinates.
+    /// Index of the first coordinate set.
     pub(crate) coordinates: u32,
-    /// How many sets it has.
+    /// Number of coordinate sets.
     pub(crate) sets: u8,
     pub(crate) tint: u32,
 }
 
-/// In place of the number of a tint.
+/// Tint index of a triangle without a tint.
 pub(crate) const NO_TINT: u32 = u32::MAX;
 
 impl Corners {
-    /// A triangle without such values.
+    /// No corner values.
     pub(crate) const PLAIN: Self = Self { coordinates: 0, sets: 0, tint: NO_TINT };
 }
 
 impl Appearance {
-    /// Takes in values at the corners of a triangle; those that are not finite are left out.
+    /// Adds the corner values of a triangle. Coordinates or tints that are not finite are omitted.
     pub(crate) fn add(&mut self, coordinates: &[[Vec2; 3]], tint: Option<[Vec4; 3]>) -> Corners {
         let mut corners = Corners { coordinates: self.coordinates.len() as u32, ..Corners::PLAIN };
         if coordinates.iter().flatten().all(|place| place.is_finite()) {
@@ -50,7 +50,7 @@ impl Appearance {
         corners
     }
 
-    /// Takes in the values at the corners of a part of a triangle.
+    /// Adds the corner values of a part of a triangle, interpolated from those of the whole triangle.
     pub(crate) fn part(&mut self, whole: Corners, part: [Barycentric; 3]) -> Corners {
         let first = whole.coordinates as usize;
         let sets = first..first + usize::from(whole.sets);
@@ -65,7 +65,8 @@ impl Appearance {
         self.add(&coordinates, tint)
     }
 
-    /// The texture of a map on a triangle, and the coordinates of its corners.
+    /// Returns the texture of a map on a triangle, and its coordinates at the corners; `None` if the triangle lacks the
+    /// coordinate set.
     pub(crate) fn texture(&self, map: &TextureMap, corners: Corners) -> Option<(&Texture, [DVec2; 3])> {
         if map.coordinates >= corners.sets {
             return None;
@@ -75,13 +76,13 @@ impl Appearance {
         Some((self.textures.get(map.texture.index())?, coordinates.map(|c| c.as_dvec2())))
     }
 
-    /// Color and opacity that the corners give a triangle at a point.
+    /// Returns the interpolated color and opacity of the corners at a point of a triangle.
     pub(crate) fn tint(&self, corners: Corners, point: Barycentric) -> Option<(Rgb, f64)> {
         let mixed = mix_tint(*self.tints.get(corners.tint as usize)?, point);
         Some((mixed.truncate().max(Rgb::ZERO), mixed.w.clamp(0.0, 1.0)))
     }
 
-    /// Share of the light that a triangle stops at a point.
+    /// Returns the opacity of a triangle at a point: the share of the light that it stops.
     pub(crate) fn opacity(&self, opacity: &Opacity, corners: Corners, point: Barycentric) -> f64 {
         let alpha = opacity.map.as_ref().and_then(|map| {
             let (texture, coordinates) = self.texture(map, corners)?;
@@ -92,12 +93,12 @@ impl Appearance {
     }
 }
 
-/// The coordinates at a point of a triangle.
+/// Interpolates texture coordinates at a point of a triangle.
 pub(crate) fn mix(corners: [DVec2; 3], point: Barycentric) -> DVec2 {
     (1.0 - point.v - point.w) * corners[0] + point.v * corners[1] + point.w * corners[2]
 }
 
-/// The color, and in the last place the opacity, at a point of a triangle.
+/// Interpolates color (`xyz`) and opacity (`w`) at a point of a triangle.
 fn mix_tint(corners: [Vec4; 3], point: Barycentric) -> DVec4 {
     let [a, b, c] = corners.map(|corner| corner.as_dvec4());
     (1.0 - point.v - point.w) * a + point.v * b + point.w * c

@@ -1,4 +1,4 @@
-//! Building a scene: the one place where geometry is checked.
+//! Scene builder: the one place where geometry is checked.
 
 use std::collections::HashMap;
 
@@ -19,7 +19,7 @@ use crate::texture::{ColorMap, Texture, TextureId};
 use crate::warning::{Built, Warning};
 use sir_types::{BoundingBox, BoundingSphere};
 
-/// Collects vertices, materials and polygons, and checks them.
+/// Builder of a [`Scene`]: collects vertices, materials, polygons, lights and cameras, and checks them.
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuilder {
     vertices: Vec<DVec3>,
@@ -29,23 +29,23 @@ pub struct SceneBuilder {
     sky: Option<Sky>,
     triangles: Vec<Triangle>,
     faces: u32,
-    /// Numbers of the groups by name: from 1, since number 0 has no name.
+    /// Group numbers by name, from 1; group 0 has no name.
     groups: HashMap<String, GroupId>,
     group: u32,
-    /// Polygons that cross themselves.
+    /// Number of polygons without a valid triangulation, such as those that cross themselves.
     crossed: u64,
     appearance: Appearance,
     warnings: Vec<Warning>,
 }
 
 impl SceneBuilder {
-    /// An empty scene.
+    /// Creates an empty builder.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a position. Equal positions become one vertex when the scene is built.
+    /// Adds a vertex. Vertices at equal positions are merged when the scene is built.
     pub fn add_vertex(&mut self, position: DVec3) -> VertexId {
         self.vertices.push(position);
         VertexId::new(self.vertices.len() - 1)
@@ -57,7 +57,7 @@ impl SceneBuilder {
         MaterialId::new(self.materials.len() - 1)
     }
 
-    /// Adds an image for the maps of materials.
+    /// Adds a texture for the maps of materials.
     pub fn add_texture(&mut self, texture: Texture) -> TextureId {
         self.appearance.textures.push(texture);
         TextureId::new(self.appearance.textures.len() - 1)
@@ -73,18 +73,18 @@ impl SceneBuilder {
         self.lights.push(light);
     }
 
-    /// Says what lines meet that leave the scene.
+    /// Sets the sky, which is seen by lines that leave the scene.
     pub fn set_sky(&mut self, sky: Sky) {
         self.sky = Some(sky);
     }
 
-    /// Adds a warning that the reader of a file wants to pass on.
+    /// Adds a warning, such as one of a file reader, to those of the built scene.
     pub fn warn(&mut self, warning: Warning) {
         self.warnings.push(warning);
     }
 
-    /// Lets all faces that are added from now on belong to the part of the scene with this name: to none if it is empty, as
-    /// before the first call. Parts of equal names are one.
+    /// Starts a group: faces added from now on belong to the group with this name. Equal names mean the same group. An
+    /// empty name means no group, as before the first call.
     pub fn begin_group(&mut self, name: &str) -> GroupId {
         let next = GroupId::new(self.groups.len() + 1);
         let group =
@@ -93,20 +93,21 @@ impl SceneBuilder {
         group
     }
 
-    /// Adds a polygon, counterclockwise seen from its front; with fewer than three corners it adds nothing. It is cut into the fan of
-    /// triangles `(0, 1, 2), (0, 2, 3), …` if that is right, as it is for convex ones, else into as many others. One that crosses
-    /// itself, or has more than 4,096 corners, is cut into the fan with a warning.
+    /// Adds a polygon whose corners run counterclockwise seen from its front; with fewer than three corners it adds no
+    /// triangle. The polygon is cut into the fan of triangles `(0, 1, 2), (0, 2, 3), …` if that is a valid
+    /// triangulation, as for convex polygons, otherwise into the same number of other triangles. A polygon that crosses
+    /// itself, or is not convex and has more than 4,096 corners, is cut into the fan with a warning.
     pub fn add_polygon(&mut self, corners: &[VertexId], material: MaterialId) -> FaceId {
-        // Vertices that were not added are an error when the scene is built.
+        // `build` reports vertices that were not added.
         let places: Option<Vec<DVec3>> =
             corners.iter().map(|v| self.vertices.get(v.index()).copied()).collect();
         let cut = polygon::cut(&places.unwrap_or_else(|| vec![DVec3::ZERO; corners.len()]));
-        self.crossed += u64::from(!cut.right);
+        self.crossed += u64::from(!cut.is_valid);
         let triangles: Vec<_> = cut.triangles.iter().map(|t| t.map(|i| corners[i])).collect();
         self.add_face(&triangles, material)
     }
 
-    /// Adds triangles that belong together, counterclockwise seen from their fronts.
+    /// Adds the triangles of one face, with corners counterclockwise seen from their fronts.
     pub fn add_face(&mut self, triangles: &[[VertexId; 3]], material: MaterialId) -> FaceId {
         let face = FaceId(self.faces);
         self.faces += 1;
@@ -119,8 +120,8 @@ impl SceneBuilder {
         face
     }
 
-    /// Gives the triangle that was added last what varies over it, corner by corner: as many sets of texture coordinates as the maps
-    /// of its material use ([`Material::coordinate_sets`]), and a color with opacity that multiplies those of the
+    /// Sets the corner values of the triangle that was added last: as many sets of texture coordinates as the maps of
+    /// its material use ([`Material::coordinate_sets`]), and a tint, whose color and opacity multiply those of the
     /// material. Coordinates that are not finite are ignored, and the triangle has the mean color of its texture.
     pub fn set_corners(&mut self, coordinates: &[[Vec2; 3]], tint: Option<[Vec4; 3]>) {
         if let Some(triangle) = self.triangles.last_mut() {
@@ -128,15 +129,16 @@ impl SceneBuilder {
         }
     }
 
-    /// [`set_corners`](Self::set_corners) for all triangles of the polygon that was added last and has these `corners`: each set of
-    /// coordinates has one place for each of them, the tint one color.
+    /// Sets the corner values of all triangles of the polygon that was added last and has these `corners`, as
+    /// [`set_corners`](Self::set_corners) does. Each set of coordinates has one entry per corner, and the tint one
+    /// color per corner.
     pub fn set_polygon_corners(
         &mut self,
         corners: &[VertexId],
         coordinates: &[&[Vec2]],
         tint: Option<&[Vec4]>,
     ) {
-        // Polygons of many corners must not take the square of their number.
+        // A map keeps the time for polygons with many corners from growing quadratically.
         let numbers: HashMap<VertexId, usize> =
             corners.iter().enumerate().rev().map(|(i, &vertex)| (vertex, i)).collect();
         let last = self.faces.checked_sub(1);
@@ -151,12 +153,12 @@ impl SceneBuilder {
         }
     }
 
-    /// Cuts the triangles added so far where they pass through the faces of a box, so that each lies in it, faces included, or outside. They
-    /// remain what they were: parts of the same polygon, with the same number in the file, and what varies over them goes on. A triangle
-    /// that only passes by the box stays whole.
+    /// Splits the triangles added so far at the faces of a box, so that each triangle lies inside the box, faces
+    /// included, or outside. The parts keep the face and the source number of the triangle, and their corner values are
+    /// interpolated. A triangle that does not intersect the box stays whole.
     pub fn split_at(&mut self, bounds: &BoundingBox) {
         for triangle in std::mem::take(&mut self.triangles) {
-            // Vertices that were not added are an error when the scene is built.
+            // `build` reports vertices that were not added.
             let parts = match triangle.vertices.map(|v| self.vertices.get(v.index()).copied()) {
                 [Some(a), Some(b), Some(c)] => split([a, b, c], bounds),
                 _ => None,
@@ -181,11 +183,13 @@ impl SceneBuilder {
         }
     }
 
-    /// Checks everything, welds equal vertices, drops triangles without an area and clamps reflectances.
+    /// Checks the input, merges vertices at equal positions, drops triangles without an area, clamps reflectances, and
+    /// returns the scene.
     ///
     /// # Errors
     ///
-    /// If nothing is left, an index is out of range, or a material or light has an impossible number.
+    /// If no triangle is left, an index is out of range, a count exceeds 32 bits, or a material or light has an invalid
+    /// number.
     pub fn build(mut self) -> Result<Built, SceneError> {
         self.check_sizes()?;
         self.check_indices()?;
@@ -288,7 +292,7 @@ impl SceneBuilder {
         Ok(())
     }
 
-    /// Leaves out triangles that are a line or a point to the precision of the coordinates.
+    /// Drops triangles whose corners are collinear or coincide to the precision of the coordinates.
     fn drop_degenerate_triangles(&mut self) {
         let before = self.triangles.len();
         let vertices = &self.vertices;
@@ -298,7 +302,7 @@ impl SceneBuilder {
             let longest = ab.length_squared().max(bc.length_squared()).max(ca.length_squared());
             let doubled_area = ab.cross(ca).length();
             // Also false for NaN and infinite coordinates.
-            doubled_area.is_finite() && doubled_area > polygon::FLAT * longest
+            doubled_area.is_finite() && doubled_area > polygon::MIN_RELATIVE_AREA * longest
         });
         let count = (before - self.triangles.len()) as u64;
         if count > 0 {
@@ -306,7 +310,7 @@ impl SceneBuilder {
         }
     }
 
-    /// Makes one vertex of equal positions, in the order of their first use, and forgets unused ones.
+    /// Merges vertices at equal positions, in the order of their first use, and removes unused ones.
     fn weld(&mut self) {
         let mut by_position: HashMap<[u64; 3], VertexId> =
             HashMap::with_capacity(self.vertices.len().min(3 * self.triangles.len()));

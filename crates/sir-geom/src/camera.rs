@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-/// A point of view.
+/// A camera: position, orientation and projection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// The name its author gave it, or an empty string.
+    /// Name given by the author, or an empty string.
     pub name: String,
     /// Position of the eye.
     pub eye: DVec3,
@@ -13,16 +13,16 @@ pub struct Camera {
     pub forward: DVec3,
     /// Upward direction of the picture, of unit length; need not be perpendicular to `forward`.
     pub up: DVec3,
-    /// How points are projected.
+    /// Projection to the picture.
     pub projection: Projection,
-    /// Width over height that the author had in mind, if stated.
+    /// Intended aspect ratio (width over height), if stated.
     pub aspect: Option<f64>,
 }
 
-/// How a [`Camera`] maps points to the picture.
+/// Projection of a [`Camera`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
-    /// Perspective with the given full vertical opening angle in radians.
+    /// Perspective projection with the given full vertical field of view in radians.
     Perspective {
         /// Full vertical field of view \[rad\].
         vertical_fov: f64,
@@ -35,9 +35,9 @@ pub enum Projection {
 }
 
 impl Camera {
-    /// A perspective camera at `eye` that looks at `target`, with `vertical_fov` in radians.
+    /// Returns a perspective camera at `eye` that looks at `target`, with `vertical_fov` in radians.
     ///
-    /// `None` if the two points coincide or `up` points along the view.
+    /// Returns `None` if the two points coincide or `up` is parallel to the view.
     #[must_use]
     pub fn looking_at(eye: DVec3, target: DVec3, up: DVec3, vertical_fov: f64) -> Option<Self> {
         let forward = (target - eye).try_normalize()?;

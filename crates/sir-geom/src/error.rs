@@ -1,20 +1,20 @@
-//! Why a scene cannot be built.
+//! Errors of building a scene.
 
 use thiserror::Error;
 
 use crate::color::Rgb;
 use crate::warning::quoted;
 
-/// Why a scene cannot be built.
+/// Reason why a scene cannot be built.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SceneError {
-    /// There is nothing that light could meet.
-    #[error("{}; add meshes of triangles to the scene", nothing(*dropped))]
+    /// No triangle has both an area and finite coordinates.
+    #[error("{}; add meshes of triangles to the scene", empty_reason(*dropped))]
     Empty {
-        /// Degenerate triangles that were dropped.
+        /// Number of degenerate triangles that were dropped.
         dropped: u64,
     },
-    /// More vertices or triangles than 32-bit numbers can count.
+    /// More vertices, triangles or materials than 32-bit numbers can count.
     #[error("the scene has more than {} {what}", u32::MAX)]
     TooLarge {
         /// `vertices`, `triangles` or `materials`.
@@ -27,9 +27,9 @@ pub enum SceneError {
         face: u32,
         /// `vertex` or `material`.
         what: &'static str,
-        /// The number that it asks for.
+        /// The index that is out of range.
         index: u32,
-        /// How many there are.
+        /// Number of vertices or materials that were added.
         count: usize,
     },
     /// A material has a negative, infinite or undefined color.
@@ -39,24 +39,24 @@ pub enum SceneError {
         name: String,
         /// `reflectance`, `exitance` or `opacity`.
         what: &'static str,
-        /// The value found.
+        /// The invalid value.
         value: Rgb,
     },
-    /// A light has a negative, infinite or undefined number.
+    /// A light has a negative, infinite or undefined number, or a vector that is not of unit length.
     #[error("light {number} (\"{name}\") has a bad {what}: {rule}")]
     BadLight {
-        /// Its number, from 0, in the order in which lights were added.
+        /// Index of the light, from 0, in the order in which lights were added.
         number: usize,
         /// Name of the light.
         name: String,
         /// `position`, `direction`, `axis`, `cone`, `intensity` or `irradiance`.
         what: &'static str,
-        /// What it must be.
+        /// The rule that it violates.
         rule: &'static str,
     },
 }
 
-fn nothing(dropped: u64) -> String {
+fn empty_reason(dropped: u64) -> String {
     match dropped {
         0 => "it has no triangles".to_owned(),
         n => format!("none of its {n} triangles has both an area and finite coordinates"),

@@ -1,20 +1,21 @@
-//! Typed indices of what a scene consists of.
+//! Typed indices of the parts of a scene.
 
 use sir_types::typed_index;
 
 typed_index!(
-    /// A vertex of a [`Scene`](crate::Scene).
+    /// Index of a vertex of a [`Scene`](crate::Scene).
     VertexId
 );
 typed_index!(
-    /// A material of a [`Scene`](crate::Scene).
+    /// Index of a material of a [`Scene`](crate::Scene).
     MaterialId
 );
 typed_index!(
-    /// A named part of a [`Scene`](crate::Scene); number 0 has no name.
+    /// Index of a named group of faces of a [`Scene`](crate::Scene); group 0 has no name.
     GroupId
 );
 typed_index!(
-    /// A polygon or a piece of curved surface as its author drew it: the triangles it was cut into share this number.
+    /// Index of a face: a polygon or a piece of curved surface as its author drew it. All triangles that it was cut
+    /// into share this index.
     FaceId
 );

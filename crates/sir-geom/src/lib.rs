@@ -2,26 +2,25 @@
 //!
 //! # Design
 //!
-//! A light-transport solver asks little of a scene: flat triangles, one diffuse material each, textures that vary it, and the
-//! knowledge of which side of a triangle is its *front*. [`Scene`] holds exactly that, in double precision
-//! and in world space, with the node trees and file formats already resolved. It is immutable: a scene is
-//! put together by a [`SceneBuilder`], which is the one place where geometry is checked, so that every later
-//! crate may rely on finite coordinates, valid indices, triangles that have an area and reflectances below one.
+//! A light-transport solver needs little of a scene: flat triangles, one diffuse material each, textures that vary it,
+//! and the side of each triangle that is its *front*. [`Scene`] holds exactly that, in double precision and in world
+//! space, with node hierarchies and file formats already resolved. It is immutable. A [`SceneBuilder`] builds it and is
+//! the one place where geometry is checked, so that every later crate may rely on finite coordinates, valid indices,
+//! triangles that have an area, and reflectances below one.
 //!
-//! What a reader had to leave out or change is never silent: it comes back beside the scene as a list of
-//! [`Warning`]s.
+//! Readers never leave out or change anything silently: they return a list of [`Warning`]s together with the scene.
 //!
-//! [`BoundingBox`] and [`BoundingSphere`] enclose what there is.
+//! [`BoundingBox`] and [`BoundingSphere`] enclose the triangles.
 //!
-//! The readers are cargo features, `gltf` and `obj`, both on by default. Without them, scenes come from a [`SceneBuilder`], and the
-//! crate needs no decoder of images and no reader of JSON.
+//! The readers are cargo features, `gltf` and `obj`, both enabled by default. Without them, scenes come from a
+//! [`SceneBuilder`], and the crate needs no image decoder and no JSON reader.
 //!
-//! Indices are typed ([`TriangleId`], [`MaterialId`], …): a triangle number cannot be used where a material
-//! number is meant.
+//! Indices are typed ([`TriangleId`], [`MaterialId`], …), so a triangle index cannot be used in place of a material
+//! index.
 //!
 //! # Conventions
 //!
-//! * Lengths are meters if the scene says so; the solver never needs to know.
+//! * Lengths are in meters if the scene is; the solver does not depend on the unit.
 //! * The *front* of a triangle is the side from which its corners run counterclockwise.
 //! * Colors are linear Rec. 709 RGB ([`Rgb`]).
 //! * Emission is stored as radiant *exitance* `M` \[W/m²\]: a file's emitted radiance `L` becomes `M = π L`.

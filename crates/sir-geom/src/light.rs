@@ -1,4 +1,4 @@
-//! Lights without a surface.
+//! Lights without a surface: point lights and parallel light.
 
 use std::f64::consts::PI;
 
@@ -6,50 +6,51 @@ use glam::DVec3;
 
 use crate::color::Rgb;
 
-/// A light that is a point, or infinitely far.
+/// A point light, or a light at infinite distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// The name its author gave it, or an empty string.
+    /// Name given by the author, or an empty string.
     pub name: String,
-    /// Where its light comes from.
+    /// Kind, with its parameters.
     pub kind: LightKind,
 }
 
-/// Where the light of a [`Light`] comes from.
+/// Kind of a [`Light`], with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
-    /// A point.
+    /// Light from a point.
     Point {
-        /// Where it is.
+        /// Position.
         position: DVec3,
-        /// Radiant intensity `I` per band \[W/sr\], in the direction in which it is largest.
+        /// Radiant intensity `I` per band \[W/sr\] in the direction in which it is largest.
         intensity: Rgb,
-        /// How it depends on the direction.
+        /// Angular distribution of the intensity.
         spread: Spread,
     },
     /// Parallel light, such as that of the sun.
     Distant {
-        /// The direction in which the light travels, of unit length.
+        /// Direction in which the light travels, of unit length.
         direction: DVec3,
         /// Irradiance per band \[W/m²\] of a surface that faces it.
         irradiance: Rgb,
     },
 }
 
-/// How the intensity of a point light depends on the direction.
+/// Angular distribution of the intensity of a point light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spread {
-    /// Not at all.
+    /// Equal in all directions.
     Isotropic,
-    /// As the cosine of the angle to an axis, nothing behind: a small diffuse surface.
+    /// Proportional to the cosine of the angle to an axis, and zero behind: a small diffuse surface.
     Lambertian {
-        /// Unit vector.
+        /// Axis, of unit length.
         axis: DVec3,
     },
-    /// Full inside the inner cone, nothing outside the outer one; between them `t²`, where `t` falls from 1 to 0 linearly with the
-    /// cosine of the angle to the axis, as `KHR_lights_punctual` of glTF recommends.
+    /// Full inside the inner cone and zero outside the outer one. Between them the intensity has the factor `t²`, where
+    /// `t` falls from 1 to 0 linearly with the cosine of the angle to the axis, as `KHR_lights_punctual` of glTF
+    /// recommends.
     Spot {
-        /// Unit vector.
+        /// Axis, of unit length.
         axis: DVec3,
         /// Cosine of half the opening angle of the inner cone.
         inner: f64,
@@ -58,34 +59,34 @@ pub enum Spread {
     },
 }
 
-/// The light that arrives at a point from a light, if nothing is in between.
+/// Unoccluded light that arrives at a point from a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
-    /// Unit vector towards the light.
+    /// Unit vector toward the light.
     pub towards: DVec3,
-    /// How far it is; infinite for parallel light.
+    /// Distance to the light; infinite for parallel light.
     pub distance: f64,
     /// Irradiance per band \[W/m²\] of a surface that faces the light.
     pub irradiance: Rgb,
 }
 
 impl Spread {
-    /// A spot about an axis of unit length, full up to an angle `inner` from it, with nothing beyond `outer` \[rad\]. Equal angles make an
-    /// edge as sharp as can be. The same bits on all machines.
+    /// Returns a spot about an axis of unit length, with full intensity up to the angle `inner` \[rad\] and none beyond
+    /// `outer` \[rad\]. Equal angles give the sharpest possible edge. The result has the same bits on all machines.
     ///
-    /// `None` unless `0 ≤ inner ≤ outer ≤ π`, and `outer` is at least a ten-thousandth.
+    /// Returns `None` unless `0 ≤ inner ≤ outer ≤ π` and `outer` is at least 10⁻⁴.
     #[must_use]
     pub fn spot(axis: DVec3, inner: f64, outer: f64) -> Option<Self> {
         if !(0.0 <= inner && inner <= outer && (1e-4..=PI).contains(&outer)) {
             return None;
         }
         let edge = libm::cos(outer);
-        // A millionth of the light is left to the edge.
+        // The ring between the cones gets at least a millionth of the solid angle of the outer cone.
         let sharp = edge + 1e-6 * (1.0 - edge);
         Some(Self::Spot { axis, inner: libm::cos(inner).max(sharp), outer: edge })
     }
 
-    /// Share of the largest intensity that goes in a direction of unit length, from 0 to 1.
+    /// Returns the intensity in a direction of unit length relative to the largest intensity, from 0 to 1.
     #[must_use]
     pub fn share(self, direction: DVec3) -> f64 {
         match self {
@@ -98,7 +99,8 @@ impl Spread {
         }
     }
 
-    /// Integral of [`share`](Self::share) over all directions \[sr\]: power over largest intensity.
+    /// Returns the integral of [`share`](Self::share) over all directions \[sr\]: the power divided by the largest
+    /// intensity.
     #[must_use]
     pub fn solid_angle(self) -> f64 {
         match self {
@@ -110,7 +112,7 @@ impl Spread {
 }
 
 impl LightKind {
-    /// What is wrong with it, if anything: the name of a field and what it must be.
+    /// Checks the parameters. The error is the name of an invalid field and the rule that it violates.
     pub(crate) fn check(&self) -> Result<(), (&'static str, &'static str)> {
         let color = |what, color: Rgb| {
             let good = color.is_finite() && color.min_element() >= 0.0;
@@ -132,7 +134,7 @@ impl LightKind {
                     Spread::Spot { axis, inner, outer } => {
                         let good = -1.0 <= outer && outer < inner && inner <= 1.0;
                         unit("axis", axis)?;
-                        good.then_some(()).ok_or(("cone", "the inner cone must be inside of the outer one"))
+                        good.then_some(()).ok_or(("cone", "the inner cone must be inside the outer cone"))
                     }
                 }
             }
@@ -143,7 +145,8 @@ impl LightKind {
         }
     }
 
-    /// The light that arrives at a point; `None` at the very point of the light, and where it sends nothing.
+    /// Returns the unoccluded light that arrives at a point; `None` at the position of the light, and where it sends
+    /// nothing.
     #[must_use]
     pub fn arrival(&self, point: DVec3) -> Option<Arrival> {
         let arrival = match *self {

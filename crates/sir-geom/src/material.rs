@@ -3,51 +3,51 @@
 use crate::color::Rgb;
 use crate::texture::{ColorMap, TextureMap};
 
-/// The largest reflectance of a scene in any band.
+/// Maximum reflectance of a scene in any band.
 ///
-/// A surface that absorbs nothing makes the light in a closed room grow without bound; files that ask for a
-/// reflectance of one (`Kd 1 1 1` is common) get this instead, with a [`Warning`](crate::Warning).
+/// Without absorption, the light in a closed room would grow without bound. Files that state a reflectance of one
+/// (`Kd 1 1 1` is common) get this value instead, with a [`Warning`](crate::Warning).
 pub const MAX_REFLECTANCE: f64 = 0.999;
 
-/// Which sides of a surface take part in light transport.
+/// Sides of a surface that take part in light transport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Sides {
     /// Only the front reflects and emits. The back blocks light and absorbs what falls on it.
     #[default]
     Front,
-    /// Both sides reflect, each on its own.
+    /// Both sides reflect independently.
     Both,
 }
 
-/// Which share of the lines that meet a surface is stopped by it; the others go straight on, as through fine wire mesh.
+/// Share of the lines that a surface stops; the others pass straight on, as through fine wire mesh.
 ///
-/// The share is `factor` times the alpha of the texture. With a `cutoff` it is one where that product reaches the cutoff, and
-/// zero elsewhere.
+/// The share is `factor` times the alpha of the texture. With a `cutoff` it is one where that product is at least the
+/// cutoff, and zero elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opacity {
-    /// In `[0, 1]`.
+    /// Factor, in `[0, 1]`.
     pub factor: f64,
-    /// The texture.
+    /// Texture with the alpha.
     pub map: Option<TextureMap>,
-    /// Where there is a surface at all.
+    /// Threshold of a mask, if it is one.
     pub cutoff: Option<f64>,
 }
 
 impl Default for Opacity {
-    /// An opaque surface.
+    /// Returns the opacity of an opaque surface.
     fn default() -> Self {
         Self { factor: 1.0, map: None, cutoff: None }
     }
 }
 
 impl Opacity {
-    /// Whether it is one everywhere.
+    /// Returns true if the surface is opaque everywhere.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.map.is_none() && self.of_alpha(1.0) == 1.0
     }
 
-    /// The opacity where the texture has this alpha.
+    /// Returns the opacity where the texture has this alpha.
     #[inline]
     #[must_use]
     pub fn of_alpha(&self, alpha: f64) -> f64 {
@@ -59,27 +59,27 @@ impl Opacity {
 /// A Lambertian surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// The name its author gave it, or an empty string.
+    /// Name given by the author, or an empty string.
     pub name: String,
     /// Diffuse reflectance per band, in `[0, 1)`. With a texture, its mean over the image.
     pub reflectance: Rgb,
-    /// The texture of the reflectance.
+    /// Texture of the reflectance.
     pub reflectance_map: Option<ColorMap>,
-    /// Emitted radiant exitance `M` of the front per band \[W/m²\]; of a radiance `L` it is `π L`. With a texture, its mean over
-    /// the image.
+    /// Emitted radiant exitance `M` of the front per band \[W/m²\]: `π L` for a radiance `L`. With a texture, its mean
+    /// over the image.
     pub exitance: Rgb,
-    /// The texture of the exitance.
+    /// Texture of the exitance.
     pub exitance_map: Option<ColorMap>,
-    /// How much of the light it stops.
+    /// Share of the light that it stops.
     pub opacity: Opacity,
-    /// Which sides reflect.
+    /// Sides that reflect.
     pub sides: Sides,
-    /// Whether the back emits `exitance` too. Has no effect unless `sides` is [`Sides::Both`].
+    /// True if the back emits `exitance` too. Has no effect unless `sides` is [`Sides::Both`].
     pub back_emits: bool,
 }
 
 impl Material {
-    /// A one-sided surface that reflects and does not emit.
+    /// Returns a one-sided material that reflects and does not emit.
     #[must_use]
     pub fn diffuse(name: &str, reflectance: Rgb) -> Self {
         Self {
@@ -94,14 +94,14 @@ impl Material {
         }
     }
 
-    /// The same surface with an emitted exitance `M` \[W/m²\] on its front.
+    /// Returns the material with an emitted exitance `M` \[W/m²\] on its front.
     #[must_use]
     pub fn emitting(mut self, exitance: Rgb) -> Self {
         self.exitance = exitance;
         self
     }
 
-    /// How many sets of texture coordinates its triangles need.
+    /// Returns the number of sets of texture coordinates that its triangles need.
     #[must_use]
     pub fn coordinate_sets(&self) -> usize {
         let colors = [self.reflectance_map, self.exitance_map].map(|color| color.map(|color| color.map));
@@ -109,13 +109,13 @@ impl Material {
         maps.map(|map| usize::from(map.coordinates) + 1).max().unwrap_or(0)
     }
 
-    /// Whether it differs from place to place, or lets light through.
+    /// Returns true if it is uniform and opaque.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         self.reflectance_map.is_none() && self.exitance_map.is_none() && self.opacity.is_full()
     }
 
-    /// The same surface, reflecting from the given sides.
+    /// Returns the material with these reflecting sides.
     #[must_use]
     pub fn with_sides(mut self, sides: Sides) -> Self {
         self.sides = sides;

@@ -1,64 +1,66 @@
-//! Cutting polygons into triangles.
+//! Triangulation of polygons.
 //!
-//! Most polygons of files are convex, and the fan from their first corner is right. Of the others it is not: triangles of a fan
-//! would lie outside of the outline or over each other. Those are cut by their ears (Meisters 1975), which are the triangles that
-//! an outline can do without. All corners stay corners of triangles, also those in the middle of a straight edge: a neighbor may
-//! have one there, and a crack would open where one of them had not.
+//! Most polygons in files are convex, so the fan from their first corner is a valid triangulation. For others it is
+//! not: triangles of the fan would lie outside the outline, or overlap. Those are triangulated by ear clipping
+//! (Meisters 1975). All corners remain corners of triangles, also those in the middle of a straight edge: a neighbor
+//! may have a corner there, and a crack would open if only one of the two had it.
 
 use glam::{DVec2, DVec3};
 
-/// The most corners of a polygon that is not cut into a fan: the time for ears goes with the square.
-const MOST_CORNERS: usize = 4096;
+/// Maximum number of corners for ear clipping, whose time is quadratic.
+const MAX_CORNERS: usize = 4096;
 
-/// How often all remaining corners are looked at again when none is known to be an ear, which only corners that touch edges
-/// make necessary.
-const ROUNDS: usize = 16;
+/// Maximum number of searches over all remaining corners when none is known to be an ear. Only corners that touch edges
+/// make such searches necessary.
+const MAX_SEARCHES: usize = 16;
 
-/// A triangle whose doubled area is no more than this part of the square of its longest edge is a line.
-pub(crate) const FLAT: f64 = 1e-12;
+/// A triangle is degenerate if its doubled area is at most this fraction of the square of its longest edge.
+pub(crate) const MIN_RELATIVE_AREA: f64 = 1e-12;
 
-/// A polygon in triangles.
+/// Triangulation of a polygon.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
-    /// Numbers of corners, as many as there are less two; counterclockwise seen from where those of the polygon are.
+    /// Corner indices of the triangles, two triangles fewer than corners. The triangles are counterclockwise seen from
+    /// where the polygon is.
     pub(crate) triangles: Vec<[usize; 3]>,
-    /// Whether they are the polygon. A fan takes their place if its outline crosses itself, or has too many corners.
-    pub(crate) right: bool,
+    /// True if the triangles cover exactly the polygon. Otherwise they are a fan, because the outline crosses itself or
+    /// has too many corners.
+    pub(crate) is_valid: bool,
 }
 
-/// Cuts a polygon whose outline is counterclockwise seen from its front, and which is about flat.
+/// Triangulates an approximately flat polygon whose outline is counterclockwise seen from its front.
 pub(crate) fn cut(corners: &[DVec3]) -> Cut {
     let fan: Vec<_> = (2..corners.len()).map(|i| [0, i - 1, i]).collect();
     let normal = normal(corners);
     if corners.len() <= 3 || !normal.is_finite() {
-        return Cut { triangles: fan, right: true };
+        return Cut { triangles: fan, is_valid: true };
     }
     if normal == DVec3::ZERO {
-        // A line, or an outline that runs as far clockwise as counterclockwise.
-        let right =
+        // The outline is a line, or runs as far clockwise as counterclockwise.
+        let is_valid =
             fan.iter().all(|t| (corners[t[1]] - corners[0]).cross(corners[t[2]] - corners[0]) == DVec3::ZERO);
-        return Cut { triangles: fan, right };
+        return Cut { triangles: fan, is_valid };
     }
-    let flat: Vec<DVec2> = corners.iter().map(|&p| along(p - corners[0], normal)).collect();
+    let flat: Vec<DVec2> = corners.iter().map(|&p| project(p - corners[0], normal)).collect();
     if fan.iter().all(|&t| turns_left(t.map(|i| flat[i]))) {
-        return Cut { triangles: fan, right: true };
+        return Cut { triangles: fan, is_valid: true };
     }
-    let ears = if corners.len() <= MOST_CORNERS { Ring::new(&flat).cut() } else { None };
+    let ears = if corners.len() <= MAX_CORNERS { Ring::new(&flat).cut() } else { None };
     match ears.filter(|ears| covers(ears, &flat)) {
-        Some(triangles) => Cut { triangles, right: true },
-        None => Cut { triangles: fan, right: false },
+        Some(triangles) => Cut { triangles, is_valid: true },
+        None => Cut { triangles: fan, is_valid: false },
     }
 }
 
-/// A vector in the direction of the normal: the sum of cross products (Newell).
+/// Returns a vector in the direction of the normal: the sum of cross products (Newell).
 fn normal(corners: &[DVec3]) -> DVec3 {
     let Some(&first) = corners.first() else { return DVec3::ZERO };
     corners.windows(2).map(|edge| (edge[0] - first).cross(edge[1] - first)).sum()
 }
 
-/// The point without the coordinate in which the normal is largest, seen from where the normal points: exact, and no area is zero
-/// that was not.
-fn along(p: DVec3, normal: DVec3) -> DVec2 {
+/// Projects a point along the axis in which the normal is largest, seen from where the normal points. Dropping a
+/// coordinate is exact, and makes no area zero that was not.
+fn project(p: DVec3, normal: DVec3) -> DVec2 {
     let n = normal.abs();
     let (q, sign) = if n.x >= n.y && n.x >= n.z {
         (DVec2::new(p.y, p.z), normal.x)
@@ -70,34 +72,34 @@ fn along(p: DVec3, normal: DVec3) -> DVec2 {
     if sign < 0.0 { DVec2::new(q.y, q.x) } else { q }
 }
 
-/// Twice the area, below zero if the corners run clockwise.
+/// Returns twice the area, negative if the corners run clockwise.
 fn doubled_area([a, b, c]: [DVec2; 3]) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
 fn turns_left(t @ [a, b, c]: [DVec2; 3]) -> bool {
     let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
-    doubled_area(t) > FLAT * longest
+    doubled_area(t) > MIN_RELATIVE_AREA * longest
 }
 
-/// Whether the triangles have the area of the outline, and so none lies outside or over another.
+/// Returns true if the triangles have the area of the outline, so that none lies outside or overlaps another.
 fn covers(triangles: &[[usize; 3]], flat: &[DVec2]) -> bool {
     let fan: f64 = (2..flat.len()).map(|i| doubled_area([flat[0], flat[i - 1], flat[i]])).sum();
     let parts: f64 = triangles.iter().map(|t| doubled_area(t.map(|i| flat[i])).abs()).sum();
     (parts - fan).abs() <= 1e-9 * fan.abs()
 }
 
-/// What is left of an outline.
+/// Remaining outline.
 struct Ring<'p> {
     points: &'p [DVec2],
-    /// Neighbors of each corner that is left.
-    before: Vec<usize>,
-    behind: Vec<usize>,
-    /// Whether a corner is an ear as far as is known.
+    /// Neighbors of each remaining corner.
+    previous: Vec<usize>,
+    next: Vec<usize>,
+    /// True for each corner that is known to be an ear.
     ear: Vec<bool>,
-    /// Corners that do not turn left, and those that did not once: only such ones can lie in an ear.
-    blunt: Vec<usize>,
-    gone: Vec<bool>,
+    /// Corners that do not turn left, or did not at first: only these can lie in an ear.
+    reflex: Vec<usize>,
+    removed: Vec<bool>,
 }
 
 impl<'p> Ring<'p> {
@@ -105,35 +107,35 @@ impl<'p> Ring<'p> {
         let n = points.len();
         let mut ring = Self {
             points,
-            before: (0..n).map(|i| (i + n - 1) % n).collect(),
-            behind: (0..n).map(|i| (i + 1) % n).collect(),
+            previous: (0..n).map(|i| (i + n - 1) % n).collect(),
+            next: (0..n).map(|i| (i + 1) % n).collect(),
             ear: vec![false; n],
-            blunt: Vec::new(),
-            gone: vec![false; n],
+            reflex: Vec::new(),
+            removed: vec![false; n],
         };
-        ring.blunt = (0..n).filter(|&i| !turns_left(ring.corner(i))).collect();
+        ring.reflex = (0..n).filter(|&i| !turns_left(ring.corner(i))).collect();
         ring
     }
 
     fn corner(&self, i: usize) -> [DVec2; 3] {
-        [self.before[i], i, self.behind[i]].map(|k| self.points[k])
+        [self.previous[i], i, self.next[i]].map(|k| self.points[k])
     }
 
-    /// Whether a corner turns left, and no other one lies in its triangle or on an edge of it.
+    /// Returns true if a corner turns left, and no other corner lies in its triangle or on an edge of it.
     fn is_ear(&self, i: usize) -> bool {
         let triangle @ [a, b, c] = self.corner(i);
         let inside = |p: DVec2| {
             [[a, b, p], [b, c, p], [c, a, p]].into_iter().all(|t| doubled_area(t) >= 0.0)
-                // Where an outline touches itself, as it does where a cut leads to a hole, corners are in the same place.
+                // Coincident corners do not count: an outline touches itself where a cut leads to a hole.
                 && p != a
                 && p != c
         };
-        let own = [self.before[i], i, self.behind[i]];
+        let own = [self.previous[i], i, self.next[i]];
         turns_left(triangle)
-            && !self.blunt.iter().any(|&k| !self.gone[k] && !own.contains(&k) && inside(self.points[k]))
+            && !self.reflex.iter().any(|&k| !self.removed[k] && !own.contains(&k) && inside(self.points[k]))
     }
 
-    /// Takes away ear after ear; `None` if there is none though the outline has an area.
+    /// Removes ear after ear; returns `None` if there is no ear although the outline has an area.
     fn cut(mut self) -> Option<Vec<[usize; 3]>> {
         let n = self.points.len();
         let mut triangles = Vec::with_capacity(n - 2);
@@ -141,65 +143,65 @@ impl<'p> Ring<'p> {
         for left in (3..=n).rev() {
             let mut looked = 0;
             while !self.ear[at] {
-                at = self.behind[at];
+                at = self.next[at];
                 looked += 1;
                 if looked == left {
                     rounds += 1;
                     looked = 0;
-                    if rounds > ROUNDS || !self.look(at) {
+                    if rounds > MAX_SEARCHES || !self.find_ears(at) {
                         return self.is_line(at).then(|| self.fan(at, triangles));
                     }
                 }
             }
-            let (before, behind) = (self.before[at], self.behind[at]);
-            triangles.push([before, at, behind]);
-            self.gone[at] = true;
-            (self.behind[before], self.before[behind]) = (behind, before);
-            for corner in [before, behind] {
+            let (previous, next) = (self.previous[at], self.next[at]);
+            triangles.push([previous, at, next]);
+            self.removed[at] = true;
+            (self.next[previous], self.previous[next]) = (next, previous);
+            for corner in [previous, next] {
                 self.ear[corner] = self.is_ear(corner);
             }
-            // From every other corner, so that triangles are not all at the same one.
-            at = self.behind[behind];
+            // Continues at every other corner, so that the triangles do not all share one corner.
+            at = self.next[next];
         }
         Some(triangles)
     }
 
-    /// Looks for ears among all corners that are left.
-    fn look(&mut self, start: usize) -> bool {
+    /// Looks for ears among all remaining corners, and returns true if there are any.
+    fn find_ears(&mut self, start: usize) -> bool {
         let mut found = false;
         let mut at = start;
         loop {
             self.ear[at] = self.is_ear(at);
             found |= self.ear[at];
-            at = self.behind[at];
+            at = self.next[at];
             if at == start {
                 return found;
             }
         }
     }
 
-    /// Whether what is left has no area.
+    /// Returns true if the remaining outline has no area.
     fn is_line(&self, start: usize) -> bool {
         let mut at = start;
         loop {
             let [a, b, c] = self.corner(at);
             let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
-            if doubled_area([a, b, c]).abs() > FLAT * longest {
+            if doubled_area([a, b, c]).abs() > MIN_RELATIVE_AREA * longest {
                 return false;
             }
-            at = self.behind[at];
+            at = self.next[at];
             if at == start {
                 return true;
             }
         }
     }
 
-    /// Adds what is left as a fan of triangles without an area.
+    /// Adds the remaining outline as a fan of triangles without an area.
     fn fan(&self, start: usize, mut triangles: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
-        let mut at = self.behind[start];
-        while self.behind[at] != start {
-            triangles.push([start, at, self.behind[at]]);
-            at = self.behind[at];
+        let mut at = self.next[start];
+        while self.next[at] != start {
+            triangles.push([start, at, self.next[at]]);
+            at = self.next[at];
         }
         triangles
     }
@@ -214,7 +216,7 @@ mod tests {
         points.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)).collect()
     }
 
-    /// How many triangles contain a point, which is on no edge.
+    /// Returns the number of triangles that contain a point, which is on no edge.
     fn layers(cut: &Cut, corners: &[DVec3], p: DVec2) -> usize {
         let inside = |t: &&[usize; 3]| {
             let [a, b, c] = t.map(|i| corners[i].truncate());
@@ -223,7 +225,7 @@ mod tests {
         cut.triangles.iter().filter(inside).count()
     }
 
-    /// Whether a point is inside of an outline, by the parity of crossings.
+    /// Returns true if a point is inside an outline, by the parity of crossings.
     fn is_inside(corners: &[DVec3], p: DVec2) -> bool {
         let mut inside = false;
         for (i, a) in corners.iter().enumerate() {
@@ -235,10 +237,10 @@ mod tests {
         inside
     }
 
-    /// Every point of the plane lies in one triangle if it is inside, and in none if it is not.
+    /// Asserts that every point of the plane lies in one triangle if it is inside, and in none if it is not.
     fn assert_tiles(corners: &[DVec3]) {
         let found = cut(corners);
-        assert!(found.right && found.triangles.len() == corners.len() - 2, "{found:?}");
+        assert!(found.is_valid && found.triangles.len() == corners.len() - 2, "{found:?}");
         for i in 0..40 {
             for k in 0..40 {
                 let p = DVec2::new(f64::from(i) + 0.513, f64::from(k) + 0.491) * 0.1 - 2.0;
@@ -263,7 +265,7 @@ mod tests {
         }
     }
 
-    /// A square with a square hole, as writers without holes have it: a cut leads there and back.
+    /// A square with a square hole, as written by software without holes: a cut leads there and back.
     #[test]
     fn a_hole_stays_one() {
         let ring = at(&[
@@ -317,7 +319,7 @@ mod tests {
                 let (a, b) = n.any_orthonormal_pair();
                 let corners: Vec<DVec3> = l.iter().map(|[x, y]| 9.0 * n + *x * a + *y * b).collect();
                 let found = cut(&corners);
-                assert!(found.right);
+                assert!(found.is_valid);
                 for t in found.triangles {
                     let [p, q, r] = t.map(|i| corners[i]);
                     assert!((q - p).cross(r - p).dot(n) > 0.0, "{normal}");
@@ -329,7 +331,7 @@ mod tests {
     #[test]
     fn outlines_that_cross_themselves_are_fans_and_said_to_be_wrong() {
         let bow = at(&[[0.0, 0.0], [1.0, 0.1], [1.0, 0.0], [0.0, 1.0]]);
-        assert_eq!(cut(&bow), Cut { triangles: vec![[0, 1, 2], [0, 2, 3]], right: false });
+        assert_eq!(cut(&bow), Cut { triangles: vec![[0, 1, 2], [0, 2, 3]], is_valid: false });
     }
 
     #[test]
@@ -353,7 +355,7 @@ mod tests {
             assert_tiles(&at(&points));
         }
 
-        /// Whatever the outline, there are as many triangles as there should be, and they name corners.
+        /// For any outline, the number of triangles is right, and their indices are corners.
         #[test]
         fn any_outline_ends(points in prop::collection::vec([0..5i32, 0..5i32], 0..60)) {
             let points: Vec<[f64; 2]> = points.iter().map(|p| p.map(f64::from)).collect();

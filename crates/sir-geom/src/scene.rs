@@ -1,4 +1,4 @@
-//! The scene: what light can meet.
+//! The scene: triangles, materials, lights, a sky and cameras.
 
 use std::sync::Arc;
 
@@ -21,21 +21,21 @@ pub struct Triangle {
     pub vertices: [VertexId; 3],
     /// Material of both sides.
     pub material: MaterialId,
-    /// The polygon that this triangle is a part of.
+    /// Polygon that this triangle is a part of.
     pub face: FaceId,
-    /// The named part of the scene that it belongs to.
+    /// Group that it belongs to.
     pub group: GroupId,
-    /// Its number, from 0, among all triangles of the file in file order, those that were dropped included.
+    /// Index, from 0, among all triangles of the file in file order, including those that were dropped.
     pub source: u32,
-    /// What varies over it.
+    /// Location of its corner values.
     pub(crate) corners: Corners,
 }
 
 /// Triangles, materials, lights and cameras in world space.
 ///
-/// Made by a [`SceneBuilder`](crate::SceneBuilder), which guarantees: at least one triangle, finite coordinates,
-/// indices in range, areas above zero, reflectances in `[0, MAX_REFLECTANCE]`, finite non-negative exitances,
-/// lights with finite numbers and vectors of unit length.
+/// Built by a [`SceneBuilder`](crate::SceneBuilder), which guarantees: at least one triangle, finite coordinates,
+/// indices in range, areas above zero, reflectances in `[0, MAX_REFLECTANCE]`, finite non-negative exitances, lights
+/// with finite numbers and vectors of unit length.
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub(crate) vertices: Vec<DVec3>,
@@ -51,100 +51,101 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Positions, indexed by [`VertexId`]. No two are equal.
+    /// Returns the positions, indexed by [`VertexId`]. No two are equal.
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// Triangles, indexed by [`TriangleId`], in file order.
+    /// Returns the triangles, indexed by [`TriangleId`], in file order.
     #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
 
-    /// Materials, indexed by [`MaterialId`].
+    /// Returns the materials, indexed by [`MaterialId`].
     #[must_use]
     pub fn materials(&self) -> &[Material] {
         &self.materials
     }
 
-    /// Names of the parts of the scene, indexed by [`GroupId`]. The first one is empty: it is that of triangles in no part.
+    /// Returns the names of the groups, indexed by [`GroupId`]. The first one is empty and stands for triangles in no
+    /// group.
     #[must_use]
     pub fn groups(&self) -> &[String] {
         &self.groups
     }
 
-    /// Cameras in file order.
+    /// Returns the cameras in file order.
     #[must_use]
     pub fn cameras(&self) -> &[Camera] {
         &self.cameras
     }
 
-    /// Lights without a surface, in file order.
+    /// Returns the lights without a surface, in file order.
     #[must_use]
     pub fn lights(&self) -> &[Light] {
         &self.lights
     }
 
-    /// What lines meet that leave the scene; without a sky, darkness.
+    /// Returns the sky, which is seen by lines that leave the scene; without a sky, they see darkness.
     #[must_use]
     pub fn sky(&self) -> Option<&Sky> {
         self.sky.as_ref()
     }
 
-    /// All triangle numbers in order.
+    /// Returns the indices of all triangles in order.
     pub fn triangle_ids(&self) -> impl ExactSizeIterator<Item = TriangleId> + use<> {
         (0..self.triangles.len() as u32).map(TriangleId)
     }
 
-    /// The triangle with this number.
+    /// Returns the triangle with this index.
     #[inline]
     #[must_use]
     pub fn triangle(&self, id: TriangleId) -> &Triangle {
         &self.triangles[id.index()]
     }
 
-    /// The three corners of a triangle.
+    /// Returns the three corners of a triangle.
     #[inline]
     #[must_use]
     pub fn corners(&self, id: TriangleId) -> [DVec3; 3] {
         self.triangle(id).vertices.map(|v| self.vertices[v.index()])
     }
 
-    /// The material of a triangle.
+    /// Returns the material of a triangle.
     #[inline]
     #[must_use]
     pub fn material(&self, id: TriangleId) -> &Material {
         &self.materials[self.triangle(id).material.index()]
     }
 
-    /// Area of a triangle.
+    /// Returns the area of a triangle.
     #[must_use]
     pub fn area(&self, id: TriangleId) -> f64 {
         0.5 * self.scaled_normal(id).length()
     }
 
-    /// Unit normal on the front of a triangle.
+    /// Returns the unit normal on the front of a triangle.
     #[must_use]
     pub fn normal(&self, id: TriangleId) -> DVec3 {
         self.scaled_normal(id).normalize()
     }
 
-    /// Normal on the front of a triangle, twice as long as its area.
+    /// Returns a normal on the front of a triangle whose length is twice the area.
     fn scaled_normal(&self, id: TriangleId) -> DVec3 {
         let [a, b, c] = self.corners(id);
         (b - a).cross(c - a)
     }
 
-    /// Whether the given side of a triangle reflects or emits; the other kind only absorbs.
+    /// Returns true if the given side of a triangle reflects or emits; otherwise it only absorbs.
     #[inline]
     #[must_use]
     pub fn is_active(&self, id: TriangleId, side: Side) -> bool {
         side == Side::Front || self.material(id).sides == Sides::Both
     }
 
-    /// Emitted exitance `M` \[W/m²\] of a side of a triangle; with a texture, its mean over the image.
+    /// Returns the emitted exitance `M` \[W/m²\] of a side of a triangle; with a texture, its mean over the image.
     #[must_use]
     pub fn exitance(&self, id: TriangleId, side: Side) -> crate::color::Rgb {
         let material = self.material(id);
@@ -155,19 +156,19 @@ impl Scene {
         }
     }
 
-    /// Sum of the areas of all triangles (one side each).
+    /// Returns the sum of the areas of all triangles (one side each).
     #[must_use]
     pub fn total_area(&self) -> f64 {
         self.triangle_ids().map(|t| self.area(t)).sum()
     }
 
-    /// Smallest axis-aligned box around the triangles.
+    /// Returns the smallest axis-aligned box around the triangles.
     #[must_use]
     pub fn bounding_box(&self) -> BoundingBox {
         self.bounding_box
     }
 
-    /// A sphere that strictly encloses the triangles.
+    /// Returns a sphere that strictly encloses the triangles.
     #[must_use]
     pub fn bounding_sphere(&self) -> BoundingSphere {
         self.bounding_sphere

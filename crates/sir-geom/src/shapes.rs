@@ -1,4 +1,4 @@
-//! Simple shapes, for tests, examples and scene generators.
+//! Simple shapes for tests, examples and scene generators.
 
 use std::collections::HashMap;
 
@@ -7,23 +7,23 @@ use glam::DVec3;
 use crate::builder::SceneBuilder;
 use crate::index::{FaceId, MaterialId, VertexId};
 
-/// Where the fronts of a closed shape point.
+/// Direction of the fronts of a closed shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facing {
-    /// To the inside: a room.
+    /// Toward the inside: a room.
     Inward,
-    /// To the outside: an object.
+    /// Toward the outside: an object.
     Outward,
 }
 
-/// Adds one quadrilateral, corners counterclockwise seen from its front.
+/// Adds one quadrilateral, with corners counterclockwise seen from its front.
 pub fn quad(builder: &mut SceneBuilder, corners: [DVec3; 4], material: MaterialId) -> FaceId {
     let corners = corners.map(|p| builder.add_vertex(p));
     builder.add_polygon(&corners, material)
 }
 
 /// Adds a closed box of six quadrilaterals. `materials` are those of the faces
-/// `x = min, x = max, y = min, y = max, z = min, z = max`; the returned numbers are in the same order.
+/// `x = min, x = max, y = min, y = max, z = min, z = max`. Returns the indices of the faces in the same order.
 pub fn cuboid(
     builder: &mut SceneBuilder,
     min: DVec3,
@@ -35,7 +35,7 @@ pub fn cuboid(
         let pick = |axis: usize| if i >> axis & 1 == 0 { min[axis] } else { max[axis] };
         builder.add_vertex(DVec3::new(pick(0), pick(1), pick(2)))
     });
-    // Counter-clockwise seen from inside.
+    // Counterclockwise seen from inside.
     const INWARD: [[usize; 4]; 6] =
         [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
     std::array::from_fn(|face| {
@@ -47,8 +47,8 @@ pub fn cuboid(
     })
 }
 
-/// Adds a sphere of `20 · 4^level` triangles: an icosahedron whose edges were halved `level` times, with every
-/// vertex on the sphere. The material of a triangle is chosen by the unit vector from the center to its middle.
+/// Adds a sphere of `20 · 4^level` triangles: an icosahedron subdivided `level` times, with every vertex on the sphere.
+/// `material` returns the material of a triangle for the unit vector from the center to its middle.
 pub fn sphere(
     builder: &mut SceneBuilder,
     center: DVec3,
@@ -86,7 +86,7 @@ pub fn sphere(
     }
 }
 
-/// Unit vectors to the 12 corners, and the 20 triangles, counterclockwise seen from outside.
+/// Returns unit vectors to the 12 corners of an icosahedron, and its 20 triangles, counterclockwise seen from outside.
 fn icosahedron() -> (Vec<DVec3>, Vec<[usize; 3]>) {
     let g = 0.5 * (1.0 + 5.0f64.sqrt());
     let points = [

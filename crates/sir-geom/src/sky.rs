@@ -6,35 +6,36 @@ use glam::DVec3;
 
 use crate::color::Rgb;
 
-/// What lines meet that leave the scene: a dome above, and below it a ground of one radiance.
+/// Sky seen by lines that leave the scene: a dome above, and below it a ground of uniform radiance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sky {
     up: DVec3,
     pattern: Pattern,
-    /// Radiance of the dome over its pattern.
+    /// Radiance of the dome divided by its pattern.
     scale: Rgb,
     ground: Rgb,
     integrals: Integrals,
 }
 
-/// How the radiance of a dome depends on the direction.
+/// Distribution of the radiance of a dome over directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SkyModel {
-    /// The same from everywhere: type 5 of the CIE general sky.
+    /// Uniform: type 5 of the CIE general sky.
     Uniform,
-    /// The traditional overcast sky of the CIE, three times as bright in the zenith as at the horizon:
+    /// The traditional overcast sky of the CIE, three times as bright at the zenith as at the horizon:
     /// `L = L_z (1 + 2 sin γ) / 3` (Moon and Spencer 1942; type 16 of CIE S 011).
     Overcast,
     /// One of the fifteen types of the CIE general sky (CIE S 011/E:2003, ISO 15469:2004), without the disc of the sun.
     General {
-        /// From 1, a steep overcast sky, to 15, a white-blue turbid sky with a broad solar corona. 12 is a clear sky.
+        /// Type, from 1, a steep overcast sky, to 15, a white-blue turbid sky with a broad solar corona. 12 is a clear
+        /// sky.
         kind: u8,
-        /// Unit vector towards the sun, above the horizon.
+        /// Unit vector toward the sun, above the horizon.
         sun: DVec3,
     },
 }
 
-/// The coefficients of gradation and indicatrix.
+/// Relative radiance of a dome: coefficients of gradation and indicatrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pattern {
     Overcast,
@@ -44,13 +45,13 @@ enum Pattern {
 /// Integrals of a pattern over its hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Integrals {
-    /// `∫ |ω| dω`, by coordinates.
+    /// `∫ p(ω) |ω| dω` of the pattern `p`, by coordinates.
     across: DVec3,
-    /// No direction has more.
+    /// Upper bound of the pattern over all directions.
     bound: f64,
 }
 
-/// `a` to `e` of the types 1 to 15 (CIE S 011/E:2003, table 1).
+/// Coefficients `a` to `e` of the types 1 to 15 (CIE S 011/E:2003, table 1).
 const TYPES: [[f64; 5]; 15] = [
     [4.0, -0.70, 0.0, -1.0, 0.0],
     [4.0, -0.70, 2.0, -1.5, 0.15],
@@ -69,11 +70,11 @@ const TYPES: [[f64; 5]; 15] = [
     [-1.0, -0.15, 24.0, -2.8, 0.15],
 ];
 
-/// Steps of the quadrature in height and in longitude.
+/// Number of steps of the quadrature in height and in longitude.
 const STEPS: [u32; 2] = [512, 512];
 
 impl Pattern {
-    /// Radiance in a direction above the horizon, in a unit of its own. The same bits on all machines.
+    /// Returns the radiance in a direction above the horizon, in a unit of its own, with the same bits on all machines.
     fn at(self, up: DVec3, direction: DVec3) -> f64 {
         let sine = direction.dot(up);
         match self {
@@ -87,8 +88,8 @@ impl Pattern {
         }
     }
 
-    /// Gradation is monotonous, and the indicatrix is largest towards the sun: it falls to its least at a right angle, or thereabouts,
-    /// and rises to less than it was.
+    /// Returns an upper bound over all directions. The gradation is monotonic. The indicatrix is largest toward the
+    /// sun: it falls to its minimum at about a right angle, and rises to less than its maximum.
     fn bound(self) -> f64 {
         match self {
             Self::Overcast => 1.0,
@@ -101,11 +102,11 @@ impl Pattern {
 }
 
 impl Sky {
-    /// A sky that gives a horizontal surface with nothing around it the irradiance `horizontal` per band \[W/m²\], above a ground with the
-    /// radiance `ground` \[W/(m² sr)\]; `up` is the direction of the zenith.
+    /// Returns a sky that gives an unobstructed horizontal surface the irradiance `horizontal` per band \[W/m²\], above
+    /// a ground with the radiance `ground` \[W/(m² sr)\]. `up` is the direction of the zenith.
     ///
-    /// `None` if `up` or the direction of the sun has no length, the sun is below the horizon, a type is not of 1 to 15, or a
-    /// color is negative or not finite.
+    /// Returns `None` if `up` or the direction of the sun has no length, the sun is below the horizon, a type is not
+    /// from 1 to 15, or a color is negative or not finite.
     #[must_use]
     pub fn new(up: DVec3, model: SkyModel, horizontal: Rgb, ground: Rgb) -> Option<Self> {
         let up = up.try_normalize()?;
@@ -121,7 +122,7 @@ impl Sky {
         if !possible(horizontal) || !possible(ground) {
             return None;
         }
-        // By the midpoints of equal steps in height, which are equal solid angles, and in longitude.
+        // Midpoint rule with equal steps in height, which are equal solid angles, and in longitude.
         let (x_axis, y_axis) = up.any_orthonormal_pair();
         let (mut across, mut projected) = (DVec3::ZERO, 0.0);
         for i in 0..STEPS[0] {
@@ -141,48 +142,52 @@ impl Sky {
         Some(Self { up, pattern, scale: horizontal / (projected * cell), ground, integrals })
     }
 
-    /// The same radiance \[W/(m² sr)\] from all directions.
+    /// Returns a sky with the same radiance \[W/(m² sr)\] in all directions.
     ///
-    /// `None` if it is negative or not finite.
+    /// Returns `None` if it is negative or not finite.
     #[must_use]
     pub fn everywhere(radiance: Rgb) -> Option<Self> {
         Self::new(DVec3::Y, SkyModel::Uniform, radiance * PI, radiance)
     }
 
-    /// Unit vector to the zenith.
+    /// Returns the unit vector to the zenith.
     #[must_use]
     pub fn up(&self) -> DVec3 {
         self.up
     }
 
-    /// Radiance per band \[W/(m² sr)\] that comes from a direction: `towards` is a unit vector that points to the sky.
+    /// Returns the radiance per band \[W/(m² sr)\] that comes from a direction: `towards` is a unit vector that points
+    /// to the sky.
     #[must_use]
     pub fn radiance(&self, towards: DVec3) -> Rgb {
         if towards.dot(self.up) > 0.0 { self.scale * self.pattern.at(self.up, towards) } else { self.ground }
     }
 
-    /// Radiance of the ground per band \[W/(m² sr)\].
+    /// Returns the radiance of the ground per band \[W/(m² sr)\].
     #[must_use]
     pub fn ground(&self) -> Rgb {
         self.ground
     }
 
-    /// Power of the dome per band \[W\] that enters a box, parallel to the axes, with faces of these areas across each axis \[m²\].
+    /// Returns the power of the dome per band \[W\] that enters an axis-aligned box whose faces across each axis have
+    /// these areas \[m²\].
     ///
-    /// Its shadow in the direction `ω` is `Σ Aₖ |ωₖ|`.
+    /// The projected area of the box in the direction `ω` is `Σ Aₖ |ωₖ|`.
     #[must_use]
     pub fn dome_through(&self, areas: DVec3) -> Rgb {
         self.scale * self.integrals.across.dot(areas)
     }
 
-    /// The same of the ground: `|ωₖ|` has the integral `π` over any hemisphere.
+    /// Returns the power of the ground per band \[W\] that enters the same box: `|ωₖ|` has the integral `π` over any
+    /// hemisphere.
     #[must_use]
     pub fn ground_through(&self, areas: DVec3) -> Rgb {
         self.ground * (PI * areas.element_sum())
     }
 
-    /// Radiance of the dome in a direction over the largest one there may be, from 0 to 1: the probability to keep a uniform
-    /// direction for those that are kept to have the density of the radiance. Nothing from below.
+    /// Returns the radiance of the dome in a direction divided by its upper bound, from 0 to 1; zero below the horizon.
+    /// This is the acceptance probability with which rejection sampling of uniform directions has the density of the
+    /// radiance.
     #[must_use]
     pub fn share(&self, towards: DVec3) -> f64 {
         if towards.dot(self.up) > 0.0 {
@@ -204,7 +209,8 @@ mod tests {
         let horizontal = Rgb::new(1.0, 2.0, 3.0);
         let uniform = Sky::new(DVec3::Z, SkyModel::Uniform, horizontal, Rgb::ZERO).unwrap();
         assert!((uniform.radiance(SUN) * PI).abs_diff_eq(horizontal, 1e-5));
-        // What enters through a face is its irradiance; through both sides of an upright one, half the sky each.
+        // The power that enters through a face is its irradiance; through both sides of an upright one, half the sky
+        // each.
         for k in [0, 1, 2] {
             assert!(uniform.dome_through(DVec3::AXES[k]).abs_diff_eq(horizontal, 1e-4), "{k}");
         }

@@ -1,31 +1,31 @@
-//! Triangles cut where they pass through the faces of a box, so that what lies in it can be treated otherwise than what does not.
+//! Splitting of triangles at the faces of a box, so that its contents can be treated differently.
 
 use glam::DVec3;
 
 use sir_types::{Barycentric, BoundingBox};
 
-/// Corners that are no farther from a face than this part of the size of the box lie in it.
-const CLOSE: f64 = 1e-9;
+/// Relative tolerance: a corner lies in a face of the box if its distance is at most this fraction of the box's size.
+const TOLERANCE: f64 = 1e-9;
 
 /// A corner of a part of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Corner {
     pub(crate) place: DVec3,
-    /// Where that is in the triangle.
+    /// Barycentric coordinates of the corner in the triangle.
     pub(crate) point: Barycentric,
-    /// Which corner of the triangle it is, if it is one.
+    /// Index of the corner of the triangle, if it is one.
     pub(crate) own: Option<usize>,
 }
 
-/// The convex parts of a triangle: the one in the box is the last. `None` if the triangle lies in the box, or outside of it, as a whole, or
-/// is nowhere.
+/// Splits a triangle into convex parts, of which the last lies in the box. Returns `None` if the whole triangle lies in
+/// the box or outside it, or if its coordinates are not finite.
 ///
-/// Neighbors get the same corners, to the last bit, on an edge that is cut in both.
+/// Neighbors that are split along a common edge get bit-identical corners there.
 pub(crate) fn split(triangle: [DVec3; 3], bounds: &BoundingBox) -> Option<Vec<Vec<Corner>>> {
     if !triangle.iter().all(|place| place.is_finite()) {
         return None;
     }
-    let close = CLOSE * bounds.size().max_element();
+    let tolerance = TOLERANCE * bounds.size().max_element();
     let weight = |is: bool| f64::from(u8::from(is));
     let corner = |(i, &place)| {
         let point = Barycentric { v: weight(i == 1), w: weight(i == 2) };
@@ -37,7 +37,7 @@ pub(crate) fn split(triangle: [DVec3; 3], bounds: &BoundingBox) -> Option<Vec<Ve
         for (face, outwards) in [(bounds.min[axis], -1.0), (bounds.max[axis], 1.0)] {
             let height = |corner: &Corner| {
                 let height = outwards * (corner.place[axis] - face);
-                if height.abs() <= close { 0.0 } else { height }
+                if height.abs() <= tolerance { 0.0 } else { height }
             };
             let reaches = |side: f64| within.iter().any(|corner| side * height(corner) > 0.0);
             if !reaches(1.0) {
@@ -70,9 +70,9 @@ pub(crate) fn split(triangle: [DVec3; 3], bounds: &BoundingBox) -> Option<Vec<Ve
     (parts.len() > 1).then_some(parts)
 }
 
-/// Where an edge passes through a plane across an axis.
+/// Returns the intersection of an edge with a plane across an axis.
 fn crossing(from: &Corner, to: &Corner, axis: usize, plane: f64) -> Corner {
-    // An edge has one direction, whichever way its triangles run along it.
+    // The direction of an edge does not depend on the triangle, so that both neighbors get the same point.
     let ends = if from.place.to_array() <= to.place.to_array() { [from, to] } else { [to, from] };
     let [a, b] = ends.map(|corner| corner.place[axis]);
     let part = (plane - a) / (b - a);
@@ -106,8 +106,8 @@ mod tests {
         (a + b + c) / 3.0
     }
 
-    /// A ground of 200 × 200 m in two triangles, and a ball that is partly in the box; all areas are known, and every triangle ends up
-    /// on one side of each face.
+    /// A ground of 200 × 200 m in two triangles, and a sphere that is partly in the box: all areas are known, and every
+    /// triangle ends up on one side of each face.
     #[test]
     fn what_is_in_a_box_is_cut_off() {
         let mut b = SceneBuilder::new();
@@ -139,7 +139,7 @@ mod tests {
         assert!((20..500).contains(&cut), "{cut} more triangles");
     }
 
-    /// A ball that is cut by a plane has no cracks: every edge has two triangles, one in each direction.
+    /// A sphere that is split by a plane has no cracks: every edge has two triangles, one in each direction.
     #[test]
     fn what_was_closed_stays_closed() {
         let mut b = SceneBuilder::new();
@@ -157,7 +157,7 @@ mod tests {
         assert!(edges.keys().all(|&(from, to)| edges.contains_key(&(to, from))));
     }
 
-    /// A color that the corners give is the same everywhere, whatever is cut; so are texture coordinates.
+    /// Splitting changes neither colors from the corners nor texture coordinates.
     #[test]
     fn what_varies_goes_on() {
         let mut b = SceneBuilder::new();

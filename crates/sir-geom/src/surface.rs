@@ -1,4 +1,4 @@
-//! How the properties of surfaces vary on them, as functions of a scene.
+//! Properties of surfaces as functions of the position on a triangle.
 
 use std::sync::Arc;
 
@@ -11,17 +11,17 @@ use crate::scene::{Scene, Triangle};
 use crate::texture::{ColorMap, Texture, TextureMap};
 use sir_types::{Barycentric, Side, TriangleId};
 
-/// Which triangles of a scene let light through, and where. Does without the scene.
+/// Opacities of the triangles of a scene, usable without the scene.
 #[derive(Clone, Debug)]
 pub struct Opacities {
     appearance: Arc<Appearance>,
     materials: Vec<Opacity>,
-    /// The material of each triangle, if it is not opaque, and its corners.
+    /// Material and corner values of each triangle; `None` if it is opaque.
     triangles: Vec<Option<(u32, Corners)>>,
 }
 
 impl Opacities {
-    /// Those of a scene; `None` if all surfaces are opaque.
+    /// Returns the opacities of a scene; `None` if all surfaces are opaque.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         let see_through = |t: &Triangle| scene.is_open(t).then_some((t.material.0, t.corners));
@@ -33,7 +33,8 @@ impl Opacities {
         })
     }
 
-    /// Which share of the light that meets a triangle at a point is stopped; `None` if the triangle is opaque.
+    /// Returns the opacity of a triangle at a point, the share of the light that it stops; `None` if the triangle is
+    /// opaque.
     #[inline]
     #[must_use]
     pub fn at(&self, triangle: TriangleId, point: Barycentric) -> Option<f64> {
@@ -41,7 +42,7 @@ impl Opacities {
         Some(self.appearance.opacity(&self.materials[material as usize], corners, point))
     }
 
-    /// Memory in use, without the textures \[bytes\].
+    /// Returns the memory in use, without the textures \[bytes\].
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.triangles.len() * size_of::<Option<(u32, Corners)>>()
@@ -49,32 +50,33 @@ impl Opacities {
 }
 
 impl Scene {
-    /// The textures, indexed by [`TextureId`](crate::TextureId).
+    /// Returns the textures, indexed by [`TextureId`](crate::TextureId).
     #[must_use]
     pub fn textures(&self) -> &[Texture] {
         &self.appearance.textures
     }
 
-    /// The texture that a map of a material lays on a triangle, and its coordinates at the corners; `None` if the triangle
-    /// has no such coordinates.
+    /// Returns the texture of a map on a triangle, and its coordinates at the corners; `None` if the triangle lacks the
+    /// coordinate set.
     #[must_use]
     pub fn texture_on(&self, id: TriangleId, map: &TextureMap) -> Option<(&Texture, [DVec2; 3])> {
         self.appearance.texture(map, self.triangle(id).corners)
     }
 
-    /// Color by which the reflectance of a triangle is multiplied at a point, and its opacity.
+    /// Returns the tint of a triangle at a point: the factor of its reflectance, and its opacity; `None` without a
+    /// tint.
     #[must_use]
     pub fn tint_at(&self, id: TriangleId, point: Barycentric) -> Option<(Rgb, f64)> {
         self.appearance.tint(self.triangle(id).corners, point)
     }
 
-    /// Whether reflectance, exitance or opacity of a triangle differ from those of its material, or differ from place to place.
+    /// Returns true if reflectance, exitance or opacity of a triangle vary, or differ from those of its material.
     #[must_use]
     pub fn is_varied(&self, id: TriangleId) -> bool {
         !self.material(id).is_plain() || self.triangle(id).corners.tint != NO_TINT
     }
 
-    /// Reflectance of a triangle at a point, per band.
+    /// Returns the reflectance of a triangle at a point, per band.
     #[must_use]
     pub fn reflectance_at(&self, id: TriangleId, point: Barycentric) -> Rgb {
         let material = self.material(id);
@@ -85,14 +87,14 @@ impl Scene {
         self.tinted(id, point, color.unwrap_or(material.reflectance))
     }
 
-    /// A reflectance, times the color that the corners give the triangle at a point; at most [`MAX_REFLECTANCE`].
+    /// Returns a reflectance times the tint of the triangle at a point, at most [`MAX_REFLECTANCE`].
     #[must_use]
     pub fn tinted(&self, id: TriangleId, point: Barycentric, reflectance: Rgb) -> Rgb {
         let tint = self.tint_at(id, point).map_or(Rgb::ONE, |(tint, _)| tint);
         (tint * reflectance).min(Rgb::splat(MAX_REFLECTANCE))
     }
 
-    /// Emitted exitance `M` \[W/m²\] of a side of a triangle at a point.
+    /// Returns the emitted exitance `M` \[W/m²\] of a side of a triangle at a point.
     #[must_use]
     pub fn exitance_at(&self, id: TriangleId, side: Side, point: Barycentric) -> Rgb {
         let mean = self.exitance(id, side);
@@ -103,19 +105,19 @@ impl Scene {
         color.unwrap_or(mean)
     }
 
-    /// Which share of the light that meets a triangle at a point is stopped.
+    /// Returns the opacity of a triangle at a point: the share of the light that it stops.
     #[must_use]
     pub fn opacity_at(&self, id: TriangleId, point: Barycentric) -> f64 {
         self.appearance.opacity(&self.material(id).opacity, self.triangle(id).corners, point)
     }
 
-    /// Whether light goes through some of a triangle.
+    /// Returns true if light can pass through a triangle.
     #[must_use]
     pub fn is_transparent(&self, id: TriangleId) -> bool {
         self.is_open(self.triangle(id))
     }
 
-    /// Memory in use by textures and by what triangles have at their corners \[bytes\].
+    /// Returns the memory in use by textures and corner values \[bytes\].
     #[must_use]
     pub fn appearance_bytes(&self) -> usize {
         let Appearance { textures, coordinates, tints } = &*self.appearance;
@@ -123,7 +125,7 @@ impl Scene {
         texels + size_of_val(&coordinates[..]) + size_of_val(&tints[..])
     }
 
-    /// Passes everything on that makes surfaces differ from place to place, for a number that tells scenes apart.
+    /// Passes all textures and corner values to `number`, for a hash that identifies the scene.
     pub fn hash_appearance(&self, number: &mut dyn FnMut(u64)) {
         let Appearance { textures, coordinates, tints } = &*self.appearance;
         for texture in textures {

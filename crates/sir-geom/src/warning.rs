@@ -1,4 +1,4 @@
-//! What was changed or left out on the way to a scene.
+//! Warnings of building a scene.
 
 use std::fmt;
 
@@ -10,24 +10,25 @@ use crate::scene::Scene;
 pub enum Warning {
     /// Triangles without an area, or with coordinates that are not finite, were left out.
     DroppedTriangles {
-        /// How many.
+        /// Number of triangles.
         count: u64,
     },
-    /// Polygons whose outlines cross themselves, or have more than 4,096 corners and are not convex, were cut into fans.
+    /// Polygons whose outlines cross themselves, or that have more than 4,096 corners and are not convex, were cut into
+    /// fans.
     CrossedPolygons {
-        /// How many.
+        /// Number of polygons.
         count: u64,
     },
-    /// A material reflected as much light as it gets, or more: its reflectance was set to [`MAX_REFLECTANCE`].
+    /// A material reflects as much light as it receives, or more. Its reflectance was set to [`MAX_REFLECTANCE`].
     ClampedReflectance {
         /// Name of the material.
         material: String,
-        /// The largest band of the reflectance that the file asks for.
+        /// Largest band of the reflectance in the file.
         asked: f64,
     },
-    /// A part of the file has no meaning here, or is missing, and was passed over.
+    /// A part of the file is not supported or missing, and was ignored.
     Ignored {
-        /// What it was, and what happens instead.
+        /// Description of the part, and the consequence.
         what: String,
     },
 }
@@ -36,17 +37,20 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DroppedTriangles { count } => {
-                write!(f, "{count} triangles without an area or with infinite coordinates were left out")
+                write!(
+                    f,
+                    "{count} triangles without an area or with infinite or undefined coordinates were left out"
+                )
             }
             Self::CrossedPolygons { count } => {
                 write!(
                     f,
-                    "{count} polygons cross themselves, or have too many corners for another way, and were cut from their first corner"
+                    "{count} polygons cross themselves, or are not convex and have more than 4,096 corners; they were cut into fans from their first corner"
                 )
             }
             Self::ClampedReflectance { material, asked } => write!(
                 f,
-                "material {} reflects {} of the light it gets; {MAX_REFLECTANCE} is used, \
+                "material {} reflects {} of the light it receives; {MAX_REFLECTANCE} is used, \
                  because a surface must absorb some",
                 quoted(material),
                 if *asked < 1e6 { format!("{asked:.4}") } else { format!("{asked:.1e}") }
@@ -56,16 +60,17 @@ impl fmt::Display for Warning {
     }
 }
 
-/// The start of a name from a file in quotes, with escapes for what would play tricks on a terminal.
+/// Returns the start of a name from a file in quotes. Control characters are escaped, because they could manipulate a
+/// terminal.
 pub(crate) fn quoted(name: &str) -> String {
     format!("{:?}", name.chars().take(80).collect::<String>())
 }
 
-/// A new scene and what was changed to make it one.
+/// A scene, and the warnings from building it.
 #[derive(Clone, Debug)]
 pub struct Built {
     /// The scene.
     pub scene: Scene,
-    /// What was changed or left out.
+    /// Everything that was changed or left out.
     pub warnings: Vec<Warning>,
 }

@@ -1,6 +1,6 @@
-//! π from counted crossings of a plate by uniform lines, with random points, with the streams of this crate, and with a
-//! low-discrepancy sequence: `cargo run --release -p sir-lines --example buffon`.
-#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+//! Estimates π from the number of uniform lines that cross a square, with a random generator, with the streams of this
+//! crate, and with a low-discrepancy sequence: `cargo run --release -p sir-lines --example buffon`.
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use std::f64::consts::PI;
 
@@ -9,13 +9,14 @@ use rand::{SeedableRng, rngs::SmallRng};
 use sir_lines::{Domain, Purpose, Streams, random_point};
 use sir_types::{BoundingSphere, Line};
 
-/// True if a line crosses the unit square in the plane z = 0.
+/// Returns true if a line crosses the unit square in the plane z = 0.
 fn crosses(line: &Line) -> bool {
     let point = line.at(-line.origin.z / line.direction.z);
     point.x.abs() < 0.5 && point.y.abs() < 0.5
 }
 
-/// The coordinate of the point with this number of a Halton sequence (1960): the digits of the number, mirrored at the point.
+/// Returns a coordinate of the point with this number of a Halton sequence (1960): the digits of the number, mirrored
+/// at the radix point.
 fn radical_inverse(base: u64, mut number: u64) -> f64 {
     let (mut digits, mut scale) = (0, 1.0);
     while number > 0 {

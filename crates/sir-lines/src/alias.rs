@@ -1,9 +1,8 @@
-//! Choosing at random in proportion to weights.
+//! Sampling of indices in proportion to weights.
 
-/// A choice among things in proportion to their weights, in the same time for any number of them (Walker 1977; Vose
-/// 1991).
+/// Alias table: samples an index in proportion to its weight, in constant time (Walker 1977; Vose 1991).
 ///
-/// One of `n` columns is chosen; each has the weight `1/n` and is shared by two things at most.
+/// Each of `n` columns has the weight `1/n` and is divided between at most two indices.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AliasTable {
     columns: Vec<Column>,
@@ -11,22 +10,22 @@ pub(crate) struct AliasTable {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Column {
-    /// Share of the thing with the number of the column.
+    /// Share of the column's own index.
     own: f64,
-    /// The thing that has the rest.
+    /// Index that has the rest.
     other: u32,
 }
 
 impl AliasTable {
-    /// For weights that are finite and above zero, of which there is at least one and fewer than 2³².
+    /// Builds the table. Weights must be finite and positive; there must be at least one and fewer than 2³².
     pub(crate) fn new(weights: &[f64]) -> Self {
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         let columns = weights.iter().zip(0..).map(|(w, other)| Column { own: w / mean, other });
         let mut columns: Vec<Column> = columns.collect();
         let (mut small, mut large): (Vec<u32>, Vec<u32>) =
             (0..columns.len() as u32).partition(|&i| columns[i as usize].own < 1.0);
-        // What fills up a column is left with less. When there is nothing left to fill up with, or to be filled up, all
-        // that remain are full, but for rounding.
+        // A large column fills up a small one and keeps the rest. When either list is empty, all remaining columns are
+        // full up to rounding.
         while let (Some(&under), Some(&over)) = (small.last(), large.last()) {
             small.pop();
             columns[under as usize].other = over;
@@ -40,7 +39,7 @@ impl AliasTable {
         Self { columns }
     }
 
-    /// The number of a thing: the first coordinate chooses a column, the second one of its two things.
+    /// Returns an index: the first coordinate chooses a column, the second one of its two indices.
     #[inline]
     pub(crate) fn sample(&self, [u, v]: [f64; 2]) -> usize {
         let column = (u * self.columns.len() as f64) as usize;

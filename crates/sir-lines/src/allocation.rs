@@ -1,20 +1,20 @@
-//! Sharing lines among sources.
+//! Allocation of lines to sources.
 
-/// Lines `0 … N − 1` shared among sources in proportion to their weights, in consecutive runs.
+/// Allocation of the lines `0 … N − 1` to sources in proportion to their weights, in consecutive runs.
 ///
-/// This is systematic sampling: with `c` the running sum of the weights' shares, source `k` gets the lines from
-/// `⌊N c_{k−1} + u⌋` to `⌊N c_k + u⌋`, for one uniform `u` in `[0, 1)`. The numbers add up to exactly `N`, each
-/// differs from its fair share by less than one, and is equal to it on average over `u`: a source too weak for one
-/// line of its own gets one with the right probability.
+/// This is systematic sampling: with the cumulative shares `c_k` of the weights, source `k` gets the lines from `⌊N
+/// c_{k−1} + u⌋` to `⌊N c_k + u⌋`, for one uniform `u` in `[0, 1)`. The counts add up to exactly `N`. Each differs from
+/// its expectation by less than one, and is unbiased over `u`: a source too weak for one line gets one with the right
+/// probability.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allocation {
-    /// Where the lines of each source end.
+    /// End of the run of lines of each source.
     ends: Vec<u64>,
 }
 
 impl Allocation {
-    /// Shares `lines` (below 2⁵³) among sources with these weights, which must be finite and not negative;
-    /// `offset` is `u`. If all weights are zero, no source gets a line.
+    /// Allocates `lines` (below 2⁵³) to sources with these weights, which must be finite and nonnegative. `offset` is
+    /// `u`. If all weights are zero, no source gets a line.
     #[must_use]
     pub fn new(weights: &[f64], lines: u64, offset: f64) -> Self {
         let total: f64 = weights.iter().sum();
@@ -26,7 +26,7 @@ impl Allocation {
             .map(|(k, w)| {
                 sum += w;
                 match last_source {
-                    // Rounding must not lose the last line, nor give it to a source without power.
+                    // Rounding must neither lose the last line nor give it to a source without power.
                     Some(last) if k >= last => lines,
                     Some(_) => ((lines as f64 * (sum / total) + offset).floor() as u64).min(lines),
                     None => 0,
@@ -36,14 +36,14 @@ impl Allocation {
         Self { ends }
     }
 
-    /// The source that line `index` belongs to; the index must be below the number of lines.
+    /// Returns the source of line `index`, which must be below the number of lines.
     #[inline]
     #[must_use]
     pub fn owner(&self, index: u64) -> usize {
         self.ends.partition_point(|&end| end <= index)
     }
 
-    /// The sources of line `first` and of all lines after it.
+    /// Returns the sources of line `first` and of all lines after it.
     pub fn owners(&self, first: u64) -> impl Iterator<Item = usize> {
         let start = self.owner(first);
         (start..self.ends.len()).flat_map(move |k| {
@@ -52,7 +52,7 @@ impl Allocation {
         })
     }
 
-    /// How many lines source `k` has.
+    /// Returns the number of lines of source `k`.
     #[must_use]
     pub fn count(&self, k: usize) -> u64 {
         self.ends[k] - if k == 0 { 0 } else { self.ends[k - 1] }

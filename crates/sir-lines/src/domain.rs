@@ -1,4 +1,4 @@
-//! Convex bodies from which global lines are drawn.
+//! Domains: convex bodies through which global lines are drawn.
 
 use std::sync::Arc;
 
@@ -10,31 +10,31 @@ use crate::forecast::Forecast;
 use crate::hull::ConvexHull;
 use crate::local::{cosine_direction, unit_vector};
 
-/// A convex body around the scene, and the uniform (isotropic) lines through it.
+/// Convex body around the scene, with the uniform (isotropic) lines through it.
 ///
-/// A uniform line enters at a point that is uniform by area on the surface, in a direction with the density `cos θ/π` about
-/// the normal that points inside (Santaló 1976, *Integral Geometry and Geometric Probability*, ch. 12). In whatever body the
-/// lines are drawn, those that meet the scene are distributed alike; but in a body of surface `S` only the share
-/// `S_hull/S` of the lines passes through the convex hull of the scene, and the others are wasted.
+/// A uniform line enters at a point that is uniform by area on the surface, in a direction with the density `cos θ/π`
+/// about the inward normal (Santaló 1976, *Integral Geometry and Geometric Probability*, ch. 12). The distribution of
+/// the lines that meet the scene does not depend on the domain. But in a domain of surface `S`, only the share
+/// `S_hull/S` of the lines passes through the convex hull of the scene; the others are wasted.
 ///
 /// Cloning is cheap.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Domain {
-    /// A sphere. A line through two independent uniform points of a sphere is a uniform line
+    /// Sphere. A line through two independent uniform points of a sphere is a uniform line
     /// (Santaló 1976; used for radiosity by Sbert 1993).
     Sphere(BoundingSphere),
-    /// An axis-aligned box. It may be flat, but not along two axes.
+    /// Axis-aligned box. It may be flat along one axis, but not along two.
     Box(BoundingBox),
-    /// A body of flat facets: the convex hull, the smallest body there is.
+    /// Convex hull: the smallest possible domain.
     Hull(Arc<Facets>),
 }
 
 impl Domain {
     /// Returns the convex hull of finite points, such as the vertices of a scene.
     ///
-    /// Corners of the hull are some of the points, and all points are in it, up to 10⁻¹² of its extent: the bias of the
-    /// forecast is not larger than that. Where all points lie on a line to that precision, the domain is their box; without
-    /// points, it is an empty box at the origin.
+    /// The corners of the hull are some of the points. All points lie in it, up to 10⁻¹² of its extent; the bias of the
+    /// forecast is not larger than that. If all points lie on a line to that precision, the domain is their bounding
+    /// box. Without points, it is an empty box at the origin.
     #[must_use]
     pub fn hull(points: &[DVec3]) -> Self {
         match ConvexHull::of(points).and_then(|hull| Facets::new(&hull)) {
@@ -46,11 +46,11 @@ impl Domain {
         }
     }
 
-    /// Returns the line of a point of the unit cube: a uniform line if the point is uniform. Its origin is on the surface of
-    /// the body and its direction points inside.
+    /// Maps a point of the unit cube to a line: a uniform point gives a uniform line. The origin of the line is on the
+    /// surface of the domain, and its direction points inside.
     ///
-    /// A sphere takes the first four coordinates only. Each point has a line: where two points of a sphere fall together,
-    /// the line passes through its center; with random points, that has a probability below 10⁻³⁰.
+    /// A sphere uses only the first four coordinates. If the two points on the sphere coincide, the line passes through
+    /// the center; for random points, that has a probability below 10⁻³⁰.
     #[inline]
     #[must_use]
     pub fn line(&self, point: [f64; 6]) -> Line {
@@ -68,13 +68,13 @@ impl Domain {
         }
     }
 
-    /// Returns a number that tells the domains of one scene apart: their surface, to the last bit.
+    /// Returns a number that distinguishes the domains of one scene: the bits of the surface.
     #[must_use]
     pub fn identity(&self) -> u64 {
         self.surface().to_bits()
     }
 
-    /// What the body is called.
+    /// Returns the name of the kind of domain.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -84,7 +84,7 @@ impl Domain {
         }
     }
 
-    /// Surface of the body, in the square of the scene's unit of length. Of a flat body, both sides.
+    /// Returns the surface of the domain, in the square of the scene's unit of length. A flat domain has two sides.
     #[must_use]
     pub fn surface(&self) -> f64 {
         match self {
@@ -94,14 +94,14 @@ impl Domain {
         }
     }
 
-    /// What to expect of this number of lines.
+    /// Returns the forecast for this number of lines.
     #[must_use]
     pub fn forecast(&self, lines: u64) -> Forecast {
         Forecast { lines, surface: self.surface() }
     }
 }
 
-/// To which of three areas, one after the other, a place belongs.
+/// Returns the index of the area that contains `place` when the three areas are laid out one after the other.
 pub(crate) fn axis_of(place: f64, areas: DVec3) -> usize {
     if place < areas.x {
         0
@@ -112,13 +112,13 @@ pub(crate) fn axis_of(place: f64, areas: DVec3) -> usize {
     }
 }
 
-/// A line that enters through the faces of a box. The coordinates choose the face (one), the place (one for each axis, of
-/// which that across the face is ignored) and the direction (two).
+/// Maps a point of the unit cube to a uniform line through a box. The coordinates choose the face (one), the position
+/// on it (one per axis; the one perpendicular to the face is ignored) and the direction (two).
 #[inline]
 fn line_of_box(bounds: &BoundingBox, [u, x, y, z, p, q]: [f64; 6]) -> Line {
     let areas = bounds.face_areas();
     let half = areas.element_sum();
-    // The first half of the surface are the faces at the smallest coordinates.
+    // The first half of the surface consists of the faces at the minimum of each axis.
     let mut place = 2.0 * half * u;
     let at_max = place >= half;
     if at_max {

@@ -1,4 +1,4 @@
-//! The lines that enter a convex body through flat facets.
+//! Uniform lines that enter a convex body through its flat facets.
 
 use glam::DVec3;
 use sir_types::Line;
@@ -7,7 +7,7 @@ use crate::alias::AliasTable;
 use crate::hull::ConvexHull;
 use crate::local::{cosine_direction, point_on_triangle};
 
-/// The surface of a convex body of flat facets, ready to draw lines from.
+/// Surface of a convex polyhedron, prepared for sampling lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facets {
     facets: Vec<Facet>,
@@ -22,13 +22,13 @@ struct Facet {
 }
 
 impl Facets {
-    /// The facets of a hull; `None` if it has no area.
+    /// Returns the facets of a hull, or `None` if the hull has no area.
     #[must_use]
     pub fn new(hull: &ConvexHull) -> Option<Self> {
         let (mut facets, mut areas) = (Vec::new(), Vec::new());
         for &[a, b, c] in hull.facets() {
             let inward = (c - a).cross(b - a);
-            // Some facets are too narrow to have a normal; no line enters through them.
+            // Some facets are too narrow to have a normal. They are skipped: no line enters through them.
             if let Some(normal) = inward.try_normalize() {
                 facets.push(Facet { corners: [a, b, c], inward: normal });
                 areas.push(0.5 * inward.length());
@@ -40,14 +40,15 @@ impl Facets {
         Some(Self { facets, by_area: AliasTable::new(&areas), surface: areas.iter().sum() })
     }
 
-    /// Area of all facets.
+    /// Returns the total area of the facets.
     #[must_use]
     pub fn surface(&self) -> f64 {
         self.surface
     }
 
-    /// Returns the line of a point of the unit cube: uniform on the surface, and cosine-distributed about the normal that
-    /// points inside. The coordinates choose the facet (two), the place in it (two) and the direction (two).
+    /// Maps a point of the unit cube to a line: its origin is uniform on the surface, its direction cosine-weighted
+    /// about the inward normal. The coordinates choose the facet (two), the position on it (two) and the direction
+    /// (two).
     #[inline]
     #[must_use]
     pub fn line(&self, [u, v, s, t, p, q]: [f64; 6]) -> Line {

@@ -1,24 +1,26 @@
-//! More lines where they matter: in a part of the scene.
+//! Focus: importance sampling of global lines in a part of the scene.
 //!
-//! A room on a wide ground is met by one in hundreds of the lines that are drawn through all of the scene. So some lines are drawn
-//! through a box around the room, the others through everything. A uniform line through a body of surface `S` has the same density
-//! `1/S` everywhere in the body, so the lines of both kinds together have but two densities: with a share `s` of lines through the
-//! box `F` and the others through the domain `K`, it is `s/S_F + (1 − s)/S_K` where a line meets the box, and `(1 − s)/S_K` elsewhere. Whatever a line
-//! does counts in inverse proportion to its density (the balance heuristic, Veach and Guibas 1995), so that nothing is
-//! lost and everything is right on average, wherever the box is.
+//! Of the lines drawn through a whole scene, only one in hundreds meets a room that stands on a wide ground. Therefore
+//! some lines are drawn through a box around the room, and the others through the whole domain. Uniform lines through a
+//! body of surface `S` have the density `1/S` everywhere in it, so the mixture has only two densities. With a share `s`
+//! of the lines through the box `F` and the others through the domain `K`, the density is `s/S_F + (1 − s)/S_K` for
+//! lines that meet the box, and `(1 − s)/S_K` for all others. The contribution of a line is weighted with the inverse
+//! of its density (balance heuristic, Veach and Guibas 1995), so that power is conserved and the estimate is unbiased
+//! wherever the box is.
 
 use sir_types::{BoundingBox, BoundingSphere, Line};
 
 use crate::domain::Domain;
 use crate::forecast::Forecast;
 
-/// How many times as dense lines may be in a focus as elsewhere: power is counted in whole numbers, which have to do for both.
+/// Largest ratio of the density of lines in a focus to that elsewhere. It is limited because power is counted in whole
+/// numbers, whose resolution must be sufficient for both.
 pub const MAX_FOCUS_DENSITY: u32 = 4096;
 
-/// How far outside of a focus surfaces still belong to it, in radii of the scene: those in its faces should.
+/// Margin around a focus, in radii of the scene, so that surfaces in its faces belong to it.
 const MARGIN: f64 = 1e-6;
 
-/// The part of a scene that matters.
+/// Box that is sampled with a larger share of the lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Focus {
     bounds: BoundingBox,
@@ -26,10 +28,10 @@ pub struct Focus {
 }
 
 impl Focus {
-    /// Returns the part of a scene in a box, and the share of the lines that should be drawn through it, from 0 to below 1.
-    /// The scene is given by the box and the sphere around it.
+    /// Returns a focus on the part of a scene in the box `bounds`. `share` is the requested share of the lines through
+    /// it, in `[0, 1)`; `scene` and `sphere` are the bounding box and the bounding sphere of the scene.
     ///
-    /// `None` if the boxes have nothing in common, or no more than a line.
+    /// Returns `None` if the boxes do not intersect, or intersect in a point or a line only.
     #[must_use]
     pub fn new(bounds: BoundingBox, share: f64, scene: BoundingBox, sphere: BoundingSphere) -> Option<Self> {
         let margin = MARGIN * sphere.radius;
@@ -38,19 +40,19 @@ impl Focus {
         (bounds.face_areas().element_sum() > 0.0).then_some(Self { bounds, share })
     }
 
-    /// The box, as far as it is in that of the scene.
+    /// Returns the box, clipped to the bounding box of the scene.
     #[must_use]
     pub fn bounds(&self) -> BoundingBox {
         self.bounds
     }
 
-    /// Share of the lines that should be drawn through it.
+    /// Returns the requested share of the lines through the focus.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.share
     }
 
-    /// Numbers that tell it from others.
+    /// Returns words that identify this focus: the bits of its box and of its share.
     #[must_use]
     pub fn identity(&self) -> [u64; 7] {
         let BoundingBox { min, max } = self.bounds;
@@ -58,12 +60,12 @@ impl Focus {
     }
 }
 
-/// How many local lines there are, and where more of them go.
+/// Number of local lines and an optional focus for them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalLines {
-    /// Lines in all.
+    /// Total number of lines.
     pub count: u64,
-    /// What matters, if not everything does.
+    /// Focus of the lines; `None` if the whole scene matters equally.
     pub focus: Option<Focus>,
 }
 
@@ -73,25 +75,25 @@ impl From<u64> for LocalLines {
     }
 }
 
-/// Global lines: uniform ones through a domain, and maybe more of them through a focus.
+/// Global lines: uniform lines through a domain, optionally mixed with uniform lines through a focus.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GlobalLines {
     domain: Domain,
     mixture: Option<Mixture>,
 }
 
-/// The lines through a focus, and how they are mixed with those through the domain.
+/// Lines through a focus, and their mixture with the lines through the domain.
 #[derive(Clone, Debug, PartialEq)]
 struct Mixture {
     focus: Focus,
     through: Domain,
     /// Share of the lines that are drawn through the focus.
     share: f64,
-    /// The same in units of 2⁻⁶⁴.
+    /// The share in units of 2⁻⁶⁴.
     step: u64,
-    /// Weight of a line that does not meet the focus; that of others is 1.
+    /// Weight of lines that do not meet the focus; all others have weight 1.
     weight: u32,
-    /// One over the density of lines that meet the focus.
+    /// Inverse of the density of lines that meet the focus.
     surface: f64,
 }
 
@@ -102,8 +104,9 @@ impl From<Domain> for GlobalLines {
 }
 
 impl GlobalLines {
-    /// Lines through a domain of which about the share that the focus asks for is drawn through it. Weights are whole numbers, so the
-    /// share is rounded to what makes them so; where they would not differ, lines are the same everywhere.
+    /// Returns lines through a domain and a focus, with about the requested share through the focus. The share is
+    /// rounded such that weights are whole numbers. If all weights would be 1, there is no focus and all lines are
+    /// drawn through the domain.
     #[must_use]
     pub fn focused(domain: Domain, focus: Focus) -> Self {
         let through = Domain::Box(focus.bounds);
@@ -120,10 +123,11 @@ impl GlobalLines {
         Self { domain, mixture: Some(Mixture { focus, through, share, step, weight, surface }) }
     }
 
-    /// Returns the line of a point of the unit cube, as [`Domain::line`] does, and its weight.
+    /// Maps a point of the unit cube to a line, as [`Domain::line`] does, and returns the line with its weight.
     ///
-    /// The index decides whether the line is drawn through the focus: in any run of consecutive indices, the number of those
-    /// that are is within one of its expectation. `offset` is a random number, the same for all lines.
+    /// The index decides whether the line is drawn through the focus (systematic sampling): in any run of consecutive
+    /// indices, the number of lines through the focus is within one of its expectation. `offset` is a random number,
+    /// the same for all lines.
     #[inline]
     #[must_use]
     pub fn line(&self, index: u64, offset: u64, point: [f64; 6]) -> (Line, u32) {
@@ -136,50 +140,52 @@ impl GlobalLines {
         (line, weight)
     }
 
-    /// The body that all lines are drawn through, or those that are not drawn through the focus.
+    /// Returns the domain through which all lines that are not drawn through the focus are drawn.
     #[must_use]
     pub fn domain(&self) -> &Domain {
         &self.domain
     }
 
-    /// Where there are more lines than elsewhere, if they are not the same everywhere.
+    /// Returns the focus, if there is one.
     #[must_use]
     pub fn focus(&self) -> Option<&Focus> {
         self.mixture.as_ref().map(|mixture| &mixture.focus)
     }
 
-    /// Share of the lines that are drawn through the focus.
+    /// Returns the share of the lines that are drawn through the focus.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.mixture.as_ref().map_or(0.0, |mixture| mixture.share)
     }
 
-    /// The weight of lines that do not meet the focus, at least 1: how many times as dense lines are in it.
+    /// Returns the weight of lines that do not meet the focus: the ratio of the density of lines in the focus to that
+    /// elsewhere, at least 1.
     #[must_use]
     pub fn weight(&self) -> u32 {
         self.mixture.as_ref().map_or(1, |mixture| mixture.weight)
     }
 
-    /// What to expect of this number of lines: the sum of the weights of those that cross a surface, anywhere.
+    /// Returns the forecast for this number of lines. It states the expected sum of the weights of the lines that cross
+    /// a surface, which is the same inside and outside of the focus.
     #[must_use]
     pub fn forecast(&self, lines: u64) -> Forecast {
         let surface = self.mixture.as_ref().map_or(self.domain.surface(), |mixture| mixture.surface);
         Forecast { lines, surface }
     }
 
-    /// How many successive lines there are whose weights add up to at most 2³¹.
+    /// Returns the largest number of consecutive lines whose weights add up to at most 2³¹.
     #[must_use]
     pub fn max_lines(&self) -> u64 {
         let Some(mixture) = &self.mixture else { return 1 << 31 };
         let weight = f64::from(mixture.weight);
         let mean = mixture.share + (1.0 - mixture.share) * weight;
-        // There may be one line more of either kind than expected.
+        // Either kind may have one line more than expected.
         ((2f64.powi(31) - 2.0 * weight) / (mean + 1e-6)) as u64
     }
 }
 
 impl Mixture {
-    /// True if this line is drawn through the focus.
+    /// Returns true if this line is drawn through the focus.
     #[inline]
     fn is_focused(&self, index: u64, offset: u64) -> bool {
         let place = index.wrapping_mul(self.step).wrapping_add(offset);
@@ -198,7 +204,7 @@ mod tests {
     use super::*;
     use crate::stream::{Purpose, Streams};
 
-    /// A box of 20 × 2 × 20 m, and a focus in a corner of it that reaches beyond the scene.
+    /// A box of 20 × 2 × 20 m with a focus in one of its corners. The box of the focus extends beyond the scene.
     fn corner(share: f64) -> GlobalLines {
         let mut b = SceneBuilder::new();
         let gray = b.add_material(Material::diffuse("", Rgb::splat(0.5)));
@@ -212,8 +218,8 @@ mod tests {
         GlobalLines::focused(Domain::hull(scene.vertices()), focus)
     }
 
-    /// The sum of weights of the lines that cross a disc is that of the forecast, in the focus, outside of it, and where it is half in it: within
-    /// four standard errors. In the focus many more lines cross it than without.
+    /// The weights of the lines that cross a disc add up to the forecast within four standard errors: for discs inside,
+    /// outside and half inside the focus. In the focus, many more lines cross a disc than without a focus.
     #[test]
     fn weights_make_up_for_the_density() {
         const LINES: u64 = 400_000;
@@ -250,7 +256,8 @@ mod tests {
         }
     }
 
-    /// Of any successive lines as many are aimed as there should be, for any offset, but for one.
+    /// In any run of consecutive lines, the number of lines through the focus is within one of its expectation, for any
+    /// offset.
     #[test]
     fn the_share_is_kept_in_every_range() {
         let lines = corner(0.7);

@@ -1,9 +1,9 @@
-//! How often lines cross a surface.
+//! Forecast of how often lines cross a surface.
 
-/// The expected numbers of crossings of a set of uniform lines through a convex domain.
+/// Expected numbers of crossings of uniform lines through a convex domain.
 ///
-/// Of `N` uniform lines through a convex body of surface `S`, a planar patch of area `A` inside it is crossed by
-/// `N · 2A / S` on average (Cauchy–Crofton; Santaló 1976, *Integral Geometry and Geometric Probability*, ch. 14).
+/// Of `N` uniform lines through a convex body of surface `S`, on average `N · 2A / S` cross a planar patch of area `A`
+/// inside it (Cauchy–Crofton; Santaló 1976, *Integral Geometry and Geometric Probability*, ch. 14).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
     /// Number of lines, `N`.
@@ -13,7 +13,7 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    /// Expected number of crossings of a patch of area `A`, in the units of the domain's surface.
+    /// Returns the expected number of crossings of a patch of area `A`, given in the unit of the domain's surface.
     #[inline]
     #[must_use]
     pub fn crossings(&self, area: f64) -> f64 {

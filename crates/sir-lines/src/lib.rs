@@ -1,11 +1,12 @@
-//! Samplers of lines for light transport: global lines through a convex body, local lines from a surface or a point, and the
-//! random or low-discrepancy points that they are made from.
+//! Line sampling for light transport: global lines through a convex body, local lines from a surface or a point, and
+//! the random or low-discrepancy points that samplers map to lines.
 //!
 //! # Design
 //!
-//! *A sampler is a function.* It takes a point `[f64; K]` of the unit cube `[0, 1)^K` and returns a line, a direction or a place;
-//! uniform points give the density that its documentation states. So any sequence of points serves: [`random_point`] draws one
-//! from any generator of the crate [`rand`], [`R2Sequence`] is a low-discrepancy sequence, and a caller may bring its own.
+//! *A sampler is a function.* It maps a point `[f64; K]` of the unit cube `[0, 1)^K` to a line, a direction or a
+//! position. Uniform points give the density that the documentation of the sampler states. Any point sequence can be
+//! used: [`random_point`] draws points from any generator of the crate [`rand`], [`R2Sequence`] is a low-discrepancy
+//! sequence, and callers can supply their own.
 //!
 //! | sampler | K | result |
 //! |---|---|---|
@@ -16,21 +17,23 @@
 //! | [`spot_direction`] | 5 | a direction of a spot light |
 //! | [`point_on_triangle`], [`continuous_point_on_triangle`] | 2 | a uniform point of a triangle |
 //!
-//! *A line is a function of (seed, stage, index).* [`Streams`] gives each line a random stream of its own, so that it does not
-//! matter which thread, process or restart traces it. A [`Stream`] is a generator of `rand`, too.
+//! *A line is a function of (seed, stage, index).* [`Streams`] gives each line its own random stream, so the line is
+//! the same whichever thread or process traces it, before or after a restart. A [`Stream`] also implements the
+//! generator traits of `rand`.
 //!
-//! *The same bits on every machine.* Numbers are made from raw bits here, and samplers use only `+ − × ÷ √`.
+//! *Bit-identical on every machine.* This crate converts raw bits to numbers itself, and samplers use only `+ − × ÷ √`.
 //!
-//! *Counts are forecast.* Uniform lines through a convex body cross a surface of area `A` in it in proportion to `A` (Cauchy and
-//! Crofton), which [`Forecast`] states as a number of crossings. [`GlobalLines`] may draw more lines through a part of the scene,
-//! a [`Focus`], and gives each line the weight that makes up for it. [`Allocation`] shares lines among light sources by
-//! systematic sampling.
+//! *Crossings can be forecast.* Uniform lines through a convex body cross a surface of area `A` inside it in proportion
+//! to `A` (Cauchy and Crofton). [`Forecast`] returns the expected number of crossings. [`GlobalLines`] can draw a
+//! larger share of the lines through a part of the scene, a [`Focus`], and gives each line the weight that compensates
+//! for it. [`Allocation`] distributes lines among light sources by systematic sampling.
 //!
-//! The crate needs no scene: a [`Domain`] is made from points, a box or a sphere. [`ConvexHull`] is exact for any points.
+//! The crate does not depend on a scene: a [`Domain`] is built from points, a box or a sphere. [`ConvexHull`] is exact
+//! for any set of points.
 //!
 //! # Example
 //!
-//! How often do random lines cross a disc of area 1 inside the unit sphere?
+//! The number of random lines that cross a disc of area 1 inside the unit sphere:
 //!
 //! ```
 //! use rand::{SeedableRng, rngs::SmallRng};
@@ -49,8 +52,8 @@
 //! assert!((crossings - expected).abs() < 4.0 * expected.sqrt());
 //! ```
 //!
-//! What share of the diffuse light of a small patch meets a parallel disc of radius 1 at a distance of 1? One half, as a
-//! low-discrepancy sequence finds with few lines:
+//! The share of the diffuse light of a small patch that meets a parallel disc of radius 1 at distance 1 is one half. A
+//! low-discrepancy sequence needs only a few lines to estimate it:
 //!
 //! ```
 //! use glam::DVec3;

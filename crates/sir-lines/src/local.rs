@@ -1,12 +1,12 @@
-//! Local lines: points on a surface and the directions of diffuse light.
+//! Samplers for local lines: points on a triangle, and directions of isotropic, diffuse and spot sources.
 
 use glam::DVec3;
 use sir_types::Barycentric;
 
 use crate::turn::sin_cos_of_turn;
 
-/// Returns the point of the unit sphere that belongs to a point of the unit square. The map preserves area: the height is
-/// linear in the first coordinate (Archimedes), the longitude in the second.
+/// Maps a point of the unit square to a point of the unit sphere. The map preserves area: the height is linear in the
+/// first coordinate (Archimedes), the longitude in the second.
 #[inline]
 #[must_use]
 pub fn unit_vector([u, turn]: [f64; 2]) -> DVec3 {
@@ -15,10 +15,11 @@ pub fn unit_vector([u, turn]: [f64; 2]) -> DVec3 {
     DVec3::new(radius * cos, radius * sin, 1.0 - 2.0 * u)
 }
 
-/// Returns the direction with density `cos θ / π` about a unit normal that belongs to a point of the unit square: the normal
-/// plus a point of the unit sphere. Evenly distributed points become evenly distributed directions.
+/// Maps a point of the unit square to a direction with the density `cos θ / π` about a unit normal: the normalized sum
+/// of the normal and a point of the unit sphere. The map preserves low discrepancy.
 ///
-/// A sum too short to have a direction gives the normal itself. Random points lead there with a probability of 2.5 · 10⁻¹⁷.
+/// Returns the normal itself if the sum is too short to be normalized. For random points, that has a probability of
+/// 2.5 · 10⁻¹⁷.
 #[inline]
 #[must_use]
 pub fn cosine_direction(normal: DVec3, point: [f64; 2]) -> DVec3 {
@@ -26,17 +27,18 @@ pub fn cosine_direction(normal: DVec3, point: [f64; 2]) -> DVec3 {
     if sum.length_squared() > 1e-16 { sum.normalize() } else { normal }
 }
 
-/// Returns the direction about an axis of unit length that belongs to a point of the unit cube, with the density of a spot:
-/// uniform where the cosine of the angle to the axis is above `inner`, in proportion to `t²` where it falls to `outer`, with
-/// `t` linear in the cosine.
+/// Maps a point of the unit cube to a direction of a spot light about an axis of unit length. The density is uniform
+/// where the cosine of the angle to the axis is above `inner`, and in proportion to `t²` between there and `outer`,
+/// where `t` is linear in the cosine: 1 at `inner`, 0 at `outer`.
 ///
-/// The first coordinate chooses the inner cone or the ring around it. The cone takes the next two, the ring the next four:
-/// `t` has the density `3t²` of the largest of three uniform numbers, so there is no cube root to take.
+/// The first coordinate chooses the inner cone or the ring around it. The cone uses the next two coordinates, the ring
+/// the next four. `t` has the density `3t²` and is sampled as the largest of three uniform numbers, which avoids a cube
+/// root.
 #[inline]
 #[must_use]
 pub fn spot_direction(axis: DVec3, inner: f64, outer: f64, [choice, a, b, c, d]: [f64; 5]) -> DVec3 {
     let (full, ring) = (1.0 - inner, (inner - outer) / 3.0);
-    // One minus the cosine, which keeps its digits in a narrow cone.
+    // `below` is one minus the cosine, which does not lose precision in a narrow cone.
     let (below, turn) = if (full + ring) * choice < full {
         (full * a, b)
     } else {
@@ -48,17 +50,17 @@ pub fn spot_direction(axis: DVec3, inner: f64, outer: f64, [choice, a, b, c, d]:
     axis * (1.0 - below) + (x * cos + y * sin) * (below * (2.0 - below)).sqrt()
 }
 
-/// Returns the point of a triangle that belongs to a point of the unit square: the square becomes a parallelogram, which is
-/// folded. The map preserves area, and takes no root; it is not continuous, so that evenly distributed points should go
-/// through [`continuous_point_on_triangle`].
+/// Maps a point of the unit square to a point of a triangle: the square is mapped to a parallelogram, which is folded.
+/// The map preserves area and needs no square root, but it is not continuous. Use [`continuous_point_on_triangle`] for
+/// low-discrepancy points.
 #[inline]
 #[must_use]
 pub fn point_on_triangle([v, w]: [f64; 2]) -> Barycentric {
     if v + w > 1.0 { Barycentric { v: 1.0 - v, w: 1.0 - w } } else { Barycentric { v, w } }
 }
 
-/// Returns the point of a triangle that belongs to a point of the unit square, by a continuous map that preserves area (Turk
-/// 1990): evenly distributed points stay so.
+/// Maps a point of the unit square to a point of a triangle by a continuous map that preserves area (Turk 1990), and
+/// therefore low discrepancy.
 #[inline]
 #[must_use]
 pub fn continuous_point_on_triangle([s, t]: [f64; 2]) -> Barycentric {
@@ -89,7 +91,7 @@ mod tests {
         assert!((second / n - 0.5).abs() < 4.0 * (1.0 / 12.0 / n).sqrt());
     }
 
-    /// Means of the cosine and of its distance from the outer one, squared, from the density; errors from the sample itself.
+    /// First and second moments of `t` against the density, within four standard errors.
     #[test]
     fn spots_have_the_density_of_their_rings() {
         let axis = DVec3::new(2.0, -1.0, 2.0) / 3.0;
@@ -97,7 +99,7 @@ mod tests {
         for (inner, outer) in [(0.9, 0.5), (1.0, 0.0), (0.2, -1.0)] {
             let n = 100_000;
             let t = |c: f64| (c - outer) / (inner - outer);
-            // Moments of t in [0, 1], where its density is 3t², and above, where it is uniform.
+            // Moments of t: its density is 3t² in [0, 1], and uniform above.
             let (full, ring) = (1.0 - inner, (inner - outer) / 3.0);
             let top = t(1.0);
             let moment = |k: i32| {
@@ -141,7 +143,7 @@ mod tests {
         assert!((sum[2] / n - 1.0 / 12.0).abs() < 4.0 * ((1.0 / 90.0 - 1.0 / 144.0) / n).sqrt());
     }
 
-    /// Of a regular grid of points, as many become points of each of four equal parts of a triangle, and the cosines of the
+    /// A regular grid of points is mapped in equal numbers to four equal parts of a triangle, and the cosines of the
     /// directions have the right moments.
     #[test]
     fn points_of_the_square_keep_their_areas() {

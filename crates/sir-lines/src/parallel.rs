@@ -1,48 +1,49 @@
-//! Lines from one direction.
+//! Parallel lines through a box.
 
 use glam::DVec3;
 use sir_types::{BoundingBox, Line};
 
 use crate::domain::axis_of;
 
-/// The lines of one direction that meet a box, uniform in the plane across them.
+/// Lines of one direction that meet a box, uniform in the plane perpendicular to them.
 ///
-/// They enter through the faces that look against them, at most three, each of which takes the share of its projected area.
+/// They enter through the faces whose outward normal points against the direction, at most three, in proportion to the
+/// projected areas of these faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParallelLines {
     bounds: BoundingBox,
     direction: DVec3,
-    /// Projected areas of the faces across each axis.
+    /// Projected area of a face perpendicular to each axis.
     areas: DVec3,
 }
 
 impl ParallelLines {
-    /// The lines with a direction of unit length.
+    /// Returns the lines through a box with a direction of unit length.
     #[must_use]
     pub fn through(bounds: BoundingBox, direction: DVec3) -> Self {
         Self { bounds, direction, areas: bounds.face_areas() * direction.abs() }
     }
 
-    /// The box that they meet.
+    /// Returns the box.
     #[must_use]
     pub fn bounds(&self) -> BoundingBox {
         self.bounds
     }
 
-    /// Their direction, of unit length.
+    /// Returns the direction, of unit length.
     #[must_use]
     pub fn direction(&self) -> DVec3 {
         self.direction
     }
 
-    /// Area of the shadow of the box \[m²\].
+    /// Returns the projected area of the box along the direction \[m²\].
     #[must_use]
     pub fn area(&self) -> f64 {
         self.areas.element_sum()
     }
 
-    /// Returns the line of a point of the unit cube; its origin is on the box. The coordinates choose the face (one) and the
-    /// place in it (two).
+    /// Maps a point of the unit cube to a line with its origin on the box. The coordinates choose the face (one) and
+    /// the position on it (two).
     #[inline]
     #[must_use]
     pub fn line(&self, [u, s, t]: [f64; 3]) -> Line {
@@ -60,7 +61,7 @@ mod tests {
     use super::*;
     use crate::stream::{Purpose, Streams};
 
-    /// Any area across the lines gets its share of them: here the shadow of a ball in the box.
+    /// The share of the lines that meet a ball in the box is the ratio of the projected areas.
     #[test]
     fn lines_are_uniform_across_their_direction() {
         let bounds = BoundingBox { min: DVec3::new(-1.0, -2.0, -3.0), max: DVec3::new(1.0, 2.0, 3.0) };

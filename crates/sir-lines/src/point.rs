@@ -2,14 +2,15 @@
 
 use rand::Rng;
 
-/// Makes 64 random bits a number in `[0, 1)`, a multiple of 2⁻⁵³. The crate `rand` makes a random `f64` in the same way, but does
-/// not promise to do so in its next version, and these bits are part of our contract.
+/// Converts 64 random bits to a number in `[0, 1)`, a multiple of 2⁻⁵³. The crate `rand` currently converts bits to
+/// `f64` in the same way, but does not guarantee it for later versions, and these bits are part of our contract.
 #[inline]
 pub(crate) fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }
 
-/// Draws a uniform point of the unit cube `[0, 1)^K` from any generator, coordinate by coordinate. Each takes 64 bits.
+/// Draws a uniform point of the unit cube `[0, 1)^K` from any generator, coordinate by coordinate, with 64 bits for
+/// each.
 #[inline]
 pub fn random_point<const K: usize>(generator: &mut (impl Rng + ?Sized)) -> [f64; K] {
     std::array::from_fn(|_| unit(generator.next_u64()))

@@ -1,13 +1,14 @@
-//! Points that fill a square more evenly than random ones.
+//! Low-discrepancy points of the unit square.
 
-/// The first two powers of the inverse of the plastic number, the real root of `x³ = x + 1`.
+/// First two powers of the inverse of the plastic number, the real root of `x³ = x + 1`.
 const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
-/// An endless sequence of points of the unit square, any beginning of which fills it evenly: the additive recurrence R2
-/// (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*), shifted at random (Cranley and Patterson 1976).
+/// Randomized low-discrepancy sequence in the unit square: the additive recurrence R2 (Roberts 2018, *The unreasonable
+/// effectiveness of quasirandom sequences*) with a random shift (Cranley and Patterson 1976). The sequence is infinite,
+/// and any prefix of it fills the square evenly.
 ///
-/// Each point by itself is uniform, so that a mean over the points is right on average; it converges faster than with independent
-/// points. How far off it is shows only by comparing sequences with different shifts.
+/// Each single point is uniform, so a mean over the points is unbiased. It converges faster than with independent
+/// points. Its error can be estimated only from independent replications, that is, sequences with different shifts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct R2Sequence {
     shift: [f64; 2],
@@ -20,7 +21,7 @@ impl R2Sequence {
         Self { shift }
     }
 
-    /// The point with this number, below 2³²; both coordinates are in `[0, 1)`.
+    /// Returns the point with this number, which must be below 2³². Both coordinates are in `[0, 1)`.
     #[inline]
     #[must_use]
     pub fn at(&self, number: u64) -> [f64; 2] {
@@ -36,7 +37,8 @@ mod tests {
     use super::*;
     use crate::stream::{Purpose, Streams};
 
-    /// Means of a smooth and of a broken function: right on average, with much smaller errors than by independent points.
+    /// Means of a smooth and of a discontinuous function are unbiased and have much smaller errors than with
+    /// independent points.
     #[test]
     fn means_are_right_and_converge_fast() {
         type Function = fn([f64; 2]) -> f64;

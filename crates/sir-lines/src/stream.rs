@@ -1,4 +1,4 @@
-//! Random streams, one per line.
+//! Counter-based random streams, one per line.
 
 use std::convert::Infallible;
 
@@ -7,32 +7,32 @@ use rand_xoshiro::SplitMix64;
 
 use crate::point::{random_point, unit};
 
-/// What a family of lines is for. Lines of different stages are independent.
+/// Purpose of a set of lines. Lines of different purposes have independent streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Purpose(pub u64);
 
 impl Purpose {
     /// Local lines of the first shot.
     pub const FIRST_SHOT: Self = Self(1);
-    /// Decisions of the first shot that are made once, before its lines.
+    /// Random offsets of the first shot that are drawn once, before its lines.
     pub const ALLOCATION: Self = Self(2);
     /// Global lines.
     pub const GLOBAL: Self = Self(3);
-    /// Sub-pixel positions of pictures.
+    /// Subpixel positions of images.
     pub const PICTURE: Self = Self(4);
     /// Local lines of the second shot.
     pub const SECOND_SHOT: Self = Self(6);
     /// Rays of sensors.
     pub const SENSORS: Self = Self(9);
-    /// Lines that are traced to learn about a scene, not to solve it.
+    /// Lines that are traced to inspect a scene, not to solve it.
     pub const PROBE: Self = Self(5);
-    /// Local lines that count view factors.
+    /// Local lines of view factors.
     pub const VIEW_FACTORS: Self = Self(12);
     /// Seeds of repeats.
     const REPEAT: Self = Self(16);
 }
 
-/// The random streams of all lines of one stage.
+/// Random streams of all lines of one stage.
 #[derive(Clone, Copy, Debug)]
 pub struct Streams {
     key: u64,
@@ -41,10 +41,10 @@ pub struct Streams {
 /// Increment of the SplitMix64 sequence: 2⁶⁴ divided by the golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Numbers of a stage that belong to a line.
+/// Length of the section of the sequence that belongs to one line.
 const PER_LINE: u64 = 1 << 14;
 
-/// Output function of SplitMix64 (Steele, Lea, Flood 2014), a bijection of 64-bit words.
+/// Applies the output function of SplitMix64 (Steele, Lea, Flood 2014), a bijection of 64-bit words.
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -52,14 +52,15 @@ fn mix(mut z: u64) -> u64 {
 }
 
 impl Streams {
-    /// The streams of a stage of a run with this seed.
+    /// Returns the streams of a stage of a run with this seed.
     #[must_use]
     pub fn new(seed: u64, stage: Purpose) -> Self {
         Self { key: mix(mix(seed.wrapping_add(GOLDEN)) ^ mix(stage.0.wrapping_mul(GOLDEN))) }
     }
 
-    /// The stream of line `index`: of all numbers of the stage, those from `16,384 index`. As long as a line takes fewer, and an
-    /// index has at most 50 bits, no two lines of a stage have one in common.
+    /// Returns the stream of line `index`: the section of the sequence of the stage that begins at number `16,384
+    /// index`. If a line uses at most 16,384 numbers and an index has at most 50 bits, the streams of a stage do not
+    /// overlap.
     #[inline]
     #[must_use]
     pub fn line(&self, index: u64) -> Stream {
@@ -68,14 +69,14 @@ impl Streams {
     }
 }
 
-/// The seed of a repeat of what a run does with `seed`: for repeat 0 that seed itself, for others random ones that differ from
-/// each other.
+/// Returns the seed of a repeat of a run with the seed `seed`. Repeat 0 has that seed itself; the others have distinct
+/// random seeds.
 #[must_use]
 pub fn seed_of_repeat(seed: u64, repeat: u64) -> u64 {
     if repeat == 0 { seed } else { Streams::new(seed, Purpose::REPEAT).line(repeat).0.next_u64() }
 }
 
-/// A sequence of random numbers: a generator of the crate [`rand`].
+/// Random numbers of one line, as a generator of the crate [`rand`].
 #[derive(Clone, Debug)]
 pub struct Stream(SplitMix64);
 
@@ -118,7 +119,7 @@ mod tests {
 
     use super::*;
 
-    /// These numbers are part of the contract: if they change, no old result can be reproduced.
+    /// These numbers are part of the contract: if they change, earlier results cannot be reproduced.
     #[test]
     fn streams_never_change() {
         let mut s = Streams::new(1, Purpose::GLOBAL).line(0);
@@ -126,7 +127,7 @@ mod tests {
         assert_eq!(first, ["0.155747808824734", "0.782331486519907", "0.072572689650649"]);
     }
 
-    /// A stream is a generator of `rand` and gives the numbers that it gives by itself.
+    /// As a generator of `rand`, a stream gives the same numbers as by its own methods.
     #[test]
     fn streams_are_generators() {
         let line = || Streams::new(1, Purpose::GLOBAL).line(7);
@@ -145,21 +146,21 @@ mod tests {
         seeds.sort_unstable();
         seeds.dedup();
         assert_eq!(seeds.len(), 3000);
-        // Part of the contract, as the numbers above.
+        // Part of the contract, like the numbers above.
         assert_eq!(seed_of_repeat(1, 1), 8_567_385_128_412_321_973);
     }
 
     #[test]
     fn neighboring_lines_seeds_and_stages_are_uncorrelated() {
         let n = 20_000;
-        let centerd = |seed, stage, i| Streams::new(seed, stage).line(i).unit() - 0.5;
+        let centered = |seed, stage, i| Streams::new(seed, stage).line(i).unit() - 0.5;
         let (global, local) = (Purpose::GLOBAL, Purpose::FIRST_SHOT);
-        let lines = |i| centerd(1, global, i) * centerd(1, global, i + 1);
-        let seeds = |i| centerd(i, global, 0) * centerd(i + 1, global, 0);
-        let stages = |i| centerd(1, global, i) * centerd(1, local, i);
+        let lines = |i| centered(1, global, i) * centered(1, global, i + 1);
+        let seeds = |i| centered(i, global, 0) * centered(i + 1, global, 0);
+        let stages = |i| centered(1, global, i) * centered(1, local, i);
         for product in [&lines as &dyn Fn(u64) -> f64, &seeds, &stages] {
             let sum: f64 = (0..n).map(product).sum();
-            // A product of two centerd uniform numbers has the standard deviation 1/12.
+            // The product of two centered uniform numbers has the standard deviation 1/12.
             let z = sum * 12.0 / f64::from(n as u32).sqrt();
             assert!(z.abs() < 4.0, "correlated: z = {z}");
         }

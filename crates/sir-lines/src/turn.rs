@@ -1,4 +1,4 @@
-//! Sine and cosine of parts of a turn.
+//! Portable sine and cosine of fractions of a turn.
 
 /// Coefficients of the power series of `sin(x)/x` in `x²`.
 const SIN: [f64; 8] = [
@@ -24,12 +24,13 @@ const COS: [f64; 8] = [
     -1.0 / 87_178_291_200.0,
 ];
 
-/// Sine and cosine of an angle of `turn` turns, from 0 to 1, to 2·10⁻¹⁵.
+/// Returns the sine and cosine of an angle of `turn` turns, in `[0, 1]`, with an error below 2·10⁻¹⁵.
 ///
-/// Only operations that are rounded alike on every machine take part, other than in the system's functions, and no branches.
+/// Unlike the functions of the system, it uses only operations that every machine rounds identically. It has no
+/// branches.
 #[inline]
 pub(crate) fn sin_cos_of_turn(turn: f64) -> (f64, f64) {
-    // The nearest quarter, and the angle from there, at most π/4.
+    // The nearest multiple of a quarter turn, and the angle from there, at most π/4.
     let quarter = (4.0 * turn + 0.5) as i64;
     let x = (turn - 0.25 * quarter as f64) * std::f64::consts::TAU;
     let (sin, cos) = (x * series(SIN, x * x), series(COS, x * x));
@@ -38,7 +39,7 @@ pub(crate) fn sin_cos_of_turn(turn: f64) -> (f64, f64) {
     (a * sign(quarter & 2 != 0), b * sign((quarter + 1) & 2 != 0))
 }
 
-/// A polynomial of degree seven, by pairs, so that less waits for what comes before (Estrin 1960).
+/// Evaluates a polynomial of degree seven by Estrin's scheme (1960), which has shorter dependency chains than Horner's.
 #[inline]
 fn series([a, b, c, d, e, f, g, h]: [f64; 8], x: f64) -> f64 {
     let (x2, pair) = (x * x, |a: f64, b: f64| a + b * x);

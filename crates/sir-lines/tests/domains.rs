@@ -1,6 +1,6 @@
-//! The lines of all domains against integral geometry, within four standard errors.
+//! Checks the lines of all domains against results of integral geometry, within four standard errors.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+#![allow(clippy::unwrap_used, reason = "test helpers fail by panicking")]
 
 use glam::{DMat3, DQuat, DVec3};
 use sir_geom::{Material, Rgb, Scene, SceneBuilder};
@@ -9,7 +9,7 @@ use sir_types::Line;
 
 const LINES: u64 = 200_000;
 
-/// A tetrahedron of no symmetry, and its volume.
+/// Corners of a tetrahedron without symmetry.
 const TETRAHEDRON: [DVec3; 4] = [
     DVec3::new(1.0, -2.0, 3.0),
     DVec3::new(4.0, -1.0, 3.5),
@@ -24,7 +24,7 @@ fn face(f: usize) -> [DVec3; 3] {
     FACES[f].map(|i| TETRAHEDRON[i])
 }
 
-/// The normal to the outside, twice as long as the area.
+/// Returns the outward normal, whose length is twice the area.
 fn scaled_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
@@ -43,7 +43,7 @@ fn tetrahedron() -> Scene {
     scene(&[0, 1, 2, 3].map(face))
 }
 
-/// The three domains around a scene.
+/// Returns the three domains around a scene.
 fn domains(scene: &Scene) -> [Domain; 3] {
     let domains = [
         Domain::Sphere(scene.bounding_sphere()),
@@ -59,7 +59,7 @@ fn lines(domain: &Domain, stage: u64) -> impl Iterator<Item = Line> {
     (0..LINES).map(move |i| domain.line(streams.line(i).point()))
 }
 
-/// Fails unless the mean of `samples` is within four of its standard errors of what was expected.
+/// Fails unless the mean of `samples` is within four of its standard errors of the expected value.
 #[track_caller]
 fn assert_mean(samples: impl IntoIterator<Item = f64>, expected: f64, what: &str) {
     let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
@@ -71,14 +71,14 @@ fn assert_mean(samples: impl IntoIterator<Item = f64>, expected: f64, what: &str
     assert!(n > 1_000.0 && (mean - expected).abs() <= 4.0 * sigma, "{what}: {mean} ± {sigma}, {expected}");
 }
 
-/// The distance to where a line leaves the body that lies below these planes (points and normals to the outside).
+/// Returns the distance at which a line leaves the body bounded by these planes (points and outward normals).
 fn exit(line: &Line, planes: &[[DVec3; 2]]) -> f64 {
     let along =
         planes.iter().map(|[point, normal]| (normal.dot(point - line.origin), normal.dot(line.direction)));
     along.filter(|(_, rate)| *rate > 0.0).map(|(height, rate)| height / rate).fold(f64::INFINITY, f64::min)
 }
 
-/// The mean chord of a convex body is 4V/S (Cauchy).
+/// The mean chord length of a convex body is 4V/S (Cauchy).
 #[test]
 fn mean_chords_are_those_of_cauchy() {
     let scene = tetrahedron();
@@ -133,7 +133,7 @@ fn entries_are_uniform_on_the_surface() {
         let here = |line: &Line| normal.dot(line.origin - corners[0]).abs() < 1e-13;
         let share = lines(&hull, 5).map(|line| f64::from(u8::from(here(&line))));
         assert_mean(share, area / hull.surface(), "share of a facet");
-        // Weights of the corners: the areas of the triangles opposite to them.
+        // Barycentric weights of the corners: the areas of the triangles opposite to them.
         let weights = lines(&hull, 5).filter(here).map(|line| {
             assert!(normal.dot(line.direction) <= 0.0);
             let part =
@@ -151,13 +151,13 @@ fn entries_are_uniform_on_the_surface() {
     }
 }
 
-/// The density of directions is in proportion to the body's shadow: `cos θ/π` about the normal of each facet, so that
-/// `E[ω ωᵀ] = Σ (A/S) (1 + n nᵀ)/4`; that of a sphere is uniform.
+/// The density of directions is in proportion to the projected area of the body: `cos θ/π` about the normal of each
+/// facet, so that `E[ω ωᵀ] = Σ (A/S) (1 + n nᵀ)/4`. For a sphere it is uniform.
 #[test]
 fn directions_are_in_proportion_to_the_shadow() {
     let [sphere, cuboid, hull] = domains(&tetrahedron());
     let size = tetrahedron().bounding_box().size();
-    // The faces of a cube have the sums of a sphere.
+    // The faces of a cube have the same sums as a sphere.
     let both = |size: DVec3| DVec3::AXES.map(|a| a * size.element_product() / size).map(|a| [a, -a]);
     let cube = both(DVec3::splat((sphere.surface() / 6.0).sqrt())).concat();
     let box_faces = both(size).concat();
@@ -177,14 +177,14 @@ fn directions_are_in_proportion_to_the_shadow() {
     }
 }
 
-/// Whatever body lines are drawn from, those that meet a ball in it are the same: their number is that of the forecast,
-/// they have no preferred direction, and pass the center at a distance whose square is uniform.
+/// The distribution of the lines that meet a ball does not depend on the domain: their number is that of the forecast,
+/// their directions are isotropic, and their squared distance from the center is uniform.
 #[test]
 fn lines_through_a_ball_do_not_know_where_they_come_from() {
-    // The ball inside the tetrahedron that touches all faces, a little smaller, and another one nearer to a corner.
+    // A ball slightly smaller than the inscribed one, and another one nearer to a corner.
     let areas = [0, 1, 2, 3].map(|f| 0.5 * scaled_normal(face(f)).length());
     let surface: f64 = areas.iter().sum();
-    // Weights of the corners: the areas of the faces opposite to them.
+    // Barycentric weights of the corners: the areas of the faces opposite to them.
     let middle = (0..4).map(|f| areas[f] * TETRAHEDRON[[3, 2, 0, 1][f]]).sum::<DVec3>() / surface;
     let volume = scaled_normal(face(0)).dot(face(0)[0] - TETRAHEDRON[3]) / 6.0;
     let largest = 0.99 * 3.0 * volume / surface;
@@ -202,7 +202,7 @@ fn lines_through_a_ball_do_not_know_where_they_come_from() {
             };
             let meets = |line: &Line| offset(line).length_squared() < 1.0;
             let counted = lines(&domain, 7).filter(meets).count() as f64;
-            // Each of them crosses the ball twice.
+            // Each of these lines crosses the surface of the ball twice.
             let expected = 0.5 * domain.forecast(LINES).crossings(area);
             let z = (counted - expected) / expected.sqrt();
             assert!(expected > 1_000.0 && z.abs() < 4.0, "{what}: {counted} lines, {expected:.0} expected");
@@ -220,8 +220,8 @@ fn lines_through_a_ball_do_not_know_where_they_come_from() {
     }
 }
 
-/// Crossings of 200 patches anywhere in the body, in any position: the squares of their normalized deviations from the
-/// forecast add up as χ².
+/// For 200 patches at random positions in the body, the squared normalized deviations of their crossings from the
+/// forecast add up to χ².
 #[test]
 fn crossings_of_patches_are_those_of_the_forecast() {
     let streams = Streams::new(9, Purpose::PROBE);
@@ -231,7 +231,7 @@ fn crossings_of_patches_are_those_of_the_forecast() {
             let on_face = point_on_triangle(s.point()).point(face(0));
             TETRAHEDRON[3].lerp(on_face, 0.3 + 0.6 * s.unit())
         };
-        // A triangle with its corners near to each other.
+        // A small triangle.
         let a = inside(s);
         [a, a.lerp(inside(s), 0.4), a.lerp(inside(s), 0.4)]
     };
@@ -283,10 +283,10 @@ fn flat_scenes_have_flat_domains() {
     }
 }
 
-/// A triangle that is a line to twelve digits has no hull, but a box.
+/// The domain of a triangle that is degenerate to twelve digits is its box instead of its hull.
 #[test]
 fn a_needle_has_a_box() {
-    // Just longer than a power of two, so that steps are as large as they can be.
+    // Slightly longer than a power of two, so that the grid steps are as large as possible.
     let end = DVec3::new(0.5, 0.5, -1.0) * (1.0 + 1.0 / 1024.0);
     let needle = scene(&[[DVec3::ZERO, end, 0.5 * end + DVec3::new(0.9e-12, -0.9e-12, 0.0)]]);
     let domain = Domain::hull(needle.vertices());
@@ -294,7 +294,7 @@ fn a_needle_has_a_box() {
     assert!(domain.surface() > 0.0);
 }
 
-/// The lines of a domain are part of the contract: if they change, no old result can be reproduced.
+/// The lines of a domain are part of the contract: if they change, earlier results cannot be reproduced.
 #[test]
 fn lines_never_change() {
     let mut text = String::new();
@@ -310,8 +310,8 @@ fn lines_never_change() {
     );
 }
 
-/// Any sequence of points serves: with a Halton sequence, crossings of a square are those of the forecast, much more exactly
-/// than with random points.
+/// Any point sequence can be used: with a Halton sequence, the crossings of a square agree with the forecast much
+/// better than with random points.
 #[test]
 fn low_discrepancy_points_make_uniform_lines() {
     let radical_inverse = |base: u64, mut number: u64| {

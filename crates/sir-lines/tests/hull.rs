@@ -1,6 +1,6 @@
-//! Convex hulls: closed, convex, around all points, and of known surfaces.
+//! Convex hulls are closed and convex, contain all points, and have the known surface areas.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+#![allow(clippy::unwrap_used, reason = "test helpers fail by panicking")]
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -10,7 +10,7 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::ConvexHull;
 
-/// Six times the volume of a tetrahedron.
+/// Returns six times the signed volume of a tetrahedron.
 fn volume([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     (b - a).cross(c - a).dot(p - a)
 }
@@ -25,8 +25,8 @@ fn assert_below(facet: [DVec3; 3], points: &[DVec3], slack: f64) {
     }
 }
 
-/// Fails unless every edge joins facets that agree about which side is out, all of them make one closed surface without
-/// holes, and no point lies above a facet by more than what it would if corners were off by `slack`.
+/// Fails unless the facets at every edge have the same orientation, all facets form one closed surface of genus 0, and
+/// no point lies above a facet by more than errors of `slack` in the corners explain.
 #[track_caller]
 fn assert_is_hull(hull: &ConvexHull, points: &[DVec3], slack: f64) {
     let bits = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
@@ -53,7 +53,7 @@ fn assert_is_hull(hull: &ConvexHull, points: &[DVec3], slack: f64) {
     assert_eq!(v + f, e + 2, "{v} corners, {e} edges, {f} facets");
 }
 
-/// Points of a cube's surface: a regular mesh of `n × n` cells on each face.
+/// Returns points on the surface of a cube: a regular mesh of `n × n` cells on each face.
 fn subdivided_cube(n: u32) -> Vec<DVec3> {
     let mut points = Vec::new();
     for i in 0..=n {
@@ -167,12 +167,12 @@ fn a_line_has_no_hull() {
     for points in [&[][..], &line[..1], &line[..2], &line, &[DVec3::ONE; 9]] {
         assert_eq!(ConvexHull::of(points), None);
     }
-    // Not to the precision of doubles, but to that of the hull.
+    // Collinear only to the precision of the hull, not to that of doubles.
     let bent = [DVec3::ZERO, DVec3::new(1.0, 1e-14, 0.0), DVec3::new(2.0, 0.0, 0.0)];
     assert_eq!(ConvexHull::of(&bent), None);
 }
 
-/// Scenes of others may hold anything.
+/// Third-party scenes may contain any values.
 #[test]
 fn coordinates_that_make_no_sense_do_no_harm() {
     let odd = [f64::NAN, f64::INFINITY, -f64::INFINITY, f64::MAX, f64::MIN_POSITIVE, 0.0, 1.0];
@@ -187,7 +187,7 @@ fn coordinates_that_make_no_sense_do_no_harm() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2_000))]
 
-    /// On a tiny grid most points are coplanar, collinear or equal. All numbers here are exact.
+    /// On a tiny grid, most points are coplanar, collinear or equal. All numbers are exact.
     #[test]
     fn hulls_of_tiny_grids(
         points in prop::collection::vec(prop::array::uniform3(0..4i32), 1..40),
@@ -210,7 +210,7 @@ proptest! {
         }
     }
 
-    /// Points of all sorts, some in planes that are not exact in doubles.
+    /// General points, some of them in planes that doubles do not represent exactly.
     #[test]
     fn hulls_of_any_points(
         points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 4..60),

@@ -1,5 +1,6 @@
-//! What subdivisions of a room look like in numbers: `cargo run -p sir-mesh --example subdivide`.
-#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+//! Prints the number and the areas of patches for several subdivisions of a room:
+//! `cargo run -p sir-mesh --example subdivide`.
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};

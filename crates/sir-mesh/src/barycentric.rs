@@ -1,13 +1,13 @@
 //! The regular grid of sub-triangles of one triangle.
 //!
-//! A triangle `(a, b, c)` whose edges are cut in `n` parts has `n` rows of sub-triangles parallel to the edge
-//! `ab`. Row `j`, counted from that edge, has `2(n − j) − 1` of them, upright and inverted in turn. They are
+//! A triangle `(a, b, c)` whose edges are cut into `n` parts has `n` rows of sub-triangles parallel to the edge
+//! `ab`. Row `j`, counted from that edge, has `2(n − j) − 1` of them, alternately upright and inverted. They are
 //! numbered row by row, so row `j` starts at number `j(2n − j)`.
 
 use sir_geom::Barycentric;
 
-/// The number, below `n²`, of the sub-triangle in which a point lies. Points on a common edge belong to one of
-/// the two; points outside the triangle (by rounding) to the nearest in their row or column.
+/// Returns the number, below `n²`, of the sub-triangle in which a point lies. A point on a common edge belongs to one
+/// of the two sub-triangles; a point outside the triangle (by rounding) to the nearest one in its row or column.
 #[inline]
 pub(crate) fn locate(n: u32, p: Barycentric) -> u32 {
     let scaled = |x: f64| (x * f64::from(n)).max(0.0);
@@ -15,12 +15,12 @@ pub(crate) fn locate(n: u32, p: Barycentric) -> u32 {
     // A cast of a float to an integer saturates, so anything out of range is caught by `min`.
     let j = (y as u32).min(n - 1);
     let i = (x as u32).min(n - 1 - j);
-    // No short cut: a branch would be guessed wrong half of the time.
+    // `&` instead of `&&`: a branch would be mispredicted half of the time.
     let inverted = (i + j + 1 < n) & ((x - f64::from(i)) + (y - f64::from(j)) > 1.0);
     j * (2 * n - j) + 2 * i + u32::from(inverted)
 }
 
-/// Corners of sub-triangle `k`, in the orientation of the whole triangle.
+/// Returns the corners of sub-triangle `k`, in the orientation of the whole triangle.
 pub(crate) fn corners(n: u32, k: u32) -> [Barycentric; 3] {
     let (i, j, inverted) = cell(n, k);
     let at = |i: u32, j: u32| Barycentric { v: f64::from(i) / f64::from(n), w: f64::from(j) / f64::from(n) };
@@ -31,9 +31,9 @@ pub(crate) fn corners(n: u32, k: u32) -> [Barycentric; 3] {
     }
 }
 
-/// Column, row and orientation of sub-triangle `k`.
+/// Returns the column and row of sub-triangle `k`, and true if it is inverted.
 fn cell(n: u32, k: u32) -> (u32, u32, bool) {
-    // The row j is the largest with j(2n − j) ≤ k; the float estimate is off by one at most.
+    // The row j is the largest with j(2n − j) ≤ k; the floating-point estimate is off by at most one.
     let start = |j: u32| u64::from(j) * u64::from(2 * n - j);
     let (wide_n, wide_k) = (f64::from(n), f64::from(k));
     let mut j = ((wide_n - (wide_n * wide_n - wide_k).max(0.0).sqrt()) as u32).min(n - 1);

@@ -1,34 +1,35 @@
-//! How finely each triangle is cut.
+//! Subdivision of each triangle.
 
 use glam::DVec3;
 use sir_geom::{BoundingBox, Scene, TriangleId};
 
 use crate::error::MeshError;
 
-/// The largest number of parts of an edge: `n²` must fit 32 bits.
+/// Largest number of parts of an edge: `n²` must fit in 32 bits.
 pub(crate) const MAX_DIVISIONS: u32 = 65_535;
 
-/// How to make patches of triangles.
+/// Rule for the division of triangles into patches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Subdivision {
     /// Every triangle is one patch.
     PerTriangle,
-    /// Every flat polygon of the file is one patch, whatever the number of triangles it was cut into. The triangles
-    /// of a bent one are patches of their own, because a line must not meet a patch twice.
+    /// Every flat polygon of the file is one patch, regardless of the number of triangles that it was cut into. The
+    /// triangles of a bent polygon are separate patches, because a line must not cross a patch twice.
     PerFace,
     /// No patch is larger than this area.
     MaxArea(f64),
     /// No edge of a patch is longer than this length.
     MaxEdge(f64),
-    /// This many patches in all, as nearly as whole subdivisions allow, of areas as equal as possible.
-    /// Never fewer than there are triangles.
+    /// Total number of patches, met as nearly as whole subdivisions allow, with areas as equal as possible. There are
+    /// never fewer patches than triangles.
     Patches(u64),
 }
 
 impl Subdivision {
-    /// Parts of an edge per triangle: 1 of those whose middle is not in the box `within`, if there is one.
+    /// Returns the number of parts of an edge per triangle. It is 1 for triangles whose centroid is not in the box
+    /// `within`, if one is given.
     pub(crate) fn divisions(self, scene: &Scene, within: Option<BoundingBox>) -> Result<Vec<u32>, MeshError> {
-        let matters = |t: &TriangleId| within.is_none_or(|bounds| bounds.contains(middle(scene, *t)));
+        let matters = |t: &TriangleId| within.is_none_or(|bounds| bounds.contains(centroid(scene, *t)));
         let of_each = |n: &dyn Fn(TriangleId) -> Result<u32, MeshError>| {
             scene.triangle_ids().map(|t| if matters(&t) { n(t) } else { Ok(1) }).collect()
         };
@@ -50,7 +51,7 @@ impl Subdivision {
                 of_each(&|t| parts(longest(t) / max))
             }
             Self::Patches(target) => {
-                // What has no area is not cut.
+                // Triangles of area zero are not cut.
                 let area = |t| if matters(&t) { scene.area(t) } else { 0.0 };
                 let areas: Vec<f64> = scene.triangle_ids().map(area).collect();
                 by_count(&areas, target)
@@ -59,14 +60,14 @@ impl Subdivision {
     }
 }
 
-fn middle(scene: &Scene, triangle: TriangleId) -> DVec3 {
+fn centroid(scene: &Scene, triangle: TriangleId) -> DVec3 {
     let [a, b, c] = scene.corners(triangle);
     (a + b + c) / 3.0
 }
 
-/// The fewest whole parts that are each at most one unit of `x` units.
+/// Returns the smallest number of equal parts of a length of `x` units that are each at most one unit long.
 fn parts(x: f64) -> Result<u32, MeshError> {
-    // What rounding adds to a whole number must not add a part.
+    // Rounding errors above a whole number must not add a part.
     let n = (x * (1.0 - 1e-12)).ceil().max(1.0);
     if n <= f64::from(MAX_DIVISIONS) { Ok(n as u32) } else { Err(MeshError::TooMany) }
 }
@@ -75,12 +76,12 @@ fn count(divisions: &[u32]) -> u64 {
     divisions.iter().map(|&n| u64::from(n) * u64::from(n)).sum()
 }
 
-/// Divisions whose count comes nearest to `target` with patches of nearly equal area.
+/// Returns the divisions whose number of patches comes nearest to `target`, with patches of nearly equal area.
 fn by_count(areas: &[f64], target: u64) -> Result<Vec<u32>, MeshError> {
     if target > u64::from(u32::MAX) {
         return Err(MeshError::TooMany);
     }
-    // Nearest to equal areas: n = √(A/a) rounded; the count falls as `a` grows, so bisection finds the `a` with
+    // Areas are nearest to equal for n = √(A/a), rounded. The count falls as `a` grows, so bisection finds the `a` with
     // the largest count that does not exceed the target.
     let divide = |a: f64| -> Vec<u32> {
         let cap = f64::from(MAX_DIVISIONS);

@@ -3,10 +3,10 @@
 use sir_geom::typed_index;
 
 typed_index!(
-    /// A patch of a [`PatchMesh`](crate::PatchMesh).
+    /// Number of a patch of a [`PatchMesh`](crate::PatchMesh).
     PatchId
 );
 typed_index!(
-    /// One active side of a patch: the thing that holds power.
+    /// Number of an active side of a patch, which holds and receives power.
     SideId
 );

@@ -3,18 +3,18 @@
 //! # Design
 //!
 //! *Trace coarse, record fine.* A patch is a piece of an input triangle, cut by a regular subdivision: each edge
-//! in `n` equal parts, which gives `n²` congruent triangles. Nothing is stored per patch: area, corners and number
+//! into `n` equal parts, which gives `n²` congruent triangles. Nothing is stored per patch: area, corners and number
 //! follow from the triangle's `n` and the barycentric coordinates of a hit, in constant time. An acceleration
 //! structure therefore holds the input triangles only, however fine the patches are.
 //!
 //! Power lives on *sides* ([`SideId`]): a patch of a one-sided triangle has one, of a two-sided triangle two.
 //! The sides of one triangle are consecutive numbers.
 //!
-//! Where a texture lies on a triangle, each of its patches has its own reflectance, exitance and covered share: the means over its
-//! area.
+//! If a triangle has a texture, each of its patches has its own reflectance, exitance and covered share: the means over
+//! its area.
 //!
-//! Instead of cutting, [`Subdivision::PerFace`] makes one patch of all triangles of a flat polygon, as the classic
-//! radiosity systems with one element per rectangle have it.
+//! Instead of cutting triangles, [`Subdivision::PerFace`] makes one patch of all triangles of a flat polygon, as in
+//! classic radiosity systems with one element per rectangle.
 //!
 //! # Example
 //!

@@ -11,7 +11,7 @@ use crate::index::{PatchId, SideId};
 use crate::numbering::{Numbering, Patches};
 use crate::properties::Properties;
 
-/// All patches of a scene. Uses 28 bytes per *triangle*, and nothing per patch but where it has a texture.
+/// All patches of a scene. Uses 28 bytes per *triangle*, and nothing per patch except where it has a texture.
 #[derive(Clone, Debug)]
 pub struct PatchMesh {
     numbering: Numbering,
@@ -19,21 +19,22 @@ pub struct PatchMesh {
 }
 
 impl PatchMesh {
-    /// Makes the patches of a scene.
+    /// Divides the triangles of a scene into patches.
     ///
     /// # Errors
     ///
-    /// If a limit is not positive, or there would be more than 2³² patches.
+    /// Returns an error if a limit is not positive, or if there would be more than 2³² − 1 patches or sides.
     pub fn new(scene: &Scene, subdivision: Subdivision) -> Result<Self, MeshError> {
         Self::within(scene, subdivision, None)
     }
 
-    /// As [`new`](Self::new), but of a box, if there is one, only triangles whose middle is in it are cut. Where others reach into it,
-    /// [split the scene](sir_geom::SceneBuilder::split_at) at the box first.
+    /// Divides the triangles of a scene into patches, as [`new`](Self::new) does, but if a box is given, cuts only
+    /// triangles whose centroid is in it. If others reach into the box, [split the
+    /// scene](sir_geom::SceneBuilder::split_at) at the box first.
     ///
     /// # Errors
     ///
-    /// As those of `new`.
+    /// Returns the same errors as `new`.
     pub fn within(
         scene: &Scene,
         subdivision: Subdivision,
@@ -44,38 +45,38 @@ impl PatchMesh {
         Ok(Self { numbering, properties })
     }
 
-    /// Number of patches.
+    /// Returns the number of patches.
     #[must_use]
     pub fn patch_count(&self) -> usize {
         self.numbering.patches as usize
     }
 
-    /// Number of active sides, at most twice the number of patches.
+    /// Returns the number of active sides, at most twice the number of patches.
     #[must_use]
     pub fn side_count(&self) -> usize {
         self.numbering.sides as usize
     }
 
-    /// Numbers of the patches of a triangle.
+    /// Returns the numbers of the patches of a triangle.
     #[must_use]
     pub fn patches_of(&self, triangle: TriangleId) -> Range<u32> {
         self.numbering.patches_of(triangle)
     }
 
-    /// Parts into which each edge of a triangle is cut.
+    /// Returns the number of parts into which each edge of a triangle is cut.
     #[must_use]
     pub fn divisions(&self, triangle: TriangleId) -> u32 {
         self.numbering.divisions(triangle)
     }
 
-    /// Area of each patch of a triangle, its gaps included; of a merged face, the area of the whole face.
+    /// Returns the area of each patch of a triangle, including its gaps; for a merged face, the area of the whole face.
     #[inline]
     #[must_use]
     pub fn patch_area(&self, triangle: TriangleId) -> f64 {
         self.numbering.patches_of[triangle.index()].area
     }
 
-    /// Area of a patch that stops light: that of the patch without its gaps. It may be zero.
+    /// Returns the covered area of a patch: the area that stops light, without gaps. It may be zero.
     #[inline]
     #[must_use]
     pub fn covered_area(&self, triangle: TriangleId, patch: PatchId) -> f64 {
@@ -83,7 +84,7 @@ impl PatchMesh {
         area * self.properties.coverage(triangle, patch.0 - first)
     }
 
-    /// Area of a triangle that stops light.
+    /// Returns the covered area of a triangle: the area that stops light.
     #[must_use]
     pub fn covered_area_of(&self, scene: &Scene, triangle: TriangleId) -> f64 {
         let area = scene.area(triangle);
@@ -91,14 +92,15 @@ impl PatchMesh {
             return area;
         }
         let (patches, all) = (self.patches_of(triangle), self.patch_area(triangle));
-        // A face that is one patch has several triangles.
+        // A merged face is one patch of several triangles.
         let part = area / (patches.len() as f64 * all);
         patches.map(|patch| part * self.covered_area(triangle, PatchId(patch))).sum()
     }
 
-    /// Diffuse reflectance of a patch per band, in `[0, 1)`: with a texture, the mean over the covered area.
+    /// Returns the diffuse reflectance of a patch per band, in `[0, 1)`; with a texture, the mean over the covered
+    /// area.
     ///
-    /// `scene` must be the one that the patches were made of, here and in the functions below.
+    /// `scene` must be the scene that was divided into these patches, here and in the functions below.
     #[inline]
     #[must_use]
     pub fn reflectance(&self, scene: &Scene, triangle: TriangleId, patch: PatchId) -> Rgb {
@@ -107,7 +109,7 @@ impl PatchMesh {
         own.unwrap_or_else(|| scene.material(triangle).reflectance)
     }
 
-    /// Emitted exitance `M` \[W/m²\] of a side of a patch: with a texture, the mean over the covered area.
+    /// Returns the emitted exitance `M` \[W/m²\] of a side of a patch; with a texture, the mean over the covered area.
     #[inline]
     #[must_use]
     pub fn exitance(&self, scene: &Scene, triangle: TriangleId, patch: PatchId, side: Side) -> Rgb {
@@ -117,27 +119,27 @@ impl PatchMesh {
         own.unwrap_or(of_triangle)
     }
 
-    /// The largest reflectance of a patch in any band.
+    /// Returns the largest reflectance of a patch in any band.
     #[must_use]
     pub fn largest_reflectance(&self, scene: &Scene) -> f64 {
         let plain = scene.materials().iter().map(|m| m.reflectance.max_element());
         plain.fold(self.properties.max_reflectance(), f64::max)
     }
 
-    /// Whether patches of a triangle may differ in reflectance, exitance or covered area.
+    /// Returns true if patches of a triangle may differ in reflectance, exitance or covered area.
     #[inline]
     #[must_use]
     pub fn is_varied(&self, triangle: TriangleId) -> bool {
         self.properties.is_varied(triangle)
     }
 
-    /// Memory in use for what differs from patch to patch \[bytes\].
+    /// Returns the memory in use for properties that differ from patch to patch \[bytes\].
     #[must_use]
     pub fn paint_bytes(&self) -> usize {
         self.properties.bytes()
     }
 
-    /// The patch of a triangle in which a point lies.
+    /// Returns the patch of a triangle in which a point lies.
     #[inline]
     #[must_use]
     pub fn patch_at(&self, triangle: TriangleId, point: Barycentric) -> PatchId {
@@ -145,7 +147,7 @@ impl PatchMesh {
         PatchId(self.numbering.patches_of[triangle.index()].first + within)
     }
 
-    /// The given side of a patch of a triangle; `None` if that side does not take part in light transport.
+    /// Returns the given side of a patch of a triangle; `None` if that side does not take part in light transport.
     #[inline]
     #[must_use]
     pub fn side_of(&self, triangle: TriangleId, patch: PatchId, side: Side) -> Option<SideId> {
@@ -158,7 +160,7 @@ impl PatchMesh {
         }
     }
 
-    /// The patch of a triangle to which a side belongs.
+    /// Returns the patch of a triangle to which a side belongs.
     #[inline]
     #[must_use]
     pub fn patch_of_side(&self, triangle: TriangleId, side: SideId) -> PatchId {
@@ -166,7 +168,7 @@ impl PatchMesh {
         PatchId(self.numbering.patches_of[triangle.index()].first + (side.0 - cut.first_side) / cut.sides())
     }
 
-    /// The given side of the patch in which a point of a triangle lies.
+    /// Returns the given side of the patch in which a point of a triangle lies.
     #[inline]
     #[must_use]
     pub fn side_at(&self, triangle: TriangleId, point: Barycentric, side: Side) -> Option<SideId> {
@@ -177,14 +179,15 @@ impl PatchMesh {
         }
     }
 
-    /// Where [`sides_at`](Self::sides_at) looks a triangle up, for those who want to have it in the caches in time.
+    /// Returns the entry that [`sides_at`](Self::sides_at) reads for a triangle, so that callers can prefetch it.
     #[inline]
     #[must_use]
     pub fn place_of(&self, triangle: TriangleId) -> &impl Sized {
         &self.numbering.cuts[triangle.index()]
     }
 
-    /// The front and, if it takes part in light transport, the back of the patch in which a point of a triangle lies.
+    /// Returns the front and, if it takes part in light transport, the back of the patch in which a point of a triangle
+    /// lies.
     #[inline]
     #[must_use]
     pub fn sides_at(&self, triangle: TriangleId, point: Barycentric) -> (SideId, Option<SideId>) {
@@ -193,8 +196,8 @@ impl PatchMesh {
         (front, (cut.sides == 2).then_some(SideId(front.0 + 1)))
     }
 
-    /// Corners of a patch as points of its triangle, in the triangle's orientation. For a merged face, those
-    /// of the given triangle.
+    /// Returns the corners of a patch as points of its triangle, in the triangle's orientation; for a merged face,
+    /// those of the given triangle.
     #[must_use]
     pub fn patch_corners(&self, triangle: TriangleId, patch: PatchId) -> [Barycentric; 3] {
         self.numbering.patch_corners(triangle, patch)
@@ -213,8 +216,8 @@ impl PatchMesh {
         }
     }
 
-    /// The active sides whose numbers lie in `sides`, in order: a triangle and the consecutive numbers of sides of
-    /// its patches, all of the same material and, gaps included, of the same area.
+    /// Returns the active sides whose numbers lie in `sides`, in order. Each item is a triangle and the consecutive
+    /// numbers of sides of its patches, all of the same material and, including gaps, of the same area.
     pub fn sides_within(&self, sides: Range<u32>) -> impl Iterator<Item = (TriangleId, Range<u32>)> {
         let of = |triangle: TriangleId| {
             let (cut, n) = (self.numbering.cuts[triangle.index()], self.divisions(triangle));

@@ -1,4 +1,4 @@
-//! Which numbers the patches and sides of a scene have.
+//! Numbering of the patches and sides of a scene.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use crate::divisions::Subdivision;
 use crate::error::MeshError;
 use crate::index::PatchId;
 
-/// What is needed to find a side of a triangle: no more than that, so that it stays in the caches.
+/// Data to find a side of a triangle, and nothing else, so that it stays in the cache.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cut {
     pub(crate) first_side: u32,
@@ -43,14 +43,14 @@ pub(crate) struct Patches {
 pub(crate) struct Numbering {
     pub(crate) cuts: Vec<Cut>,
     pub(crate) patches_of: Vec<Patches>,
-    /// One triangle of every patch, in the order of their numbers: of a merged face the first.
+    /// Triangles in the order of the numbers of their patches; only the first of a merged face.
     pub(crate) owners: Vec<TriangleId>,
     pub(crate) patches: u32,
     pub(crate) sides: u32,
 }
 
 impl Numbering {
-    /// Cuts the triangles of a scene, those alone whose middle is in a box if there is one.
+    /// Cuts the triangles of a scene; if a box is given, only those whose centroid is in it.
     pub(crate) fn new(
         scene: &Scene,
         subdivision: Subdivision,
@@ -86,7 +86,7 @@ impl Numbering {
         Ok(numbering)
     }
 
-    /// Makes one patch of the (undivided) triangles of each flat polygon.
+    /// Merges the (undivided) triangles of each flat polygon into one patch.
     fn merge_faces(&mut self, scene: &Scene) {
         let mut faces: HashMap<FaceId, Vec<TriangleId>> = HashMap::new();
         for t in scene.triangle_ids() {
@@ -112,25 +112,25 @@ impl Numbering {
         }
     }
 
-    /// Parts into which each edge of a triangle is cut.
+    /// Returns the number of parts into which each edge of a triangle is cut.
     pub(crate) fn divisions(&self, triangle: TriangleId) -> u32 {
         self.cuts[triangle.index()].divisions()
     }
 
-    /// Numbers of the patches of a triangle.
+    /// Returns the numbers of the patches of a triangle.
     pub(crate) fn patches_of(&self, triangle: TriangleId) -> Range<u32> {
         let (first, n) = (self.patches_of[triangle.index()].first, self.divisions(triangle));
         first..first + n * n
     }
 
-    /// Corners of a patch as points of its triangle.
+    /// Returns the corners of a patch as points of its triangle.
     pub(crate) fn patch_corners(&self, triangle: TriangleId, patch: PatchId) -> [Barycentric; 3] {
         let first = self.patches_of[triangle.index()].first;
         barycentric::corners(self.divisions(triangle), patch.0 - first)
     }
 }
 
-/// Whether triangles lie in one plane and face the same way, but for what rounding of their corners does.
+/// Returns true if triangles lie in one plane, up to rounding of their corners, and face the same way.
 fn is_flat(scene: &Scene, triangles: &[TriangleId]) -> bool {
     let normal = scene.normal(triangles[0]);
     let [origin, ..] = scene.corners(triangles[0]);

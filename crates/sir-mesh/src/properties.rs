@@ -1,4 +1,4 @@
-//! What patches of textured triangles reflect, emit and stop: means over the area of each.
+//! Reflectance, exitance and coverage of the patches of textured triangles: means over the area of each patch.
 
 use std::collections::HashMap;
 
@@ -10,24 +10,24 @@ use sir_geom::{
 use crate::index::PatchId;
 use crate::numbering::Numbering;
 
-/// Properties of the patches of some triangles. Uses 4 bytes per triangle of a scene that has any, and 12 to 28 bytes per
-/// patch of such a triangle.
+/// Properties of the patches of varied triangles, whose patches differ. Uses 4 bytes per triangle of a scene that has
+/// varied triangles, and 12 to 28 bytes per patch of such a triangle.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Properties {
-    /// Where the patches of each triangle begin in the lists below, or `PLAIN`; empty if all triangles are.
+    /// Index of the first patch of each triangle in the lists below, or [`PLAIN`]; empty if all triangles are plain.
     first: Vec<u32>,
     reflectance: Vec<[f32; 3]>,
     /// Empty if no texture emits.
     exitance: Vec<[f32; 3]>,
-    /// Share of the patch that stops light; empty if all surfaces are opaque.
+    /// Covered share of the patch, which stops light; empty if all surfaces are opaque.
     coverage: Vec<f32>,
 }
 
-/// In place of a number: what a material says holds for the whole triangle.
+/// Index that marks triangles whose properties are those of the material.
 const PLAIN: u32 = u32::MAX;
 
 impl Properties {
-    /// The place in the lists of the `within`-th patch of a triangle.
+    /// Returns the index in the lists of the `within`-th patch of a triangle.
     #[inline]
     fn place(&self, triangle: TriangleId, within: u32) -> Option<usize> {
         let first = *self.first.get(triangle.index())?;
@@ -52,17 +52,17 @@ impl Properties {
         place.and_then(|place| self.coverage.get(place)).map_or(1.0, |&share| f64::from(share))
     }
 
-    /// Whether patches of a triangle may differ from each other.
+    /// Returns true if patches of a triangle may differ from each other.
     pub(crate) fn is_varied(&self, triangle: TriangleId) -> bool {
         self.place(triangle, 0).is_some()
     }
 
-    /// The largest reflectance in any band.
+    /// Returns the largest reflectance in any band.
     pub(crate) fn max_reflectance(&self) -> f64 {
         self.reflectance.iter().flatten().fold(0.0, |most, &band| most.max(f64::from(band)))
     }
 
-    /// Memory in use \[bytes\].
+    /// Returns the memory in use \[bytes\].
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.first[..])
             + size_of_val(&self.reflectance[..])
@@ -70,7 +70,7 @@ impl Properties {
             + size_of_val(&self.coverage[..])
     }
 
-    /// Takes the means over all patches of triangles that vary.
+    /// Computes the means over all patches of varied triangles.
     pub(crate) fn new(scene: &Scene, numbering: &Numbering) -> Self {
         let varied: Vec<TriangleId> = scene.triangle_ids().filter(|&t| scene.is_varied(t)).collect();
         if varied.is_empty() {
@@ -102,22 +102,24 @@ impl Properties {
         let shares = totals.iter().map(|t| (t.covered / t.area) as f32);
         Self {
             first,
-            reflectance: colors(true, |t| t.of_covered(t.reflected, t.any.reflectance)),
-            exitance: colors(emits, |t| t.of_covered(t.emitted, t.any.exitance)),
+            reflectance: colors(true, |t| t.of_covered(t.reflected, t.last.reflectance)),
+            exitance: colors(emits, |t| t.of_covered(t.emitted, t.last.exitance)),
             coverage: if gaps { shares.collect() } else { Vec::new() },
         }
     }
 }
 
-/// What is summed up over the triangles of a patch.
+/// Sums over the triangles of a patch.
 #[derive(Clone, Default)]
 struct Total {
     area: f64,
     covered: f64,
-    /// Times the covered area.
+    /// Reflectance times covered area.
     reflected: Rgb,
+    /// Exitance times covered area.
     emitted: Rgb,
-    any: Mean,
+    /// Mean of the last triangle, which stands in if nothing is covered.
+    last: Mean,
 }
 
 impl Total {
@@ -126,35 +128,35 @@ impl Total {
         self.covered += area * mean.coverage;
         self.reflected += area * mean.coverage * mean.reflectance;
         self.emitted += area * mean.coverage * mean.exitance;
-        self.any = mean.clone();
+        self.last = mean.clone();
     }
 
-    /// The mean over what is covered; if that is nothing, any value.
-    fn of_covered(&self, sum: Rgb, any: Rgb) -> Rgb {
-        if self.covered > 0.0 { sum / self.covered } else { any }
+    /// Returns the mean over the covered area; `fallback` if nothing is covered.
+    fn of_covered(&self, sum: Rgb, fallback: Rgb) -> Rgb {
+        if self.covered > 0.0 { sum / self.covered } else { fallback }
     }
 }
 
-/// What a triangle is on the mean over a part of it.
+/// Mean properties of a part of a triangle.
 #[derive(Clone, Default)]
 struct Mean {
     reflectance: Rgb,
-    /// Of a side that emits.
+    /// Exitance of a side that emits.
     exitance: Rgb,
     coverage: f64,
 }
 
-/// The textures of a scene with their sums, which are made when they are first needed.
+/// Textures of a scene with their sums, which are computed when first needed.
 struct Images<'a> {
     scene: &'a Scene,
     sums: HashMap<Key, TextureSums<'a>>,
 }
 
-/// A texture, and, if its texels count by their opacity, what decides it.
+/// Texture, wrap modes and, if texels are weighted by their opacity, its factor and cutoff.
 type Key = (TextureId, [Wrap; 2], Option<[u64; 2]>);
 
 impl Images<'_> {
-    /// The mean over the part of a triangle between three points.
+    /// Returns the means over the part of a triangle between three points.
     fn mean(&mut self, t: TriangleId, corners: [Barycentric; 3]) -> Mean {
         let Material { reflectance, reflectance_map, exitance, exitance_map, opacity, .. } =
             *self.scene.material(t);
@@ -162,7 +164,7 @@ impl Images<'_> {
         let middle = Barycentric { v: sum(|c| c.v), w: sum(|c| c.w) };
         let coverage = match opacity.map.and_then(|map| self.over(t, &map, Some(&opacity), corners)) {
             Some(mean) => {
-                // Where there is a cutoff, the alpha of corners is not asked.
+                // With a cutoff, the alpha of corners is ignored.
                 let tint = self.scene.tint_at(t, middle).filter(|_| opacity.cutoff.is_none());
                 mean.weight * tint.map_or(1.0, |(_, alpha)| alpha)
             }
@@ -177,7 +179,7 @@ impl Images<'_> {
         Mean { reflectance: self.scene.tinted(t, middle, reflectance), exitance, coverage }
     }
 
-    /// The mean of a texture, whose texels count by their opacity if one is given.
+    /// Returns the mean of a texture, with texels weighted by their opacity if one is given.
     fn over(
         &mut self,
         t: TriangleId,
@@ -207,7 +209,7 @@ mod tests {
     const RED: Rgb = Rgb::X;
     const GREEN: Rgb = Rgb::Y;
 
-    /// A square of side 2, in two triangles, with an image of a red and an almost transparent green half.
+    /// Returns a square of side 2, in two triangles, with an image of a red and an almost transparent green half.
     fn square(opacity: Opacity, tint: Option<[Vec4; 3]>) -> Scene {
         let mut b = SceneBuilder::new();
         let texture = b.add_texture(Texture::new(2, 1, vec![[255, 0, 0, 255], [0, 255, 0, 51]]).unwrap());

@@ -1,9 +1,9 @@
-//! How much light the transports lose, and how that depends on the number of workers: the table of docs/parallel.md.
+//! Measures the bias of the transports as a function of the number of workers: the table of docs/parallel.md.
 //! `cargo run --release -p sir-parallel --example bias docs/images/bias.svg`
 //!
-//! The inside of a sphere, where every patch sees all others alike: whatever the first shot has brought, the exact
-//! answer is that all reflected power `U` is received `U / (1 − ρ)` times.
-#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+//! The scene is the inside of a sphere, where the view factor to a patch is the same from everywhere. Whatever the
+//! outcome of the first shot, the power received afterwards is exactly `U / (1 − ρ)`, where `U` is the reflected power.
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use std::num::NonZeroUsize;
 
@@ -18,13 +18,13 @@ use sir_radiosity::{
     BatchSettings, Batches, FirstShot, Model, Multipath, MultipathSettings, Shot, ShotSettings, Transported,
 };
 
-/// Crossings of a patch by all lines together.
+/// Expected crossings of a patch by all lines together.
 const CROSSINGS: u64 = 2560;
 
 /// Numbers of workers.
 const WORKERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 
-/// Relative errors of the reflected power, and noise of a patch, in the order of [`NAMES`].
+/// Relative errors of the reflected power, and noise of the patches, in the order of [`NAMES`].
 struct Row {
     reflectance: f64,
     workers: usize,
@@ -35,7 +35,7 @@ struct Row {
 const NAMES: [&str; 3] = ["replicas, no tail", "replicas, a tenth is tail", "batches"];
 
 impl Row {
-    /// What theory says about replicas without a tail: −ρ/(1−ρ) P/n.
+    /// Returns the theoretical bias of replicas without a tail: −ρ/(1−ρ) P/n.
     fn expected(&self) -> f64 {
         -self.reflectance / (1.0 - self.reflectance) * self.workers as f64 / CROSSINGS as f64
     }
@@ -88,7 +88,7 @@ fn measure(model: &Model, reflectance: f64, workers: usize) -> Result<Row, Box<d
     Ok(Row { reflectance, workers, bias, noise })
 }
 
-/// The bias over the number of workers, with logarithmic scales.
+/// Plots the bias over the number of workers, with logarithmic scales.
 fn plot(path: &str, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
     const LEAST: f64 = 1e-4;
     let root = SVGBackend::new(path, (900, 420)).into_drawing_area();
@@ -135,7 +135,7 @@ fn plot(path: &str, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A sphere that emits from a cap, one patch per triangle.
+/// Returns a sphere that emits from a cap, with one patch per triangle.
 fn sphere(reflectance: f64) -> Result<Model, Box<dyn std::error::Error>> {
     let mut builder = SceneBuilder::new();
     let wall = Material::diffuse("wall", Rgb::splat(reflectance));
@@ -147,18 +147,18 @@ fn sphere(reflectance: f64) -> Result<Model, Box<dyn std::error::Error>> {
     Ok(Model::new(builder.build()?.scene, Subdivision::PerTriangle)?)
 }
 
-/// Power that a patch received after the first shot \[quanta\].
+/// Returns the power that each patch received after the first shot, in quanta.
 fn indirect<'a>(shot: &'a Shot, run: &'a Transported) -> impl Iterator<Item = f64> + 'a {
     let powers = run.received.power.iter().zip(&shot.received.power);
     powers.map(|(all, direct)| (all.0[0] - direct.0[0]) as f64)
 }
 
-/// Relative error of all power received after the first shot.
+/// Returns the relative error of the total power received after the first shot.
 fn bias(shot: &Shot, run: &Transported, reflectance: f64) -> f64 {
     indirect(shot, run).sum::<f64>() / (shot.balance.unshot.0[0] as f64 / (1.0 - reflectance)) - 1.0
 }
 
-/// Root mean square of what patches received per area, against its mean.
+/// Returns the root mean square deviation of the power received per area, relative to its mean.
 fn noise(model: &Model, shot: &Shot, run: &Transported) -> f64 {
     let mut areas = Vec::new();
     model.mesh.for_each_side(|triangle, _, _, _| areas.push(model.mesh.patch_area(triangle)));

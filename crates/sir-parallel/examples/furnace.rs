@@ -1,5 +1,5 @@
 //! Solves a closed box with a progress report: `cargo run --release -p sir-parallel --example furnace`.
-#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
@@ -9,7 +9,7 @@ use sir_mesh::Subdivision;
 use sir_parallel::{Executor, Observer, Start};
 use sir_radiosity::{BatchSettings, Batches, FirstShot, Model, ShotSettings};
 
-/// Prints a line at every tenth of a stage.
+/// Observer that prints a line at every tenth of a stage.
 struct Tenths(u64);
 
 impl Observer for Tenths {

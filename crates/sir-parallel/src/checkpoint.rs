@@ -1,8 +1,8 @@
-//! Checkpoints: the state of a run in a file, from which it can go on.
+//! Checkpoints: files with the state of a run, from which it can be resumed.
 //!
-//! A file has a line of text with the version of its layout, a line with the *head*, which means something to the caller
-//! only, the state of a stage as 64-bit little-endian numbers, and the SHA-256 of all of this. It says nothing about threads
-//! and ranks, because no state depends on how many there are.
+//! A file consists of a line of text with the version of its layout, a line with the *head*, whose content is up to the
+//! caller, the state of a stage as 64-bit little-endian integers, and the SHA-256 of all of this. It does not contain
+//! the numbers of threads and ranks, because no state depends on them.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
@@ -15,16 +15,16 @@ use sir_radiosity::Visitor;
 use crate::communicator::Communicator;
 use crate::error::CheckpointError;
 
-/// First line of a checkpoint: what it is, and the version of its layout.
+/// First line of a checkpoint: the file type and the version of its layout.
 const MAGIC: &str = "SIR checkpoint 4";
 
-/// Work that is worth a checkpoint at the end of a stage.
-const AT_THE_END: Duration = Duration::from_secs(30);
+/// Age of the last checkpoint from which on another one is saved at the end of a stage.
+const END_INTERVAL: Duration = Duration::from_secs(30);
 
-/// Length of a SHA-256.
+/// Length of a SHA-256, in bytes.
 const HASH: usize = 32;
 
-/// Where and how often the state of a run is saved.
+/// Settings for saving the state of a run: file, interval, and head.
 #[derive(Clone, Debug)]
 pub struct Checkpoints {
     path: PathBuf,
@@ -33,7 +33,7 @@ pub struct Checkpoints {
     last: Instant,
 }
 
-/// A checkpoint that was read, up to the state of its stage.
+/// Opened and verified checkpoint, read up to the state of its stage.
 #[derive(Debug)]
 pub struct Saved {
     path: PathBuf,
@@ -42,19 +42,19 @@ pub struct Saved {
 }
 
 impl Checkpoints {
-    /// Saves to this file; `every` is the time from one checkpoint to the next.
+    /// Returns settings for saving to this file; `every` is the time from one checkpoint to the next.
     #[must_use]
     pub fn new(path: PathBuf, every: Duration) -> Self {
         Self { path, every, head: String::new(), last: Instant::now() }
     }
 
-    /// Sets what the next checkpoints tell the caller: a text without line breaks.
+    /// Sets the head of the next checkpoints: a text without line breaks.
     pub fn set_head(&mut self, head: String) {
         debug_assert!(!head.contains('\n'));
         self.head = head;
     }
 
-    /// Saves that nothing has been done yet. Only the first rank writes.
+    /// Writes an initial checkpoint without the state of a stage. Only the first rank writes.
     ///
     /// # Errors
     ///
@@ -63,46 +63,47 @@ impl Checkpoints {
         self.save(comm, &[], &mut |_| {})
     }
 
-    /// Removes the file, which a finished run does not need, and what a killed one may have left half written beside it.
+    /// Removes the checkpoint, which a finished run does not need, and the partial file that a killed run may have
+    /// left.
     pub fn remove(&self) {
         for path in [&self.path, &self.part()] {
-            // Often there is none; one that cannot be removed does no harm.
+            // The files often do not exist, and a file that cannot be removed is harmless.
             let _ = std::fs::remove_file(path);
         }
     }
 
-    /// Where a file is written until it is whole.
+    /// Returns the path to which a checkpoint is written until it is complete.
     fn part(&self) -> PathBuf {
-        // Added, not put in place of the extension: `run.1` and `run.2` may be saved at the same time.
+        // Appended instead of replacing the extension: `run.1` and `run.2` may be saved at the same time.
         let mut part = self.path.clone().into_os_string();
         part.push(".part");
         part.into()
     }
 
-    /// Whether the state should be saved now.
+    /// Returns true if the state should be saved now.
     pub(crate) fn are_due(&self) -> bool {
         self.last.elapsed() >= self.every
     }
 
-    /// Whether the state should be saved now that a stage is done.
-    pub(crate) fn are_late(&self) -> bool {
-        self.last.elapsed() >= self.every.min(AT_THE_END)
+    /// Returns true if the state should be saved now, at the end of a stage.
+    pub(crate) fn are_due_at_end(&self) -> bool {
+        self.last.elapsed() >= self.every.min(END_INTERVAL)
     }
 
-    /// Saves the state that `show` shows, of the stage that `identity` tells from others. All ranks take part; the first
-    /// one writes, and if it fails, all do.
+    /// Saves the state that `visit` passes to its visitor, of the stage with this identity. All ranks take part; the
+    /// first one writes. If it fails, all ranks return an error.
     pub(crate) fn save(
         &mut self,
         comm: &dyn Communicator,
         identity: &[i64],
-        show: &mut dyn FnMut(&mut dyn Visitor),
+        visit: &mut dyn FnMut(&mut dyn Visitor),
     ) -> Result<(), CheckpointError> {
         let part = self.part();
-        // After a failure the other ranks must still be served.
+        // A failure is kept until the end, because the other ranks still wait for the sums.
         let writer = comm.is_first().then(|| Writer::create(&part, &self.head));
         let mut saver = Saver { comm, writer, words: Vec::new() };
         saver.same(&mut identity.to_vec());
-        show(&mut saver);
+        visit(&mut saver);
         let written = match saver.writer {
             Some(writer) => writer.and_then(Writer::finish).and_then(|()| replace(&part, &self.path)),
             None => Ok(()),
@@ -116,17 +117,17 @@ impl Checkpoints {
     }
 }
 
-/// Puts a new file in an old one's place.
+/// Replaces an old file by a new one.
 fn replace(new: &Path, old: &Path) -> io::Result<()> {
     std::fs::rename(new, old)?;
-    // The new name is on disk when its folder is; not all systems let one say so.
+    // The new name is on disk only once its folder is synced. Not all systems support this.
     if let Some(folder) = old.parent().and_then(|folder| File::open(folder).ok()) {
         let _ = folder.sync_all();
     }
     Ok(())
 }
 
-/// Lets all ranks fail if one does.
+/// Returns an error on all ranks if one of them failed.
 fn agree<T>(comm: &dyn Communicator, outcome: Result<T, CheckpointError>) -> Result<T, CheckpointError> {
     match comm.first_failed(outcome.is_err()) {
         Some(rank) if outcome.is_ok() => Err(CheckpointError::Elsewhere { rank }),
@@ -134,7 +135,7 @@ fn agree<T>(comm: &dyn Communicator, outcome: Result<T, CheckpointError>) -> Res
     }
 }
 
-/// A new file and the hash of what has been written to it.
+/// New file and the hash of its content so far.
 struct Writer {
     file: BufWriter<File>,
     hash: Sha256,
@@ -152,7 +153,7 @@ impl Writer {
         self.file.write_all(bytes)
     }
 
-    /// Makes sure that everything is on disk.
+    /// Appends the hash and syncs the file to disk.
     fn finish(self) -> io::Result<()> {
         let Self { mut file, hash } = self;
         file.write_all(&hash.finalize())?;
@@ -160,10 +161,10 @@ impl Writer {
     }
 }
 
-/// Saves a state, added up over all ranks, and leaves it as it is.
+/// Visitor that saves the sums of a state over all ranks, without changing the state.
 struct Saver<'a> {
     comm: &'a dyn Communicator,
-    /// Of the first rank, which writes until something fails.
+    /// Writer of the first rank, or its first error; `None` on other ranks.
     writer: Option<io::Result<Writer>>,
     words: Vec<i64>,
 }
@@ -189,23 +190,25 @@ impl Visitor for Saver<'_> {
 }
 
 impl Saved {
-    /// Reads a checkpoint up to its head, and checks that all of it is what was written.
+    /// Opens a checkpoint, verifies its hash, and reads its head.
     ///
     /// # Errors
     ///
-    /// If it cannot be read, is damaged, or has another layout.
+    /// If the file cannot be read, is damaged, or has another layout.
     pub fn open(path: &Path) -> Result<Self, CheckpointError> {
         let unfit = |why: &str| CheckpointError::Unfit { path: path.to_owned(), why: why.into() };
         let read = |source| CheckpointError::Read { path: path.to_owned(), source };
         let length = std::fs::metadata(path).map_err(read)?.len();
-        let Some(content) = length.checked_sub(HASH as u64) else { return Err(unfit("it is too short")) };
+        let Some(content) = length.checked_sub(HASH as u64) else {
+            return Err(unfit("the checkpoint is too short"));
+        };
 
         let mut file = BufReader::new(File::open(path).map_err(read)?);
         let mut first = String::new();
         let known = file.by_ref().take(64).read_line(&mut first).is_ok() && first.trim_end() == MAGIC;
         if !known {
             return Err(unfit(&format!(
-                "it does not begin with \"{MAGIC}\"; another version may have written it"
+                "the checkpoint does not begin with \"{MAGIC}\"; another version may have written it"
             )));
         }
         let mut file = File::open(path).map_err(read)?;
@@ -214,7 +217,7 @@ impl Saved {
         let mut expected = [0; HASH];
         file.read_exact(&mut expected).map_err(read)?;
         if *hash.finalize() != expected {
-            return Err(unfit("its content is damaged"));
+            return Err(unfit("the checkpoint is damaged"));
         }
 
         let mut words = BufReader::new(File::open(path).map_err(read)?.take(content));
@@ -224,39 +227,39 @@ impl Saved {
         Ok(Self { path: path.to_owned(), head, words: Some(words) })
     }
 
-    /// A checkpoint as ranks other than the first have it: the first one reads for all.
+    /// Returns the placeholder for ranks other than the first, which reads the checkpoint for all.
     #[must_use]
     pub fn elsewhere() -> Self {
         Self { path: PathBuf::new(), head: String::new(), words: None }
     }
 
-    /// What the caller wanted to be told.
+    /// Returns the head that the caller had set.
     #[must_use]
     pub fn head(&self) -> &str {
         &self.head
     }
 
-    /// Restores the state that `show` shows, if it is of the stage with this identity, and returns what `show` returns. All
-    /// ranks take part, the first one reads.
+    /// Restores the state that `visit` passes to its visitor, if it is of the stage with this identity, and returns the
+    /// result of `visit`. All ranks take part; the first one reads.
     pub(crate) fn restore<T>(
         self,
         comm: &dyn Communicator,
         identity: &[i64],
-        show: impl FnOnce(&mut dyn Visitor) -> T,
+        visit: impl FnOnce(&mut dyn Visitor) -> T,
     ) -> Result<T, CheckpointError> {
         let mut restorer = Restorer { comm, words: self.words, outcome: Ok(()) };
         let mut found = identity.to_vec();
         restorer.same(&mut found);
-        let shown = (found == identity).then(|| show(&mut restorer));
+        let visited = (found == identity).then(|| visit(&mut restorer));
         let left = restorer.words.as_mut().map_or(Ok(0), |words| words.read(&mut [0]));
-        let outcome = match (shown, restorer.outcome, left) {
-            (Some(shown), Ok(()), Ok(0)) => Ok(shown),
+        let outcome = match (visited, restorer.outcome, left) {
+            (Some(visited), Ok(()), Ok(0)) => Ok(visited),
             (_, Err(source), _) | (.., Err(source)) if source.kind() != io::ErrorKind::UnexpectedEof => {
                 Err(CheckpointError::Read { path: self.path, source })
             }
             _ if !comm.is_first() => Err(CheckpointError::Elsewhere { rank: 0 }),
             _ => {
-                let why = "it is of another stage, scene or pipeline".into();
+                let why = "the checkpoint belongs to another stage, scene or pipeline".into();
                 Err(CheckpointError::Unfit { path: self.path, why })
             }
         };
@@ -277,10 +280,10 @@ impl Write for HashWriter<'_> {
     }
 }
 
-/// Puts back a state that was saved: sums to the first rank, what all ranks have alike to all.
+/// Visitor that restores a saved state: sums on the first rank, identical numbers on all ranks.
 struct Restorer<'a> {
     comm: &'a dyn Communicator,
-    /// Only the first rank reads.
+    /// Reader of the first rank; `None` on other ranks.
     words: Option<BufReader<io::Take<File>>>,
     outcome: io::Result<()>,
 }

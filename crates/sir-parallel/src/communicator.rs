@@ -1,25 +1,25 @@
-//! The processes that work on one run.
+//! Communication between the processes of a run.
 
-/// The processes, or *ranks*, that work on one run together.
+/// Processes, or *ranks*, that work on one run together.
 ///
-/// All that they ever need is the sum of whole numbers over all ranks: a number that only one of them knows reaches the others
-/// by being added to their zeros, and what is true of some rank is true if a count of them is not zero.
+/// The only collective operation is the integer sum over all ranks. A broadcast is a sum to which all other ranks
+/// contribute zeros; a logical or is a count that is not zero.
 pub trait Communicator {
-    /// The number of this process, from 0.
+    /// Returns the number of this process, from 0.
     fn rank(&self) -> usize;
 
-    /// How many processes there are.
+    /// Returns the number of processes.
     fn size(&self) -> usize;
 
-    /// Replaces every number by its sum over all ranks. All ranks must call this with equally many numbers.
+    /// Replaces every number by its sum over all ranks. All ranks must call this with the same number of words.
     fn sum(&self, words: &mut [i64]);
 
-    /// Whether this is the rank that prints and writes.
+    /// Returns true for the rank that prints and writes files.
     fn is_first(&self) -> bool {
         self.rank() == 0
     }
 
-    /// The first of the ranks for which `failed` is true. This is how all of them learn that one cannot go on.
+    /// Returns the first rank for which `failed` is true, so that all ranks learn that one of them cannot continue.
     fn first_failed(&self, failed: bool) -> Option<usize> {
         let mut who = vec![0; self.size()];
         who[self.rank()] = i64::from(failed);
@@ -27,7 +27,7 @@ pub trait Communicator {
         who.iter().position(|&failed| failed != 0)
     }
 
-    /// Replaces the numbers of all ranks by those of the first.
+    /// Replaces the numbers of all ranks by those of the first rank.
     fn broadcast(&self, words: &mut [i64]) {
         if !self.is_first() {
             words.fill(0);
@@ -36,7 +36,7 @@ pub trait Communicator {
     }
 }
 
-/// One process by itself.
+/// Run of a single process.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SingleProcess;
 

@@ -1,4 +1,4 @@
-//! The driver: runs any stage with an executor, from its beginning or from a checkpoint.
+//! Driver that runs any stage with an executor, from the start or from a checkpoint.
 
 use sir_radiosity::{SolveError, Stage, StageTotals};
 
@@ -9,31 +9,31 @@ use crate::remaining::Remaining;
 use crate::slices::Slices;
 use crate::time::StageTime;
 
-/// What a stage starts from.
+/// Starting point of a stage.
 #[derive(Debug)]
 pub enum Start<I> {
-    /// Its input: the outcome of the stage before it, or `()`.
+    /// Input of the stage: the outcome of the previous stage, or `()`.
     Fresh(I),
-    /// A checkpoint of the same stage, which holds all that it needs.
+    /// Checkpoint of the same stage, which holds everything that the stage needs.
     Resumed(Saved),
 }
 
-/// The outcome of a stage and how long it took.
+/// Outcome of a stage, with its run time.
 #[derive(Clone, Debug)]
 pub struct StageRun<T> {
-    /// What the stage made: the same on all ranks.
+    /// Outcome of the stage, the same on all ranks.
     pub outcome: T,
     /// Wall-clock time.
     pub time: StageTime,
-    /// Number of batches or replicas in which the lines were traced; 1 if what a line carries does not depend on other lines.
+    /// Number of batches or replicas in which the lines were traced; 1 if lines are independent of each other.
     pub batches: u64,
 }
 
-/// A stage under way on this rank.
+/// State of a running stage on this rank.
 struct State<S: Stage> {
     stage: S,
     remaining: Remaining<S::Chain>,
-    /// What this rank has counted.
+    /// Totals of this rank.
     totals: StageTotals,
 }
 
@@ -42,7 +42,8 @@ impl Executor<'_> {
     ///
     /// # Errors
     ///
-    /// If the stage cannot begin, a tally overflowed, the observer wants to stop, or a checkpoint cannot be saved or restored.
+    /// If the stage cannot begin, a tally overflows, the observer asks to stop, or a checkpoint cannot be saved or
+    /// restored.
     pub fn run<S: Stage>(
         &mut self,
         settings: S::Settings,
@@ -82,14 +83,14 @@ impl<S: Stage> State<S> {
         Ok(restored?)
     }
 
-    /// Returns how many lines are done and how many there will be, if so many units of this round are left.
+    /// Returns the number of lines done and the expected total, if `left` units of this round are left.
     fn progress(&self, left: u64) -> (u64, u64) {
         let weight = self.stage.lines_per_unit();
         let done = self.stage.round().end - left;
         (done.saturating_mul(weight), self.stage.expected().saturating_mul(weight))
     }
 
-    /// Traces the units of a round that are left.
+    /// Traces the remaining units of the round.
     fn trace_round(&mut self, slices: &mut Slices<'_, '_>) -> Result<(), RunError> {
         let mut left = self.remaining.left(slices);
         while left > 0 {
@@ -106,13 +107,13 @@ impl<S: Stage> State<S> {
             let (done, total) = self.progress(left);
             slices.progress(done, total);
         }
-        if self.stage.round().end >= self.stage.expected() && slices.is_late() {
+        if self.stage.round().end >= self.stage.expected() && slices.is_due_at_end() {
             self.save(slices)?;
         }
         Ok(())
     }
 
-    /// Adds up what all ranks have traced, and goes on to the next round. Returns false if there is none.
+    /// Sums the tallies of the round over all ranks and advances to the next round. Returns false if there is none.
     fn next_round(&mut self, slices: &mut Slices<'_, '_>) -> bool {
         slices.add_up(|visitor| self.stage.visit_round(visitor));
         let another = self.stage.advance(&slices.threads());

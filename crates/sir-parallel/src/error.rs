@@ -1,4 +1,4 @@
-//! Errors.
+//! Error types.
 
 use std::io;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use sir_radiosity::SolveError;
 use thiserror::Error;
 
-/// Why a stage did not finish.
+/// Error of a stage that did not finish.
 #[derive(Debug, Error)]
 pub enum RunError {
     /// The light cannot be computed.
@@ -15,47 +15,47 @@ pub enum RunError {
     /// The observer asked to stop.
     #[error("interrupted after {done} of {total} lines")]
     Interrupted {
-        /// Lines done.
+        /// Number of lines done.
         done: u64,
-        /// Lines asked for.
+        /// Total number of lines.
         total: u64,
     },
-    /// A checkpoint could not be saved or restored.
+    /// A checkpoint cannot be saved or restored.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
 }
 
-/// Why a checkpoint cannot be saved or restored.
+/// Error while saving or restoring a checkpoint.
 #[derive(Debug, Error)]
 pub enum CheckpointError {
-    /// It cannot be written. The one before it is still there.
-    #[error("cannot write the checkpoint {}; make room for it, or take another directory (an earlier checkpoint is still whole, and the run can be resumed from it)", path.display())]
+    /// The checkpoint cannot be written. The previous one is still there.
+    #[error("cannot write the checkpoint {}; free disk space or use another directory (an earlier checkpoint is still intact, and the run can be resumed from it)", path.display())]
     Write {
-        /// The file.
+        /// Path of the checkpoint.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// It cannot be read.
+    /// The checkpoint cannot be read.
     #[error("cannot read the checkpoint {}", path.display())]
     Read {
-        /// The file.
+        /// Path of the checkpoint.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// Another rank could not save or restore it; it says why.
+    /// Another rank cannot save or restore the checkpoint. The error of that rank has the reason.
     #[error("rank {rank} cannot save or restore the checkpoint")]
     Elsewhere {
-        /// The rank.
+        /// Rank that failed.
         rank: usize,
     },
-    /// It is not what this program wrote.
-    #[error("{} is not a checkpoint that can be resumed: {why}", path.display())]
+    /// The file is no valid checkpoint of this program, or does not belong to the stage.
+    #[error("cannot resume from {}: {why}", path.display())]
     Unfit {
-        /// The file.
+        /// Path of the checkpoint.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Reason.
         why: String,
     },
 }

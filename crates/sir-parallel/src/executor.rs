@@ -1,4 +1,4 @@
-//! Who runs a stage: ranks, threads, an observer, and where the state is saved.
+//! Execution context of stages.
 
 use std::num::NonZeroUsize;
 use std::thread;
@@ -11,19 +11,20 @@ use crate::observer::{NoProgress, Observer};
 
 /// Execution context: ranks, threads, observer, checkpoints.
 pub struct Executor<'a> {
-    /// The ranks.
+    /// Ranks of the run.
     pub comm: &'a dyn Communicator,
-    /// Threads of this rank.
+    /// Number of threads of this rank.
     pub threads: NonZeroUsize,
-    /// Gets the progress, and may stop the stage.
+    /// Observer, which receives the progress and can stop the stage.
     pub observer: Box<dyn Observer + 'a>,
-    /// Where and how often the state is saved, if it is.
+    /// Checkpoint settings; `None` if no state is saved.
     pub checkpoints: Option<&'a mut Checkpoints>,
-    /// Results of stages before that a resumed run still needs: saved and restored with the state of the stage.
+    /// Results of earlier stages that a resumed run still needs. They are saved and restored with the state of the
+    /// stage.
     pub prior: Option<Prior<'a>>,
 }
 
-/// Shows to a visitor what all ranks hold identically.
+/// Function that passes results of earlier stages to a visitor. All ranks must hold them identically.
 pub type Prior<'a> = Box<dyn FnMut(&mut dyn Visitor) + 'a>;
 
 /// Returns the number of processor cores that this process may use.
@@ -33,14 +34,14 @@ pub fn cores() -> NonZeroUsize {
 }
 
 impl Default for Executor<'_> {
-    /// Returns all cores of this machine, without an observer and without checkpoints.
+    /// Returns an executor with all cores of this machine, without an observer and without checkpoints.
     fn default() -> Self {
         Self::new(cores())
     }
 }
 
 impl<'a> Executor<'a> {
-    /// Returns some threads of this process, without an observer and without checkpoints.
+    /// Returns an executor with this number of threads in one process, without an observer and without checkpoints.
     #[must_use]
     pub fn new(threads: NonZeroUsize) -> Self {
         Self { comm: &SingleProcess, threads, observer: Box::new(NoProgress), checkpoints: None, prior: None }

@@ -1,29 +1,32 @@
-//! Who runs which lines: threads, MPI ranks, and restarts.
+//! Parallel execution of line tracing: threads, MPI ranks, and checkpoints.
 //!
-//! [`Solver`] is the way in: ten lines from a scene to its light.
+//! [`Solver`] is the entry point: it computes the light in a scene in ten lines of code.
 //!
 //! # Design
 //!
-//! A [`Stage`](sir_radiosity::Stage) is some rounds of lines. A line is a pure function of its index, and what lines change are
-//! integers to which they only add. So the result is the same whoever traces which lines, in whatever order. This crate decides
-//! who does; what a line does is none of its business. One driver, [`Executor::run`], runs all stages.
+//! A [`Stage`](sir_radiosity::Stage) consists of rounds of lines. A line is a pure function of its index, and lines
+//! only add to integers. Therefore the result does not depend on which worker traces which line, nor on their order.
+//! This crate distributes lines over workers; it does not know what a line computes. One driver, [`Executor::run`],
+//! runs all stages.
 //!
-//! * An [`Executor`] is some ranks with some threads each. Threads take small blocks of lines from a common counter and write
-//!   to the same tallies; ranks have equal shares of the lines, and add up their tallies at the end of each round.
-//! * Where the lines of a stage are divided into chains, as in multipath, whose lines depend on those before them, threads and ranks share chains
-//!   instead of lines.
-//! * A [`Communicator`] does one thing: it replaces numbers by their sums over all ranks. [`SingleProcess`] is a process by itself;
-//!   [`connect`] gives MPI if the crate was built with the feature `mpi`.
-//! * The state of a stage is a sequence of numbers that a [`Visitor`](sir_radiosity::Visitor) sees. One visitor adds them up
-//!   over the ranks, one saves them ([`Checkpoints`]), one restores them ([`Saved`]). A checkpoint holds sums over all
-//!   workers, so any number of them can go on from it. Results of stages before that are still needed go with it
-//!   ([`Prior`]). A stage starts [`Fresh`](Start::Fresh) from its input, or [`Resumed`](Start::Resumed) from a checkpoint.
+//! * An [`Executor`] has a number of ranks with a number of threads each. Threads take small blocks of lines from a
+//!   shared counter and write to shared tallies. Ranks trace equal shares of the lines and sum their tallies at the end
+//!   of each round.
+//! * The lines of some stages form chains, as in multipath, in which each line depends on the ones before it. Threads
+//!   and ranks then share chains instead of lines.
+//! * A [`Communicator`] has one operation: it replaces numbers by their sums over all ranks. [`SingleProcess`] is the
+//!   trivial case of one process; [`connect`] returns the MPI ranks if the crate was built with the feature `mpi`.
+//! * The state of a stage is a sequence of numbers that are passed to a [`Visitor`](sir_radiosity::Visitor). One
+//!   visitor sums them over the ranks, one saves them ([`Checkpoints`]), one restores them ([`Saved`]). A checkpoint
+//!   holds sums over all workers, so any number of workers can resume from it. It also holds the results of earlier
+//!   stages that are still needed ([`Prior`]). A stage starts [`Fresh`](Start::Fresh) from its input or
+//!   [`Resumed`](Start::Resumed) from a checkpoint.
 //! * Four times a second all ranks agree on how many lines to trace next, whether to save, and whether to stop. This
-//!   changes nothing in the result.
+//!   does not change the result.
 //!
 //! # Example
 //!
-//! The light in a closed box, by one thread and by three:
+//! The light in a closed box, computed with one thread and with three:
 //!
 //! ```
 //! use std::num::NonZeroUsize;

@@ -1,4 +1,4 @@
-//! Ranks that talk to each other by MPI.
+//! Ranks that communicate by MPI.
 
 use std::cell::RefCell;
 
@@ -10,10 +10,10 @@ use mpi::traits::{Communicator as _, CommunicatorCollectives as _};
 
 use crate::communicator::Communicator;
 
-/// Numbers in one message: MPI counts in 32 bits, and a chunk of 512 kB stays in the cache.
+/// Largest number of words in one message: MPI counts in 32 bits, and a chunk of 512 kB stays in the cache.
 const CHUNK: usize = 1 << 16;
 
-/// All processes that were started together. When it is dropped, MPI ends.
+/// All processes that were started together. Dropping it finalizes MPI.
 pub(crate) struct World {
     world: SimpleCommunicator,
     chunk: RefCell<Vec<i64>>,
@@ -21,12 +21,12 @@ pub(crate) struct World {
 }
 
 impl World {
-    /// Starts MPI. Only the calling thread will use it.
+    /// Initializes MPI. Only the calling thread may use it afterwards. Returns `None` if MPI was initialized before.
     pub(crate) fn new() -> Option<Self> {
         let (universe, _) = mpi::initialize_with_threading(Threading::Funneled)?;
         let world = universe.world();
         if world.size() > 1 {
-            // A rank that panics would leave the others waiting for it.
+            // Without this, the other ranks would wait forever for a rank that panics.
             let report = std::panic::take_hook();
             std::panic::set_hook(Box::new(move |panic| {
                 report(panic);

@@ -1,17 +1,18 @@
-//! Watching and stopping a stage.
+//! Progress reports and interruption of a stage.
 
-/// Watches a stage, and may stop it.
+/// Observer of a stage. It receives progress reports and can stop the stage.
 pub trait Observer {
-    /// Called a few times a second with the number of lines done so far and in all.
+    /// Reports the number of lines done and the total. Called several times a second.
     fn progress(&mut self, done: u64, total: u64);
 
-    /// Asked a few times a second: whether to give up. If so, the state is saved where there are checkpoints.
+    /// Returns true if the stage should stop; its state is then saved if checkpoints are enabled. Called several times
+    /// a second.
     fn should_stop(&self) -> bool {
         false
     }
 }
 
-/// An observer that says nothing and lets everything finish.
+/// Observer that ignores progress and never stops a stage.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoProgress;
 

@@ -1,4 +1,4 @@
-//! The units of a round that are still to be traced, and how ranks and threads share them.
+//! Remaining units of a round, and their distribution over ranks and threads.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use crate::communicator::Communicator;
 use crate::slices::{Control, Slices};
 use crate::threads::{each, trace_blocks};
 
-/// The units of a round that are still to be traced.
+/// Units of a round that are still to be traced.
 pub(crate) struct Remaining<C> {
     round: Range<u64>,
     lines_per_unit: u64,
@@ -19,16 +19,17 @@ pub(crate) struct Remaining<C> {
     units: Units<C>,
 }
 
-/// How the units of a round are shared.
+/// Remaining units of a round, by the order in which they must be traced.
 enum Units<C> {
-    /// In any order: those from `next` on are left. Ranks have equal shares of every slice, threads take blocks of them.
+    /// Any order: the units from `next` on are left. Ranks trace equal shares of every slice, threads take blocks of
+    /// them.
     AnyOrder { next: u64 },
-    /// In chains. Those whose numbers leave the remainder `rank` when divided by the number of ranks belong to this rank; its
-    /// threads take them one after the other.
+    /// Chains. A chain belongs to the rank that is its number modulo the number of ranks. The threads of the rank take
+    /// the waiting chains one after the other.
     Chains { count: u64, waiting: VecDeque<Task<C>> },
 }
 
-/// A chain of this rank that is not done; it has a state once it is under way.
+/// Unfinished chain of this rank. It has a state once it is started.
 struct Task<C> {
     number: u64,
     units: Range<u64>,
@@ -56,19 +57,20 @@ impl<C: Chain> Remaining<C> {
         Self { round, lines_per_unit: stage.lines_per_unit(), rank, ranks, units }
     }
 
-    /// Agrees with all ranks on how many units are left.
+    /// Returns the number of units left on all ranks together. All ranks must call this.
     pub(crate) fn left(&self, slices: &mut Slices<'_, '_>) -> u64 {
         match &self.units {
             Units::AnyOrder { next } => self.round.end - next,
             Units::Chains { waiting, .. } => {
                 let mut left = [waiting.iter().map(Task::left).sum::<u64>() as i64];
-                slices.talk(|comm| comm.sum(&mut left));
+                slices.communicate(|comm| comm.sum(&mut left));
                 left[0] as u64
             }
         }
     }
 
-    /// Traces about `control.lines` lines of all ranks together, of `left` units; this rank traces its part of them.
+    /// Traces this rank's part of about `control.lines` lines of all ranks together. `left` is the number of units left
+    /// on all ranks.
     pub(crate) fn trace<S: Stage<Chain = C>>(
         &mut self,
         stage: &S,
@@ -81,7 +83,7 @@ impl<C: Chain> Remaining<C> {
         let (lines, weight) = (control.lines, self.lines_per_unit);
         match &mut self.units {
             Units::AnyOrder { next } => {
-                // No thread should be idle.
+                // At least one unit for each thread, so that none is idle.
                 let count = (lines / weight).max(control.workers).min(left);
                 let mine = share(count, self.rank, self.ranks);
                 let mine = *next + mine.start..*next + mine.end;
@@ -100,25 +102,25 @@ impl<C: Chain> Remaining<C> {
         }
     }
 
-    /// Returns how many units are left in each chain, of all ranks.
+    /// Returns the number of units left in each chain, for the chains of all ranks.
     pub(crate) fn table(&self, slices: &mut Slices<'_, '_>) -> Vec<i64> {
         let Units::Chains { count, waiting } = &self.units else { return Vec::new() };
         let mut left = vec![0; *count as usize];
         for task in waiting {
             left[task.number as usize] = task.left() as i64;
         }
-        slices.talk(|comm| comm.sum(&mut left));
+        slices.communicate(|comm| comm.sum(&mut left));
         left
     }
 
-    /// Shows what is left to a visitor that saves; `table` is that of now.
+    /// Passes the remaining units to a visitor that saves them. `table` has the number of units left in each chain.
     pub(crate) fn save<S: Stage<Chain = C>>(&mut self, stage: &S, table: &[i64], visitor: &mut dyn Visitor) {
         match &mut self.units {
             Units::AnyOrder { next } => visitor.same(&mut [*next as i64]),
             Units::Chains { count, waiting } => {
                 visitor.same(&mut table.to_vec());
                 for number in under_way(table, &self.round, *count) {
-                    // All ranks take part; those that do not have the chain add zeros.
+                    // All ranks take part. The ranks that do not own the chain add zeros.
                     let mine = waiting.iter_mut().find(|task| task.number == number);
                     match mine.and_then(|task| task.state.as_mut()) {
                         Some(state) => state.visit(&mut AsSum { visitor, mine: true }),
@@ -129,7 +131,7 @@ impl<C: Chain> Remaining<C> {
         }
     }
 
-    /// Restores what was left when it was saved.
+    /// Restores the remaining units of a checkpoint.
     pub(crate) fn restore<S: Stage<Chain = C>>(&mut self, stage: &S, visitor: &mut dyn Visitor) {
         match &mut self.units {
             Units::AnyOrder { next } => {
@@ -161,7 +163,7 @@ impl<C: Chain> Remaining<C> {
     }
 }
 
-/// Returns the chains that are neither done nor untouched.
+/// Returns the numbers of the chains that are started but not done.
 fn under_way(left: &[i64], round: &Range<u64>, count: u64) -> Vec<u64> {
     let length = |number: u64| {
         let units = chain_units(round, number, count);
@@ -170,7 +172,7 @@ fn under_way(left: &[i64], round: &Range<u64>, count: u64) -> Vec<u64> {
     (0..count).filter(|&number| (1..length(number)).contains(&left[number as usize])).collect()
 }
 
-/// Lets every thread trace `quota` units, of one chain or of several.
+/// Traces up to `quota` units on every thread, from one or several chains.
 fn trace_chains<S: Stage>(
     stage: &S,
     threads: usize,
@@ -207,7 +209,7 @@ fn trace_chains<S: Stage>(
     totals
 }
 
-/// Shows what one rank has as a sum over all ranks.
+/// Visitor that passes on the numbers of one rank as a sum over all ranks.
 struct AsSum<'a> {
     visitor: &'a mut dyn Visitor,
     mine: bool,

@@ -1,4 +1,4 @@
-//! Slices of a stage: a few times a second all ranks agree on what to do next.
+//! Slices of a stage: several times a second all ranks agree on what to do next.
 
 use std::time::{Duration, Instant};
 
@@ -14,34 +14,34 @@ use crate::time::StageTime;
 /// Time between two agreements.
 const SLICE: Duration = Duration::from_millis(250);
 
-/// A stage that an executor runs, slice by slice.
+/// Execution of a stage, slice by slice.
 pub(crate) struct Slices<'c, 'a> {
     executor: &'c mut Executor<'a>,
-    /// Numbers that tell the stage from others.
+    /// Words that identify the stage.
     identity: Vec<i64>,
     start: Instant,
-    /// Time spent; `total` is that before a restart.
+    /// Time spent. `total` holds only the time before a restart.
     time: StageTime,
     /// Lines of all workers until the next agreement.
     lines: u64,
-    /// When the current slice began, and its lines.
+    /// Start of the current slice, and its number of lines.
     since: (Instant, u64),
 }
 
-/// What all ranks do next.
+/// Decision on the next slice, the same on all ranks.
 pub(crate) struct Control {
     /// Lines of all workers until the next agreement.
     pub(crate) lines: u64,
     /// Number of threads of all ranks.
     pub(crate) workers: u64,
-    /// True if the state is to be saved before.
+    /// True if the state is to be saved before the slice.
     pub(crate) save: bool,
-    /// True if the stage is to be given up.
+    /// True if the stage is to stop.
     pub(crate) stop: bool,
 }
 
 impl<'c, 'a> Slices<'c, 'a> {
-    /// Begins a stage; `identity` tells it from other stages, whose checkpoints it cannot use.
+    /// Begins a stage. `identity` distinguishes it from other stages, whose checkpoints it cannot use.
     pub(crate) fn begin(executor: &'c mut Executor<'a>, identity: &[u64]) -> Self {
         let now = Instant::now();
         let lines = BLOCK * (executor.comm.size() * executor.threads.get()) as u64;
@@ -58,21 +58,21 @@ impl<'c, 'a> Slices<'c, 'a> {
         Threads(self.executor.threads)
     }
 
-    /// Returns the time so far.
+    /// Returns the time spent so far.
     pub(crate) fn time(&self) -> StageTime {
         StageTime { total: self.time.total + self.start.elapsed(), ..self.time }
     }
 
-    /// Tells the observer how many lines are done, of how many.
+    /// Reports the number of lines done, and the total, to the observer.
     pub(crate) fn progress(&mut self, done: u64, total: u64) {
         self.executor.observer.progress(done, total);
     }
 
-    /// Agrees with all ranks on what to do next: the first one decides, but each may want to stop.
+    /// Agrees with all ranks on the next slice. The first rank decides, but any rank can ask to stop.
     pub(crate) fn agree(&mut self) -> Control {
         let (since, lines) = self.since;
         if lines > 0 {
-            // Not too bold: the rate may be that of a few lucky lines.
+            // The change is limited, because the rate of a few lines is not reliable.
             let wanted = lines as f64 * SLICE.as_secs_f64() / since.elapsed().as_secs_f64().max(1e-6);
             self.lines = (wanted as u64).clamp(self.lines / 2, 4 * self.lines).clamp(64, 1 << 40);
         }
@@ -81,27 +81,27 @@ impl<'c, 'a> Slices<'c, 'a> {
         let stop = self.executor.observer.should_stop();
         let lines = if first { self.lines as i64 } else { 0 };
         let mut words = [i64::from(stop), i64::from(due), lines, self.executor.threads.get() as i64];
-        self.talk(|comm| comm.sum(&mut words));
+        self.communicate(|comm| comm.sum(&mut words));
         let [stop, due, lines, workers] = words;
         self.lines = lines as u64;
         self.since = (Instant::now(), 0);
         Control { lines: self.lines, workers: workers as u64, save: stop + due > 0, stop: stop > 0 }
     }
 
-    /// Notes how many lines all workers have traced since the last agreement.
+    /// Records the number of lines that all workers have traced since the last agreement.
     pub(crate) fn traced(&mut self, lines: u64) {
         self.since.1 = lines;
     }
 
-    /// Exchanges numbers with other ranks.
-    pub(crate) fn talk<T>(&mut self, exchange: impl FnOnce(&dyn Communicator) -> T) -> T {
+    /// Calls `exchange` with the ranks, and counts its time as communication.
+    pub(crate) fn communicate<T>(&mut self, exchange: impl FnOnce(&dyn Communicator) -> T) -> T {
         let start = Instant::now();
         let outcome = exchange(self.executor.comm);
         self.time.communication += start.elapsed();
         outcome
     }
 
-    /// Traces lines: the time of whatever `work` does counts as such.
+    /// Calls `work` and counts its time as tracing.
     pub(crate) fn tracing<T>(&mut self, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let outcome = work();
@@ -109,27 +109,27 @@ impl<'c, 'a> Slices<'c, 'a> {
         outcome
     }
 
-    /// Adds up, over all ranks, what is shown; all of them then have the sums.
-    pub(crate) fn add_up(&mut self, show: impl FnOnce(&mut dyn Visitor)) {
+    /// Replaces the visited numbers by their sums over all ranks.
+    pub(crate) fn add_up(&mut self, visit: impl FnOnce(&mut dyn Visitor)) {
         if self.executor.comm.size() > 1 {
-            self.talk(|comm| show(&mut Adder(comm)));
+            self.communicate(|comm| visit(&mut Adder(comm)));
         }
     }
 
-    /// True if, at the end of a stage, so much time has passed since the last checkpoint that there should be another one.
-    pub(crate) fn is_late(&mut self) -> bool {
+    /// Returns true if a checkpoint is due at the end of a stage, because the last one is old enough.
+    pub(crate) fn is_due_at_end(&mut self) -> bool {
         let first = self.executor.comm.is_first();
-        let late = first && self.executor.checkpoints.as_ref().is_some_and(|c| c.are_late());
-        let mut late = [i64::from(late)];
-        self.talk(|comm| comm.sum(&mut late));
-        late[0] > 0
+        let due = first && self.executor.checkpoints.as_ref().is_some_and(|c| c.are_due_at_end());
+        let mut due = [i64::from(due)];
+        self.communicate(|comm| comm.sum(&mut due));
+        due[0] > 0
     }
 
-    /// Restores the state that `show` shows, and returns what `show` returns.
+    /// Restores the state that `visit` passes to its visitor, and returns the result of `visit`.
     pub(crate) fn restore<T>(
         &mut self,
         saved: Saved,
-        show: impl FnOnce(&mut dyn Visitor) -> T,
+        visit: impl FnOnce(&mut dyn Visitor) -> T,
     ) -> Result<T, CheckpointError> {
         let Executor { comm, prior, .. } = &mut *self.executor;
         let time = &mut self.time;
@@ -138,12 +138,12 @@ impl<'c, 'a> Slices<'c, 'a> {
                 prior(visitor);
             }
             time.visit(visitor);
-            show(visitor)
+            visit(visitor)
         })
     }
 
-    /// Saves the state that `show` shows, if there are checkpoints.
-    pub(crate) fn save(&mut self, show: &mut dyn FnMut(&mut dyn Visitor)) -> Result<(), CheckpointError> {
+    /// Saves the state that `visit` passes to its visitor, if checkpoints are enabled.
+    pub(crate) fn save(&mut self, visit: &mut dyn FnMut(&mut dyn Visitor)) -> Result<(), CheckpointError> {
         let mut time = self.time();
         let Executor { comm, checkpoints, prior, .. } = &mut *self.executor;
         match checkpoints {
@@ -152,14 +152,14 @@ impl<'c, 'a> Slices<'c, 'a> {
                     prior(visitor);
                 }
                 time.visit(visitor);
-                show(visitor);
+                visit(visitor);
             }),
             None => Ok(()),
         }
     }
 }
 
-/// Adds up a state over all ranks.
+/// Visitor that sums a state over all ranks.
 struct Adder<'a>(&'a dyn Communicator);
 
 impl Visitor for Adder<'_> {

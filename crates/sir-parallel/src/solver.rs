@@ -1,4 +1,4 @@
-//! A solver in ten lines.
+//! High-level solver: from a scene to its light in ten lines of code.
 
 use std::num::NonZeroUsize;
 
@@ -14,10 +14,12 @@ use crate::driver::Start;
 use crate::error::RunError;
 use crate::executor::{Executor, cores};
 
-/// Computes the light in a scene, on all cores of this machine: a first shot, an optional second shot, and multipath in batches.
+/// Solver for the light in a scene: a first shot, an optional second shot, and multipath in batches. By default it uses
+/// all cores of this machine.
 ///
-/// Without other settings it uses 10,000 patches, 1,000,000 lines in the first shot, 2,000,000 global lines through the
-/// convex hull, and the seed 1. One scene, one set of settings and one seed give the same bits on any number of threads.
+/// The default settings are 10,000 patches, 1,000,000 lines in the first shot, 2,000,000 global lines through the
+/// convex hull, and the seed 1. The same scene, settings and seed give bit-identical results with any number of
+/// threads.
 ///
 /// ```
 /// use sir_geom::{Material, Rgb, SceneBuilder, shapes::{self, Facing}};
@@ -48,7 +50,7 @@ pub struct Solver {
     threads: NonZeroUsize,
 }
 
-/// Why the light was not computed.
+/// Error of the solver.
 #[derive(Debug, Error)]
 pub enum SolverError {
     /// The scene cannot be prepared.
@@ -59,25 +61,25 @@ pub enum SolverError {
     Run(#[from] RunError),
 }
 
-/// A scene with its light.
+/// Scene with its light.
 #[derive(Clone, Debug)]
 pub struct Solved {
     /// The scene and its patches.
     pub model: Model,
     /// Irradiance of all sides of patches, with standard errors \[W/m²\].
     pub solution: Solution,
-    /// Power received by each side: the exact tallies, whose [hash](Received::hash) identifies the result.
+    /// Power received by each side, in quanta: the exact tallies, whose [hash](Received::hash) identifies the result.
     pub received: Received,
 }
 
-/// The light of one side of a patch.
+/// Light of one side of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SideLight {
-    /// The triangle that the patch is a part of.
+    /// Triangle that contains the patch.
     pub triangle: TriangleId,
-    /// The patch.
+    /// Patch.
     pub patch: PatchId,
-    /// Which side of it.
+    /// Side of the patch.
     pub side: Side,
     /// Irradiance per band \[W/m²\].
     pub irradiance: Rgb,
@@ -103,13 +105,13 @@ impl Solver {
         }
     }
 
-    /// Sets about how many patches the scene is cut into.
+    /// Sets the approximate number of patches.
     #[must_use]
     pub fn patches(self, count: u64) -> Self {
         self.subdivision(Subdivision::Patches(count))
     }
 
-    /// Sets how the scene is cut into patches.
+    /// Sets the subdivision of the scene into patches.
     #[must_use]
     pub fn subdivision(mut self, subdivision: Subdivision) -> Self {
         self.subdivision = subdivision;
@@ -123,7 +125,7 @@ impl Solver {
         self
     }
 
-    /// Adds a second shot of so many lines.
+    /// Adds a second shot with this number of lines.
     #[must_use]
     pub fn second_shot(mut self, lines: impl Into<LocalLines>) -> Self {
         self.second = Some(lines.into());
@@ -137,7 +139,7 @@ impl Solver {
         self
     }
 
-    /// Sets what global lines are drawn through instead of the convex hull of the scene.
+    /// Sets the domain of the global lines. The default is the convex hull of the scene.
     #[must_use]
     pub fn domain(mut self, domain: Domain) -> Self {
         self.domain = Some(domain);
@@ -151,7 +153,7 @@ impl Solver {
         self
     }
 
-    /// Sets the number of threads, which does not change the result.
+    /// Sets the number of threads. It does not change the result.
     #[must_use]
     pub fn threads(mut self, threads: NonZeroUsize) -> Self {
         self.threads = threads;
@@ -162,17 +164,18 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// If the scene cannot be cut into patches, nothing emits, or a tally overflowed.
+    /// If the scene cannot be cut into patches, nothing emits, or a tally overflows.
     pub fn solve(self) -> Result<Solved, SolverError> {
         let threads = self.threads;
         self.solve_with(&mut Executor::new(threads))
     }
 
-    /// Computes the light with an executor: with an observer, or with the other processes of an MPI run.
+    /// Computes the light with the given executor, for example with an observer or with the ranks of an MPI run. The
+    /// number of threads is that of the executor.
     ///
     /// # Errors
     ///
-    /// As [`solve`](Self::solve), or if the observer wants to stop.
+    /// As for [`solve`](Self::solve), or if the observer asks to stop.
     pub fn solve_with(self, executor: &mut Executor<'_>) -> Result<Solved, SolverError> {
         let Self { scene, subdivision, first, second, global, domain, seed, .. } = self;
         let model = Model::new(scene, subdivision)?;
@@ -195,7 +198,7 @@ impl Solver {
 }
 
 impl Solved {
-    /// Calls a function with the light of every active side of every patch.
+    /// Calls `visit` with the light of every active side of every patch.
     pub fn for_each_side(&self, mut visit: impl FnMut(SideLight)) {
         let Self { model, solution, .. } = self;
         model.mesh.for_each_side(|triangle, patch, side, id: SideId| {

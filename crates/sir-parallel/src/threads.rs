@@ -7,13 +7,13 @@ use std::thread;
 
 use sir_radiosity::{Job, StageTotals, Workers};
 
-/// Most lines that a thread takes at a time: some milliseconds of work.
+/// Largest number of lines in a block: several milliseconds of work for a thread.
 pub(crate) const BLOCK: u64 = 1 << 10;
 
-/// Fewest lines that a thread takes at a time.
+/// Smallest number of lines in a block.
 const SMALLEST_BLOCK: u64 = 16;
 
-/// A number of threads, started for each piece of work.
+/// Number of threads. They are started anew for each task.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Threads(pub(crate) NonZeroUsize);
 
@@ -27,7 +27,8 @@ impl Workers for Threads {
     }
 }
 
-/// Applies a function to every item, with a thread each; the calling thread takes the first. Returns the results in order.
+/// Applies a function to every item, each on its own thread; the calling thread takes the first item. Returns the
+/// results in order.
 pub(crate) fn each<I: Send, T: Send>(
     items: impl IntoIterator<Item = I>,
     function: impl Fn(I) -> T + Sync,
@@ -43,12 +44,13 @@ pub(crate) fn each<I: Send, T: Send>(
     })
 }
 
-/// Waits for a thread; if it panicked, so does this one.
+/// Waits for a thread and propagates its panic.
 fn join<T>(handle: thread::ScopedJoinHandle<'_, T>) -> T {
     handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
-/// Traces units of so many lines on several threads, which take blocks of them from a common counter. Returns the sum of their totals.
+/// Traces units of `lines_per_unit` lines each on several threads, which take blocks of units from a shared counter.
+/// Returns the sum of their totals.
 pub(crate) fn trace_blocks(
     threads: usize,
     units: Range<u64>,
@@ -56,7 +58,7 @@ pub(crate) fn trace_blocks(
     trace: impl Fn(usize, Range<u64>, &mut StageTotals) + Sync,
 ) -> StageTotals {
     let length = units.end - units.start;
-    // Towards the end of few units no thread should wait for long.
+    // Small blocks if there are few units, so that no thread waits long for the others at the end.
     let smallest = SMALLEST_BLOCK.div_ceil(lines_per_unit);
     let block = (BLOCK / lines_per_unit).min(length / (8 * threads as u64)).max(smallest);
     let next = AtomicU64::new(units.start);

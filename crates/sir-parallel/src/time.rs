@@ -7,22 +7,22 @@ use sir_radiosity::Visitor;
 /// Wall-clock time of a stage on this rank.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StageTime {
-    /// All of it, set-up included.
+    /// Total time, including setup.
     pub total: Duration,
-    /// Tracing lines, which all threads do.
+    /// Time for tracing lines, on all threads in parallel.
     pub tracing: Duration,
-    /// Exchanging numbers with other ranks, and waiting for them.
+    /// Time for communication with other ranks, including waiting for them.
     pub communication: Duration,
 }
 
 impl StageTime {
-    /// Returns what is neither tracing nor communication.
+    /// Returns the time that is neither tracing nor communication.
     #[must_use]
     pub fn sequential(&self) -> Duration {
         self.total.saturating_sub(self.tracing + self.communication)
     }
 
-    /// Shows the times to a visitor, in whole microseconds.
+    /// Passes the times to a visitor, in whole microseconds.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
         let times = [&mut self.total, &mut self.tracing, &mut self.communication];
         let mut words = [0; 3];

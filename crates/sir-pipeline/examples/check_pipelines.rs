@@ -1,4 +1,4 @@
-//! Validates pipeline files without running them: all problems of each file, or what it would do.
+//! Validates pipeline files without running them. Prints all problems of each file, or its stages and outputs.
 //!
 //!     cargo run -p sir-pipeline --example check_pipelines -- FILE.ron …
 

@@ -1,4 +1,4 @@
-//! Runs a pipeline without the command line: checks it, runs it, and says what its stages did.
+//! Runs a pipeline from Rust: checks it, runs it, and prints the errors of its stages and its output files.
 //!
 //!     cargo run --release -p sir-pipeline --example run_pipeline
 
@@ -10,7 +10,7 @@ use std::sync::Arc;
 use sir_pipeline::progress::{Meter, StageKind};
 use sir_pipeline::{NoProgress, Progress, RunOptions, check, run};
 
-/// Prints the name of each stage of lines.
+/// Progress display that prints the name of each stage that traces lines.
 #[derive(Debug)]
 struct Names;
 

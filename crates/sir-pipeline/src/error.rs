@@ -1,4 +1,4 @@
-//! Why a run fails.
+//! Errors of this crate.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,13 +13,13 @@ use crate::error_kind::ErrorKind;
 use crate::text::diagnostic::Diagnostics;
 use crate::view_factors::error::ViewFactorsError;
 
-/// Why a run fails. Every message ends with what to do, where that is not obvious.
+/// Error of a run. Every message ends with what to do, unless that is obvious.
 #[derive(Debug, Error)]
 pub enum Error {
     /// The pipeline file has problems.
     #[error(transparent)]
     Pipeline(#[from] Diagnostics),
-    /// The scene cannot be cut into patches, or not be traced.
+    /// The scene cannot be divided into patches, or its acceleration structure cannot be built.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The pipeline file cannot be read.
@@ -27,41 +27,41 @@ pub enum Error {
     ReadPipeline {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// What was given as a pipeline file is no text.
-    #[error("{} is not a text file, but a pipeline is one", path.display())]
+    /// The pipeline file is not text.
+    #[error("{} is not a text file; a pipeline is a text file in RON", path.display())]
     NotText {
         /// The file.
         path: PathBuf,
     },
-    /// What was given as a pipeline file is too long for one.
-    #[error("{} has more than {most} bytes, but a pipeline is a short text", path.display())]
+    /// The pipeline file is too long.
+    #[error("{} has more than {most} bytes; a pipeline is a short text file", path.display())]
     LongPipeline {
         /// The file.
         path: PathBuf,
-        /// The most bytes that are read.
+        /// Largest accepted size \[bytes\].
         most: u64,
     },
     /// The run does not fit the memory of this machine.
     #[error(
-        "the run needs {needed} of memory beside its scene, but {available} are available; make fewer patches or smaller pictures, \
-         end other programs, or take a machine with more memory"
+        "the run needs {needed} of memory in addition to its scene, but only {available} are available; make fewer patches or \
+         smaller pictures, end other programs, or use a machine with more memory"
     )]
     Memory {
-        /// What it needs beside the scene, as `sir check` counts it.
+        /// Memory needed in addition to the scene, as `sir check` counts it.
         needed: String,
-        /// What the operating system can give.
+        /// Memory that the operating system can provide.
         available: String,
     },
-    /// The run directory that was asked for holds a result already.
-    #[error("{} holds a result already; choose another run directory, or allow it to be replaced", directory.display())]
+    /// The requested run directory already holds a result.
+    #[error("{} already holds a result; choose another run directory, or allow it to be replaced", directory.display())]
     Exists {
         /// The directory.
         directory: PathBuf,
     },
-    /// The run directory that was asked for holds an interrupted run.
+    /// The requested run directory holds an interrupted run.
     #[error(
         "{} holds an interrupted run; resume it, choose another run directory, or allow it to be replaced",
         directory.display()
@@ -70,12 +70,12 @@ pub enum Error {
         /// The directory.
         directory: PathBuf,
     },
-    /// The run directory cannot be made.
-    #[error("cannot make the directory {}; choose another", path.display())]
+    /// The run directory cannot be created.
+    #[error("cannot create the directory {}; choose another", path.display())]
     Directory {
         /// The directory.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// The scene cannot be read.
@@ -84,29 +84,29 @@ pub enum Error {
     /// The light cannot be computed.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The run was stopped, and can go on.
+    /// The run was interrupted, and can be resumed.
     #[error("interrupted after {done} of {total} lines; resume the run in {} to continue", directory.display())]
     Interrupted {
-        /// Lines done in this stage.
+        /// Lines traced in this stage.
         done: u64,
-        /// Lines of the stage.
+        /// All lines of the stage.
         total: u64,
         /// The run directory.
         directory: PathBuf,
     },
-    /// The run was stopped while it wrote its files, and can go on.
-    #[error("interrupted while files were written; resume the run in {} to continue from its last checkpoint", directory.display())]
+    /// The run was interrupted while it wrote its files, and can be resumed.
+    #[error("interrupted while writing files; resume the run in {} to continue from its last checkpoint", directory.display())]
     InterruptedSaving {
         /// The run directory.
         directory: PathBuf,
     },
-    /// The run was stopped while it measured at sensors, and can go on.
-    #[error("interrupted at the sensors; resume the run in {} to continue from its last checkpoint", directory.display())]
+    /// The run was interrupted while it measured at sensors, and can be resumed.
+    #[error("interrupted while measuring at sensors; resume the run in {} to continue from its last checkpoint", directory.display())]
     InterruptedMeasuring {
         /// The run directory.
         directory: PathBuf,
     },
-    /// A file of a run cannot be written, for want of space on a disk, for instance.
+    /// A file of a run cannot be written, for example because the disk is full.
     #[error(
         "the run in {} is not complete; free some space or fix the problem below, then resume the run from its last checkpoint",
         directory.display()
@@ -114,21 +114,21 @@ pub enum Error {
     NotWritten {
         /// The run directory.
         directory: PathBuf,
-        /// The file, and what the operating system says.
+        /// The file, and the error of the operating system.
         source: ViewError,
     },
-    /// A run cannot go on.
+    /// A run cannot be resumed.
     #[error("the run in {} cannot be resumed: {why}", directory.display())]
     CannotResume {
         /// The run directory.
         directory: PathBuf,
-        /// Why not, and what to do.
+        /// The reason, and what to do.
         why: String,
     },
-    /// The processes of a run cannot work together.
+    /// The ranks of a run cannot communicate.
     #[error(transparent)]
     Connect(#[from] ConnectError),
-    /// Another rank has failed, and says why.
+    /// Another rank has failed, and reports the reason.
     #[error("rank {rank} failed")]
     Elsewhere {
         /// The rank.
@@ -136,10 +136,10 @@ pub enum Error {
         /// Kind of its error.
         kind: ErrorKind,
     },
-    /// A rank has read something else than the first one.
+    /// A rank has read other input than rank 0.
     #[error(
-        "rank {rank} has read another pipeline or scene than rank 0, or is another version of the program; all machines \
-         must see the same files"
+        "rank {rank} has read another pipeline or scene than rank 0, or runs another version of the program; give all machines \
+         the same files and program"
     )]
     OtherInput {
         /// The rank.
@@ -148,15 +148,15 @@ pub enum Error {
     /// A result cannot be written, read or compared.
     #[error(transparent)]
     View(#[from] ViewError),
-    /// A directory that was to be compared holds no result.
+    /// A directory to be compared holds no result.
     #[error("{} is not a run directory: it has no readable result.json ({why})", directory.display())]
     NoResult {
         /// The directory.
         directory: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         why: String,
     },
-    /// A run that was to be compared has no table.
+    /// A run to be compared has no table.
     #[error("the run in {} wrote no table; add `Table(path: \"patches.csv\")` to its `Save` and run it again", directory.display())]
     NoTable {
         /// The directory.
@@ -174,7 +174,7 @@ impl From<SolveError> for Error {
 }
 
 impl Error {
-    /// Says that a directory cannot be made.
+    /// Returns a function that wraps the error of creating a directory.
     pub fn directory(path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Directory { path: path.to_owned(), source }
     }
@@ -200,14 +200,15 @@ impl Error {
         }
     }
 
-    /// The message, followed by its causes as far as they say something new.
+    /// Returns the message, followed by those of its causes that add something.
     #[must_use]
     pub fn chain(&self) -> String {
         chain(self)
     }
 }
 
-/// The message of an error, followed by those of its causes as far as they say something new.
+/// Returns the message of an error, followed by those of its causes that it does not already contain. Replaces control
+/// characters.
 #[must_use]
 pub fn chain(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();
@@ -219,6 +220,6 @@ pub fn chain(error: &dyn std::error::Error) -> String {
         }
         cause = error.source();
     }
-    // Names of files and of what is in them may play tricks on a terminal.
+    // File names and file contents may hold terminal escape sequences.
     text.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}")
 }

@@ -1,13 +1,13 @@
-//! What kinds of failure there are.
+//! Kinds of errors.
 
-/// What kind of failure an error is. It decides what a program does next.
+/// Kind of an error. It decides how a program reacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// The request is wrong: a pipeline with mistakes, a directory that is taken, a run that cannot be resumed. The same request
-    /// fails again.
+    /// Wrong request: an invalid pipeline, an occupied directory, a run that cannot be resumed. The same request fails
+    /// again.
     Usage,
-    /// Something failed: a file, memory, a computation, another process.
+    /// Failure of a file, of memory, of a computation or of another process.
     Failed,
-    /// Someone asked to stop.
+    /// Stop on request.
     Interrupted,
 }

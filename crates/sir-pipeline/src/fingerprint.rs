@@ -1,4 +1,4 @@
-//! A number that tells scenes, pipelines and programs apart.
+//! Hashes that identify scenes, pipelines and programs.
 
 use sha2::{Digest, Sha256};
 use sir_geom::{Material, Sides};
@@ -9,17 +9,17 @@ use crate::plan::{Action, Pipeline};
 /// Name and version of this program.
 pub const PROGRAM: &str = concat!("sir ", env!("CARGO_PKG_VERSION"));
 
-/// A SHA-256.
+/// SHA-256 hash.
 pub type Fingerprint = [u8; 32];
 
-/// Of everything that decides the result of a run: equal for equal results.
+/// Returns the hash of everything that determines the result of a run: equal hashes mean equal results.
 pub(crate) fn of_run(pipeline: &Pipeline, seed: u64, model: &Model) -> Fingerprint {
     let mut hash = Sha256::new();
     hash.update(PROGRAM);
     hash.update(seed.to_le_bytes());
     hash.update((pipeline.text.len() as u64).to_le_bytes());
     hash.update(&pipeline.text);
-    // The text only names files of points.
+    // The text has only the names of files of points, not their contents.
     for stage in &pipeline.stages {
         if let Action::Sensors(sensors) = &stage.action
             && let Some(sensors) = sensors.at.value.listed()
@@ -33,7 +33,7 @@ pub(crate) fn of_run(pipeline: &Pipeline, seed: u64, model: &Model) -> Fingerpri
     hash.finalize().into()
 }
 
-/// Of the surfaces of a scene, their patches, and its lights.
+/// Returns the hash of the surfaces of a scene, their patches, and its lights.
 pub(crate) fn of_scene(model: &Model) -> Fingerprint {
     let Model { scene, mesh, .. } = model;
     let mut hash = Sha256::new();
@@ -53,18 +53,18 @@ pub(crate) fn of_scene(model: &Model) -> Fingerprint {
     }
     scene.hash_appearance(&mut number);
     number(mesh.patch_count() as u64);
-    // What most scenes do not have changes nothing for them.
+    // Only materials with maps or opacity are hashed here: scenes without them keep their hash.
     for Material { reflectance_map, exitance_map, opacity, .. } in
         scene.materials().iter().filter(|m| !m.is_plain())
     {
         hash.update(format!("{reflectance_map:?} {exitance_map:?} {opacity:?}"));
     }
-    // Every number is written with all of its digits.
+    // `{:?}` writes all digits of a number.
     hash.update(format!("{:?} {:?}", scene.lights(), scene.sky()));
     hash.finalize().into()
 }
 
-/// Of everything that decides the view factors of a scene.
+/// Returns the hash of everything that determines the view factors of a scene.
 pub(crate) fn of_view_factors(
     model: &Model,
     grouping: &Grouping,
@@ -78,7 +78,7 @@ pub(crate) fn of_view_factors(
     hash.finalize().into()
 }
 
-/// In hexadecimal.
+/// Returns a fingerprint in hexadecimal.
 #[must_use]
 pub fn hex(fingerprint: Fingerprint) -> String {
     fingerprint.iter().map(|byte| format!("{byte:02x}")).collect()

@@ -1,8 +1,8 @@
-//! Numbers, sizes, times and names as people read them.
+//! Formats numbers, sizes, times and names for people.
 
 use glam::DVec3;
 
-/// `a`, `b` and `c`.
+/// Returns the names in backticks as an enumeration, such as "`a`, `b` and `c`" with `and` as conjunction.
 #[must_use]
 pub fn list(names: &[&str], and: &str) -> String {
     let quoted: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
@@ -13,7 +13,7 @@ pub fn list(names: &[&str], and: &str) -> String {
     }
 }
 
-/// A whole number with its digits in groups of three, as RON takes it.
+/// Formats a whole number with its digits in groups of three, as RON accepts it: `1_234_567`.
 #[must_use]
 pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
@@ -27,7 +27,7 @@ pub fn grouped(n: u64) -> String {
     out
 }
 
-/// A size in a unit that people can grasp.
+/// Formats a size \[bytes\] with a binary unit of suitable magnitude.
 #[must_use]
 pub fn bytes(n: usize) -> String {
     let (mut x, mut unit) = (n as f64, "B");
@@ -40,7 +40,7 @@ pub fn bytes(n: usize) -> String {
     if unit == "B" { format!("{n} B") } else { format!("{x:.1} {unit}") }
 }
 
-/// A time in a unit that people can grasp.
+/// Formats a time \[s\] with a unit of suitable magnitude.
 #[must_use]
 pub fn duration(seconds: f64) -> String {
     match seconds {
@@ -51,14 +51,14 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// A length, an area or a power to four digits, as a pipeline can read it.
+/// Formats a length, an area or a power with four digits, as a pipeline can read it.
 #[must_use]
 pub fn length(x: f64) -> String {
     // Turns −0 into +0.
     let x = x + 0.0;
     let digits = if x == 0.0 { 0.0 } else { 3.0 - x.abs().log10().floor() };
     match digits {
-        // Of large and small numbers, the power of ten says more.
+        // Very large and very small numbers have an exponent.
         d if !(-4.0..=8.0).contains(&d) => format!("{x:.3e}"),
         d if d > 0.0 => {
             let text = format!("{x:.*}", d as usize);
@@ -68,7 +68,7 @@ pub fn length(x: f64) -> String {
     }
 }
 
-/// A share in per cent.
+/// Formats a share as a percentage.
 #[must_use]
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
@@ -78,7 +78,7 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// Edges of a box.
+/// Formats the edge lengths of a box \[m\].
 #[must_use]
 pub fn dimensions(size: DVec3) -> String {
     format!("{} × {} × {} m", length(size.x), length(size.y), length(size.z))

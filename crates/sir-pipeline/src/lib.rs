@@ -1,24 +1,24 @@
-//! Pipelines: a text file says what to do with a scene, and this crate does it.
+//! Parses, checks and runs pipelines: text files that describe what to do with a scene.
 //!
 //! # Design
 //!
-//! A pipeline file is RON: a list of stages, each of which turns what earlier ones made into something new. The stages
-//! are thin; the work lies in the crates below. What this crate adds is the way from text to files:
+//! A pipeline file is a list of stages in RON. Each stage works on the output of earlier ones. The stages are thin: the
+//! computation is in the lower crates. This crate turns the text into output files, with these properties:
 //!
-//! * *All mistakes of a file at once, each at its place.* serde stops at the first error, so the file is parsed to a
-//!   tree whose nodes know their place, and read with a list of problems ([`text`]). Fields are declared once ([`plan`]): from
-//!   there come the reader, the writer and the tables of the reference. A [`Pipeline`](plan::Pipeline) is valid by
-//!   construction: the order of its stages, its numbers and its paths have been checked, and nothing is written before its scene
-//!   has been read.
-//! * *A library.* It prints nothing, knows no arguments and no signals: a [`Progress`] is told how far a run is, and a flag in
-//!   [`RunOptions`] ends it.
-//! * *A run directory is complete if and only if it holds a `result.json`* ([`report`]), which is written last; files appear whole
-//!   or not at all.
+//! * *All errors of a file are reported at once, each with its position.* serde stops at the first error. This crate
+//!   therefore parses the file to a tree whose nodes know their position, and collects problems while it reads the tree
+//!   ([`text`]). Each field is declared once ([`plan`]); the reader, the writer and the tables of the reference follow
+//!   from the declaration. A [`Pipeline`](plan::Pipeline) is valid by construction: the order of its stages, its
+//!   numbers and its paths have been checked. Nothing is written before the scene has been read.
+//! * *It is a library.* It prints nothing, and handles neither arguments nor signals: a [`Progress`] receives the
+//!   progress of a run, and a flag in [`RunOptions`] stops it.
+//! * *A run directory is complete if and only if it holds a `result.json`* ([`report`]), which is written last. Files
+//!   are written atomically.
 //! * *The same pipeline gives the same bytes,* except for the times in `result.json`.
 //!
-//! # Doors
+//! # Entry points
 //!
-//! [`check`](fn@check) says what a pipeline will do and cost, [`run`](fn@run) does it:
+//! [`check`](fn@check) estimates the cost of a pipeline, [`run`](fn@run) runs it:
 //!
 //! ```
 //! use sir_pipeline::{RunOptions, check, run};
@@ -41,7 +41,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Mistakes are shown with their places:
+//! Errors are shown with their positions:
 //!
 //! ```
 //! use std::path::Path;
@@ -54,16 +54,16 @@
 //! assert!(shown.contains("= help: did you mean `lines`?"));
 //! ```
 //!
-//! # Where things are
+//! # Modules
 //!
-//! | folder | from | to |
+//! | module | input | output |
 //! |---|---|---|
-//! | [`text`] | RON | declared types, or all mistakes |
-//! | [`plan`] | the text of a pipeline | what it says, with every default filled in |
-//! | [`prepare`] | a plan | scene, patches, acceleration structure, places of sensors |
-//! | [`mod@check`] | a plan | memory and time that it will take |
-//! | [`mod@run`] | a plan | light, files and a [`report`]; resuming |
-//! | [`info`] | a scene file | what is in it, and what a pipeline should set |
+//! | [`text`] | RON | declared types, or all errors |
+//! | [`plan`] | the text of a pipeline | the pipeline, with every default filled in |
+//! | [`prepare`] | a plan | scene, patches, acceleration structure, sensor positions |
+//! | [`mod@check`] | a plan | its memory and time |
+//! | [`mod@run`] | a plan | light, files and a [`report`]; also resumes runs |
+//! | [`info`] | a scene file | its contents, and recommended pipeline settings |
 //! | [`view_factors`] | a scene file | view factors of its parts |
 
 pub mod check;

@@ -1,4 +1,4 @@
-//! How much memory there is, and how much of it a run had.
+//! Available memory of the machine, and peak memory of a run.
 
 use std::fs::read_to_string;
 use std::path::Path;
@@ -8,19 +8,19 @@ use sir_parallel::Communicator;
 use crate::error::Error;
 use crate::format::bytes;
 
-/// Most memory that this process has had in use \[bytes\]; `None` if the operating system does not tell.
+/// Returns the peak memory use of this process \[bytes\], or `None` if the operating system does not report it.
 fn peak() -> Option<u64> {
     let status = read_to_string("/proc/self/status").ok()?;
     kilobytes(&status, "VmHWM:")
 }
 
-/// The bytes that a line such as `VmHWM:  1234 kB` of a text from Linux states.
+/// Returns the value \[bytes\] of a line such as `VmHWM:  1234 kB` in a status text of Linux.
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// Most memory that any of the ranks has had in use \[bytes\]. All ranks must call this.
+/// Returns the largest peak memory use of all ranks \[bytes\]. All ranks must call this.
 pub(crate) fn largest_peak(comm: &dyn Communicator) -> Option<u64> {
     let mut peaks = vec![0; comm.size()];
     peaks[comm.rank()] = peak().and_then(|bytes| i64::try_from(bytes).ok()).unwrap_or(0);
@@ -28,8 +28,9 @@ pub(crate) fn largest_peak(comm: &dyn Communicator) -> Option<u64> {
     peaks.into_iter().max().and_then(|bytes| u64::try_from(bytes).ok()).filter(|&bytes| bytes > 0)
 }
 
-/// Refuses to begin what needs more memory than there is, where the operating system tells. (Linux does: it would
-/// otherwise promise any amount, and end the program when it comes to keep its promise.)
+/// Returns an error if `needed` bytes exceed the available memory, as far as the operating system reports it. (Linux
+/// overcommits memory: without this check the allocation would succeed, and Linux would kill the program when it uses
+/// the memory.)
 pub(crate) fn refuse_more_than_available(needed: usize) -> Result<(), Error> {
     let available = available().and_then(|bytes| usize::try_from(bytes).ok());
     match available.filter(|&available| available < needed) {
@@ -38,8 +39,8 @@ pub(crate) fn refuse_more_than_available(needed: usize) -> Result<(), Error> {
     }
 }
 
-/// Memory that this process can still get without swapping \[bytes\]: what the machine has, within the limit of the
-/// process's group.
+/// Returns the memory that this process can still use without swapping \[bytes\]: that of the machine, limited by the
+/// control group of the process.
 fn available() -> Option<u64> {
     let machine = kilobytes(&read_to_string("/proc/meminfo").ok()?, "MemAvailable:")?;
     let group = read_to_string("/proc/self/cgroup").ok().and_then(|text| {
@@ -49,7 +50,8 @@ fn available() -> Option<u64> {
     Some(group.map_or(machine, |left| left.min(machine)))
 }
 
-/// What the limit of a control group leaves (Linux's cgroup v2; files in the cache can make room); `None` without one.
+/// Returns the memory that is left within the limit of a control group (Linux cgroup v2) \[bytes\], or `None` without a
+/// limit. The page cache counts as free, because it can be evicted.
 fn left_in_group(group: &Path) -> Option<u64> {
     let read = |name: &str| read_to_string(group.join(name)).ok();
     let limit: u64 = read("memory.max")?.trim().parse().ok()?;

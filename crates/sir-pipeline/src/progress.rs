@@ -1,4 +1,4 @@
-//! Who is told how far a run is.
+//! Progress of a run: the interface through which a caller observes it.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -9,46 +9,46 @@ use sir_parallel::{Communicator, Observer};
 
 use crate::format::grouped;
 
-/// Time between two notes about parts of a stage that may be short.
+/// Minimum time between two messages about parts of a stage, which may be short.
 pub const PAUSE: Duration = Duration::from_secs(10);
 
-/// Is told what a run does, and shows it if it likes. All methods do nothing by default.
+/// Observer of a run. All methods do nothing by default.
 pub trait Progress: Debug + Send + Sync {
-    /// Takes warnings: of the reader of the scene, or about the result. They are in the report, too.
+    /// Receives warnings of the scene reader or about the result. The report has them, too.
     fn warnings(&self, warnings: &[String]) {
         let _ = warnings;
     }
 
-    /// Takes a line of text that says what is being done.
+    /// Receives a line of text that describes the current activity.
     fn message(&self, text: &str) {
         let _ = text;
     }
 
-    /// Begins a stage of about `total` lines; the meter is dropped when the stage ends.
+    /// Begins a stage of about `total` lines. The returned meter is dropped when the stage ends.
     fn begin(&self, title: &str, total: u64, kind: StageKind) -> Box<dyn Meter> {
         let _ = (title, total, kind);
         Box::new(NoProgress)
     }
 }
 
-/// What kind of stage begins.
+/// Kind of a stage that begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StageKind {
-    /// A stage of a pipeline, announced by a message: its end is worth one, too.
+    /// A stage of a pipeline. A message announces it; its end deserves a message, too.
     Whole,
-    /// One of many that may be short, such as a stage of a repeat: its title says which.
+    /// One of many stages that may be short, such as a stage of a repeat. Its title says which.
     Part,
-    /// All there is to do, which has been announced by a message.
+    /// The only stage. It has been announced by a message.
     Only,
 }
 
-/// Is told how many lines of a stage are done.
+/// Observer of one stage.
 pub trait Meter {
-    /// Called a few times a second with the number of lines done so far and in all.
+    /// Receives the number of lines traced so far and in total, a few times a second.
     fn progress(&mut self, done: u64, total: u64);
 }
 
-/// Shows nothing.
+/// Observer that shows nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoProgress;
 
@@ -58,42 +58,42 @@ impl Meter for NoProgress {
     fn progress(&mut self, _: u64, _: u64) {}
 }
 
-/// `progress`, if `comm` is the rank that speaks.
+/// Returns `progress` on rank 0, and [`NoProgress`] on the others.
 pub(crate) fn of_rank<'p>(progress: &'p dyn Progress, comm: &dyn Communicator) -> &'p dyn Progress {
     if comm.is_first() { progress } else { &NoProgress }
 }
 
 impl dyn Progress + '_ {
-    /// Passes on warnings.
+    /// Passes on warnings, if there are any.
     pub(crate) fn warn(&self, warnings: &[String]) {
         if !warnings.is_empty() {
             self.warnings(warnings);
         }
     }
 
-    /// Says what is being done.
+    /// Passes on a message.
     pub(crate) fn note(&self, text: &str) {
         self.message(text);
     }
 
-    /// Begins to watch a stage of `total` lines, which ends early if `stop` becomes true.
+    /// Announces and begins a stage of `total` lines, which ends early if `stop` becomes true.
     pub(crate) fn stage(&self, name: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
         self.note(&format!("{name}: {} lines", grouped(total)));
         StageProgress { meter: self.begin(name, total, StageKind::Whole), stop: Arc::clone(stop) }
     }
 
-    /// As [`stage`](Self::stage), for one of many that may be short: nothing is said at its start and end.
+    /// Like [`stage`](Self::stage), for one of many stages that may be short: without messages at its start and end.
     pub(crate) fn part(&self, title: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
         StageProgress { meter: self.begin(title, total, StageKind::Part), stop: Arc::clone(stop) }
     }
 
-    /// As [`stage`](Self::stage), without a word at the beginning and at the end.
+    /// Like [`stage`](Self::stage), for the only stage: without messages at its start and end.
     pub(crate) fn watch(&self, name: &str, total: u64, stop: &Arc<AtomicBool>) -> StageProgress {
         StageProgress { meter: self.begin(name, total, StageKind::Only), stop: Arc::clone(stop) }
     }
 }
 
-/// Watches one stage: passes on its progress, and ends it when it is to stop.
+/// Observer that passes on the progress of one stage, and stops it on request.
 pub(crate) struct StageProgress {
     meter: Box<dyn Meter>,
     stop: Arc<AtomicBool>,

@@ -1,4 +1,4 @@
-//! What the ranks of a run have to agree on.
+//! Agreement of the ranks of a run on errors, inputs and texts.
 
 use sir_parallel::Communicator;
 
@@ -6,10 +6,11 @@ use crate::error::Error;
 use crate::error_kind::ErrorKind;
 use crate::fingerprint::Fingerprint;
 
-/// Kinds of errors, by the numbers that stand for them between ranks.
+/// Kinds of errors, indexed by the numbers that ranks exchange.
 const KINDS: [ErrorKind; 3] = [ErrorKind::Failed, ErrorKind::Usage, ErrorKind::Interrupted];
 
-/// Lets all ranks fail if one does. The first of those that failed keeps its error, to say it; the others know who does.
+/// Makes all ranks fail if one does. The first rank that failed keeps its error and reports it; the others return
+/// [`Error::Elsewhere`] with its number.
 pub(crate) fn agree<T>(comm: &dyn Communicator, outcome: Result<T, Error>) -> Result<T, Error> {
     let Some(rank) = comm.first_failed(outcome.is_err()) else { return outcome };
     let mine = outcome.err().filter(|_| rank == comm.rank());
@@ -20,7 +21,7 @@ pub(crate) fn agree<T>(comm: &dyn Communicator, outcome: Result<T, Error>) -> Re
     Err(mine.unwrap_or(Error::Elsewhere { rank, kind: KINDS[sum[0] as usize] }))
 }
 
-/// Checks that all ranks are to compute the same.
+/// Checks that the fingerprint of this rank equals that of rank 0.
 pub(crate) fn same_everywhere(comm: &dyn Communicator, fingerprint: Fingerprint) -> Result<(), Error> {
     let mut first: [i64; 32] = fingerprint.map(i64::from);
     comm.broadcast(&mut first);
@@ -30,7 +31,7 @@ pub(crate) fn same_everywhere(comm: &dyn Communicator, fingerprint: Fingerprint)
     Err(Error::OtherInput { rank: comm.rank() })
 }
 
-/// A text of the first rank, for all.
+/// Returns the text of rank 0 on all ranks.
 pub(crate) fn broadcast_text(comm: &dyn Communicator, text: &str) -> String {
     let mut length = [text.len() as i64];
     comm.broadcast(&mut length);

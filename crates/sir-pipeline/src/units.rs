@@ -1,19 +1,20 @@
-//! What the numbers of a pipeline are measured in.
+//! Units of the numbers of a pipeline.
 
 use serde::{Deserialize, Serialize};
 
-/// Whether light is counted as radiation or by what the eye sees of it. The numbers are the same: this only says what they are called.
+/// Radiometric or photometric units. The numbers are the same: the choice only affects how they are labeled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Units {
     /// Power in watts per band. Default.
     #[default]
     Radiometric,
-    /// Luminous flux in lumens per band: where a light is white, or all bands are alike, they are lumens, lux and candelas.
+    /// Luminous flux in lumens per band. If a light is white, or all bands are equal, the numbers are lumens, lux and
+    /// candelas.
     Photometric,
 }
 
 impl Units {
-    /// Of power: `W` or `lm`.
+    /// Returns the unit of power: `W` or `lm`.
     #[must_use]
     pub fn power(self) -> &'static str {
         match self {
@@ -22,7 +23,7 @@ impl Units {
         }
     }
 
-    /// Of irradiance and illuminance, and of radiosity: `W/m²` or `lx`.
+    /// Returns the unit of irradiance, illuminance and radiosity: `W/m²` or `lx`.
     #[must_use]
     pub fn irradiance(self) -> &'static str {
         match self {
@@ -31,7 +32,7 @@ impl Units {
         }
     }
 
-    /// What falls on a surface: `irradiance` or `illuminance`.
+    /// Returns the name of the received power per area: `irradiance` or `illuminance`.
     #[must_use]
     pub fn irradiance_name(self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! The reference of the pipeline file says what the program does.
+//! Checks that the reference of the pipeline file agrees with the program.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,7 +15,7 @@ fn reference() -> String {
     fs::read_to_string(path()).unwrap()
 }
 
-/// The examples, parsed in a folder that has their scene. All must be valid.
+/// Returns the examples of the reference, parsed in a folder that has their scene. All must be valid.
 fn examples() -> Vec<Pipeline> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("room.gltf"), "").unwrap();
@@ -45,14 +45,14 @@ fn the_defaults_are_those_of_the_reference() {
         }
         actions
     };
-    // The last two say the same, at length and in short.
+    // The last two examples are equal: one is written out, the other is short.
     let [.., long, short] = &all[..] else { panic!("two examples") };
     assert_eq!(long.seed, short.seed);
     assert_eq!(long.units, short.units);
     assert_eq!(actions(long), actions(short));
 }
 
-/// The pipelines of the scenes that come with the project.
+/// Tests the pipelines in the folder `scenes` of the project.
 #[test]
 fn pipelines_of_the_project_are_valid() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
@@ -64,8 +64,8 @@ fn pipelines_of_the_project_are_valid() {
     }
 }
 
-/// The tables of fields in the reference are those that the program makes, each below the comment `<!-- fields of NAME -->`. Run
-/// with `UPDATE_DOCS=1` to write them anew.
+/// Compares the tables of fields in the reference, each below a comment `<!-- fields of NAME -->`, with those generated
+/// by the program. Run with `UPDATE_DOCS=1` to update them.
 #[test]
 fn tables_of_fields_are_those_of_the_program() {
     let old = reference();
@@ -91,7 +91,7 @@ fn tables_of_fields_are_those_of_the_program() {
     }
 }
 
-/// All that a pipeline can say is read, written and read again: nothing is lost.
+/// Reads, writes and reads again pipelines that use all fields: nothing is lost.
 #[test]
 fn what_is_written_is_what_was_read() {
     let folder = tempfile::tempdir().unwrap();

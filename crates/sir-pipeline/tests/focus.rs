@@ -1,11 +1,12 @@
-//! Where the patches of a pipeline with a focus are.
+//! Distribution of patches in a pipeline with a focus.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use sir_pipeline::NoProgress;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::prepare::prepare;
 
-/// The floor of a pavilion is a ground of 200 x 200 m: nearly all patches are in the pavilion, and the floor has its share of them.
+/// The floor of a pavilion is part of a ground of 200 × 200 m: nearly all patches are in the pavilion, and the floor
+/// has its share of them.
 #[test]
 fn a_wide_ground_has_patches_in_the_focus_only() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Pipelines that mean harm, and runs that cannot end well: each is refused early, with one clear error.
+//! Malicious pipelines, and runs that cannot succeed: each is rejected early, with one clear error.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -11,13 +11,13 @@ use sir_pipeline::plan::Pipeline;
 use sir_pipeline::run::{RunOptions, resume_together, run_pipeline as run};
 use sir_pipeline::{Error, ErrorKind};
 
-/// Far more than any text needs: a busy machine must do no harm.
-const PATIENCE: Duration = Duration::from_secs(20);
+/// Time limit for reading a text: far more than needed, so that the test passes on a busy machine.
+const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-/// The most bytes of the error of a text of any length.
-const LONGEST_ERROR: usize = 60_000;
+/// Maximum size of the error of a text of any length \[bytes\].
+const MAX_ERROR_BYTES: usize = 60_000;
 
-/// What is said about a text in the place of a pipeline file.
+/// Reads a text as a pipeline file, and returns the error message.
 fn refused(text: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("room.ron");
@@ -25,12 +25,12 @@ fn refused(text: &[u8]) -> String {
     fs::write(&path, text).unwrap();
     let start = Instant::now();
     let error = Pipeline::read(&path).unwrap_err();
-    assert!(start.elapsed() < PATIENCE, "{:?}", start.elapsed());
+    assert!(start.elapsed() < TIME_LIMIT, "{:?}", start.elapsed());
     assert_eq!(error.kind(), ErrorKind::Usage);
-    let said = error.chain();
-    assert!(said.len() < LONGEST_ERROR && said.contains("room.ron"), "{} bytes", said.len());
-    assert!(!said.contains(|c: char| c.is_control() && c != '\n'), "{said:?}");
-    said
+    let message = error.chain();
+    assert!(message.len() < MAX_ERROR_BYTES && message.contains("room.ron"), "{} bytes", message.len());
+    assert!(!message.contains(|c: char| c.is_control() && c != '\n'), "{message:?}");
+    message
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn deep_nesting_is_refused_at_once() {
 #[test]
 fn texts_that_are_too_long_are_not_read() {
     assert!(refused(&vec![b' '; (1 << 18) + 1]).contains("a pipeline is a short text"));
-    // What never ends is no trouble, either.
+    // Endless files are rejected, too.
     if cfg!(target_os = "linux") {
         let error = Pipeline::read(Path::new("/dev/zero")).unwrap_err();
         assert!(matches!(error, Error::LongPipeline { .. }), "{error}");
@@ -69,8 +69,8 @@ fn many_mistakes_are_not_all_shown() {
         "x,",
     ] {
         let many = (1 << 18) / mistake.len() - 20;
-        let said = refused(format!("Pipeline(stages: [{}])", mistake.repeat(many)).as_bytes());
-        assert!(said.contains("more problems are not shown"), "{mistake}");
+        let message = refused(format!("Pipeline(stages: [{}])", mistake.repeat(many)).as_bytes());
+        assert!(message.contains("more problems are not shown"), "{mistake}");
     }
     let twice = "seed: 1,".repeat(30_000);
     assert!(refused(format!("Pipeline({twice})").as_bytes()).contains("not shown"));
@@ -104,7 +104,7 @@ fn what_is_no_file_is_said_to_be_none() {
     assert!(matches!(error, Error::ReadPipeline { .. }), "{error}");
 }
 
-/// A room that is lit by its ceiling, and a pipeline of these stages.
+/// Writes a room that is lit by its ceiling, and returns a pipeline with these stages.
 fn room(folder: &Path, stages: &str) -> Pipeline {
     let room = "mtllib room.mtl\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2\n\
         usemtl wall\nf 1 2 3 4\nf 6 5 8 7\nf 5 1 4 8\nf 2 6 7 3\nf 5 6 2 1\nusemtl lamp\nf 4 3 7 8\n";
@@ -114,7 +114,7 @@ fn room(folder: &Path, stages: &str) -> Pipeline {
     Pipeline::parse(&text, &folder.join("room.ron")).unwrap()
 }
 
-/// Four thousand million patches are within the limits of numbers, but not of machines (of up to 600 GB).
+/// Four billion patches are within the limits of numbers, but not within the memory of machines (of up to 600 GB).
 #[test]
 #[cfg(target_os = "linux")]
 fn what_does_not_fit_into_memory_is_refused_before_anything_is_written() {
@@ -136,7 +136,7 @@ fn a_file_that_cannot_be_written_leaves_a_run_that_can_go_on() {
     let pipeline = room(folder.path(), stages);
     fs::write(folder.path().join("room.ron"), &pipeline.text).unwrap();
     let out = folder.path().join("out");
-    // A folder of that name is in the way, which even the superuser cannot write to.
+    // A folder has the name of the file, so that even the superuser cannot write to it.
     fs::create_dir_all(out.join("a.csv/x")).unwrap();
     let options = RunOptions { out: Some(out.clone()), ..RunOptions::default() };
     let error = run(&pipeline, &options).unwrap_err();
@@ -148,7 +148,7 @@ fn a_file_that_cannot_be_written_leaves_a_run_that_can_go_on() {
     );
     assert!(!out.join("result.json").exists());
     let left: Vec<_> = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(left.len(), 2, "no half of a file is left: {left:?}");
+    assert_eq!(left.len(), 2, "no partial file is left: {left:?}");
     fs::remove_dir_all(out.join("a.csv")).unwrap();
     resume_together(&out, &options, &SingleProcess).unwrap();
     assert!(out.join("a.csv").is_file() && out.join("result.json").is_file());

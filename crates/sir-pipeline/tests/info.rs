@@ -1,4 +1,4 @@
-//! `sir info`: what it says of small scenes whose properties are known.
+//! Tests `sir info` with small scenes whose properties are known.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
@@ -7,23 +7,23 @@ use sir_pipeline::ErrorKind;
 use sir_pipeline::info::{Info, inspect};
 use sir_pipeline::plan::Pipeline;
 
-/// The corners of a box from the origin, numbered by bits: x, y, z.
+/// Returns the corners of a box from the origin, numbered by bits: x, y, z.
 fn corners(size: [f64; 3]) -> Vec<[f64; 3]> {
     let at = |i: usize, axis: usize| if i >> axis & 1 == 1 { size[axis] } else { 0.0 };
     (0..8).map(|i| [at(i, 0), at(i, 1), at(i, 2)]).collect()
 }
 
-/// The walls of a box, seen counterclockwise from inside: floor, ceiling, and four walls.
+/// Walls of a box, counterclockwise as seen from inside: floor, ceiling, and four walls.
 const WALLS: [[usize; 4]; 6] =
     [[0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5], [0, 2, 6, 4], [1, 5, 7, 3]];
 
 fn turned(wall: [usize; 4]) -> [usize; 4] {
     let [a, b, c, d] = wall;
-    // Cut along the same diagonal as before.
+    // Split along the same diagonal as the original.
     [a, d, c, b]
 }
 
-/// Writes an OBJ file of quadrangles, the first of which emits if `lit`.
+/// Writes an OBJ file of quadrilaterals, the first of which emits if `lit`.
 fn obj(folder: &Path, corners: &[[f64; 3]], walls: &[[usize; 4]], lit: bool) -> PathBuf {
     let mut text = String::from("mtllib room.mtl\n");
     corners.iter().for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
@@ -38,7 +38,7 @@ fn obj(folder: &Path, corners: &[[f64; 3]], walls: &[[usize; 4]], lit: bool) -> 
     folder.join("room.obj")
 }
 
-/// Writes a glTF file of quadrangles that are all one-sided.
+/// Writes a glTF file of one-sided quadrilaterals.
 fn gltf(folder: &Path, corners: &[[f64; 3]], walls: &[[usize; 4]]) -> PathBuf {
     let mut bytes: Vec<u8> = Vec::new();
     corners.iter().flatten().for_each(|x| bytes.extend((*x as f32).to_le_bytes()));
@@ -67,7 +67,7 @@ fn gltf(folder: &Path, corners: &[[f64; 3]], walls: &[[usize; 4]]) -> PathBuf {
     folder.join("room.gltf")
 }
 
-/// What is said of a room of 4 m × 3 m × 5 m, which is changed in some way.
+/// Inspects a room of 4 m × 3 m × 5 m, modified by `change`.
 fn room(lit: bool, change: impl FnOnce(&mut Vec<[f64; 3]>, &mut Vec<[usize; 4]>)) -> Info {
     let folder = tempfile::tempdir().unwrap();
     let (mut corners, mut walls) = (corners([4.0, 3.0, 5.0]), WALLS.to_vec());
@@ -75,7 +75,7 @@ fn room(lit: bool, change: impl FnOnce(&mut Vec<[f64; 3]>, &mut Vec<[usize; 4]>)
     inspect(&obj(folder.path(), &corners, &walls, lit)).unwrap()
 }
 
-/// The same, of one-sided walls.
+/// Inspects the same room with one-sided walls.
 fn one_sided(change: impl FnOnce(&mut Vec<[usize; 4]>)) -> Info {
     let folder = tempfile::tempdir().unwrap();
     let mut walls = WALLS.to_vec();
@@ -83,7 +83,7 @@ fn one_sided(change: impl FnOnce(&mut Vec<[usize; 4]>)) -> Info {
     inspect(&gltf(folder.path(), &corners([4.0, 3.0, 5.0]), &walls)).unwrap()
 }
 
-/// What to set, all in one line. Each suggestion must be understood by a pipeline.
+/// Returns all suggested settings in one line. Each must be valid in a pipeline.
 fn settings(info: &Info) -> String {
     let folder = tempfile::tempdir().unwrap();
     obj(folder.path(), &corners([1.0; 3]), &WALLS, true);
@@ -136,11 +136,11 @@ fn a_closed_room_is_counted_and_found_closed() {
 fn what_leaves_through_a_missing_wall_is_the_view_factor_to_it() {
     let folder = tempfile::tempdir().unwrap();
     let info = inspect(&obj(folder.path(), &corners([1.0; 3]), &WALLS[..5], true)).unwrap();
-    // By reciprocity, of what leaves the five walls a fifth would arrive at the sixth.
+    // By reciprocity, one fifth of the lines that leave the five walls would arrive at the sixth.
     close(info.lines.from_fronts.escaped, 0.2);
-    // From the floor to a wall at a right angle: Howell's catalog, C-14.
+    // View factor from the floor to a perpendicular wall: Howell's catalog, C-14.
     close(info.lines.from_emitters.unwrap().escaped, 0.200_04);
-    // A line through a cube passes two of its six sides.
+    // A line through a cube crosses two of its six sides.
     close(info.lines.global.odd, 1.0 / 3.0);
 }
 
@@ -162,7 +162,7 @@ fn walls_that_face_each_other_wrongly_are_found() {
     assert!(info.lines.from_fronts.absorbed > 0.1 && info.lines.global.mixed > 0.1, "{:?}", info.lines);
     assert!(info.findings.iter().any(|f| f.contains("falls on backs")), "{:?}", info.findings);
     assert!(settings(&info).contains("room.gltf\", sides: Both)"), "{:?}", info.settings);
-    // All of them well: no reason to do so.
+    // All walls face inward: the setting is not suggested.
     assert!(!settings(&one_sided(|_| {})).contains("sides"));
 }
 
@@ -192,7 +192,7 @@ fn doubled_and_coincident_triangles_are_found() {
     assert_eq!(twins(|_, _| {}), (0, 0, 0.0));
     assert_eq!(twins(|_, walls| walls.push(walls[1])), (2, 2, 0.0));
     assert_eq!(twins(|_, walls| walls.push(turned(walls[1]))), (2, 0, 0.0));
-    // The same wall, cut along the other diagonal.
+    // The same wall, split along the other diagonal.
     let info = room(true, |_, walls| {
         let [a, b, c, d] = walls[1];
         walls.push([b, c, d, a]);
@@ -249,7 +249,7 @@ fn colors_of_corners_and_textures_are_counted() {
 fn the_same_file_gives_the_same_numbers_and_an_absent_one_an_error() {
     let json = || {
         let mut info = serde_json::to_value(room(true, |_, walls| walls.truncate(5))).unwrap();
-        // The folder is another one.
+        // The folders differ.
         info.as_object_mut().unwrap().retain(|key, _| key != "scene" && key != "settings");
         info
     };

@@ -1,4 +1,4 @@
-//! Lights of a pipeline: what is understood, and what is said of mistakes.
+//! Lights of a pipeline: valid ones, and error messages.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::DVec3;
@@ -7,12 +7,12 @@ use sir_pipeline::NoProgress;
 use sir_pipeline::check::estimate;
 use sir_pipeline::plan::{Action, Pipeline, SceneLight};
 
-/// The text of a pipeline with these lights.
+/// Returns the text of a pipeline with these lights.
 fn text(lamps: &str) -> String {
     format!("(stages: [Load(path: \"room.obj\"),\nLight([{lamps}]),\nFirstShot(lines: 1000)])")
 }
 
-/// Reads a pipeline in a folder with a dark room, and does something with it.
+/// Parses a pipeline in a folder with a dark room, and passes the outcome to `f`.
 fn with<T>(text: &str, f: impl FnOnce(Result<Pipeline, String>) -> T) -> T {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("room.obj"), "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n").unwrap();
@@ -99,7 +99,7 @@ fn mistakes_are_reported_with_their_places() {
     insta::assert_snapshot!(with(order, |pipeline| pipeline.unwrap_err()));
 }
 
-/// A dark scene is lit, and the summary of what there is says by what.
+/// Lights a dark scene. The summary lists the sources.
 #[test]
 fn a_dark_scene_is_lit_by_a_pipeline() {
     let all = "Point(position: (0.1, 2, 0.2), intensity: 1), Distant(direction: (0, -1, 0), irradiance: 8),

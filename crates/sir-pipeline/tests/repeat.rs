@@ -1,4 +1,5 @@
-//! Repeats: the same bits as their stages alone, for any number of workers, and however often a run is stopped.
+//! Repeats: one repeat has the same bits as its stages alone; results do not depend on the number of workers, or on
+//! interruptions.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -27,7 +28,7 @@ const SHOTS: &str = "FirstShot(lines: 6_000), SecondShot(lines: 2_000)";
 const BATCHES: &str = "Multipath(lines: 8_000)";
 const REPLICAS: &str = "Multipath(lines: 8_000, transport: Replicas(count: 3))";
 
-/// A pipeline with these stages that lights a furnace in a folder of its own.
+/// Pipeline with given stages that lights a furnace, in its own folder.
 struct Case {
     folder: tempfile::TempDir,
     pipeline: Pipeline,
@@ -55,7 +56,7 @@ impl Case {
         }
     }
 
-    /// The files of a finished run, and its report.
+    /// Returns the files of a finished run, and its report.
     fn files(&self, out: &str) -> (BTreeMap<String, Vec<u8>>, Report) {
         let directory = self.folder.path().join(out);
         let report = sir_pipeline::run::read_report(&directory).unwrap();
@@ -118,7 +119,8 @@ fn any_number_of_workers_gets_the_same_bits() {
     }
 }
 
-/// What a target has led to can be asked for by number. A target is met by the mean of all, and not before.
+/// The result of a target equals that of the same number of repeats. The target is met by the mean of all repeats, and
+/// not by that of fewer.
 #[test]
 fn a_target_is_met_and_its_number_of_repeats_gives_the_same_bits() {
     let stages = format!("stages: [{SHOTS}, {BATCHES}]");
@@ -142,7 +144,8 @@ fn errors_of_few_repeats_are_those_that_they_state() {
     let [one, few, many] = [1, MIN_REPEATS - 1, MIN_REPEATS].map(light);
     assert_eq!(few.errors, ErrorsReport { from: ErrorsFrom::Lines, samples: 5_000 * (MIN_REPEATS - 1) });
     assert_eq!(many.errors, ErrorsReport { from: ErrorsFrom::Spread, samples: MIN_REPEATS });
-    // Both fall with the root of the number. The spread of eight over 200 patches is known to some 2 %.
+    // Both fall with the square root of the number of repeats. The spread of eight repeats over 200 patches is known to
+    // about 2 %.
     for k in 0..3 {
         let of =
             |light: &sir_pipeline::report::LightReport, n: u64| light.relative_error[k] * (n as f64).sqrt();
@@ -164,7 +167,7 @@ fn there_are_no_more_repeats_than_allowed_or_than_there_is_time_for() {
     }
 }
 
-/// Energy is kept in the mean: what the sources emit, and what one stage leaves to the next.
+/// The mean conserves energy: the emitted power, and the unshot power that one stage leaves to the next.
 #[test]
 fn the_mean_balance_closes() {
     let (_, report) = Case::new(&format!("Repeat(times: 5, stages: [{SHOTS}, {BATCHES}])")).run();
@@ -183,7 +186,7 @@ fn the_mean_balance_closes() {
     assert_eq!(lines.iter().map(|l| l.lines).collect::<Vec<_>>(), [30_000, 10_000, 40_000]);
 }
 
-/// A process by itself that is asked to stop after so many sums, as by Ctrl-C.
+/// Single process that is asked to stop after a number of sums, as by Ctrl-C.
 struct StopAfter {
     sums: AtomicU64,
     stop: Arc<AtomicBool>,
@@ -206,7 +209,7 @@ impl Communicator for StopAfter {
     }
 }
 
-/// Stopped wherever it can be, in the middle of a stage or between two repeats, and resumed by other numbers of threads.
+/// Runs are stopped within stages and between repeats, and resumed with other numbers of threads.
 #[test]
 fn a_run_that_is_stopped_again_and_again_gives_the_same_bits() {
     for (transport, every) in [(BATCHES, 300), (REPLICAS, 0)] {
@@ -230,7 +233,7 @@ fn a_run_that_is_stopped_again_and_again_gives_the_same_bits() {
                     Err(Error::Interrupted { .. } | Error::InterruptedSaving { .. }) => stops += 1,
                     Err(error) => panic!("{}", error.chain()),
                 }
-                // Each leg is a little longer: a short one may not get from one order to the next.
+                // Each attempt is a little longer, because a short one may not complete a slice.
                 assert!(stops < 200, "{transport}: no end after {stops} stops");
             }
             println!("{transport}: {stops} stops");

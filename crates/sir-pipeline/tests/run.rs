@@ -1,4 +1,4 @@
-//! Pipelines from file to result, as a library.
+//! Runs pipelines from file to result through the library.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -14,7 +14,8 @@ use sir_pipeline::report::{ErrorsFrom, ErrorsReport, Report, Time};
 use sir_pipeline::run::{RunOptions, read_report, run_pipeline as run};
 use sir_pipeline::{Error, ErrorKind};
 
-/// A closed room of 2 × 2 × 2 m whose ceiling emits 1 W/m² in red and less in the other bands; a wall is too white.
+/// Closed room of 2 × 2 × 2 m whose ceiling emits 1 W/m² in red and less in the other bands. The reflectance of the
+/// walls is too large in blue.
 const ROOM: &str = "mtllib room.mtl
 v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2
 usemtl wall\nf 1 2 3 4\nf 6 5 8 7\nf 5 1 4 8\nf 2 6 7 3\nf 5 6 2 1
@@ -53,7 +54,7 @@ fn options(folder: &Path) -> RunOptions {
     RunOptions { results: folder.join("results"), ..RunOptions::default() }
 }
 
-/// All files under a directory but the report.
+/// Returns all files under a directory except the report.
 fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![directory.to_owned()];
@@ -71,7 +72,7 @@ fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// The report without its times.
+/// Returns the report without its times.
 fn timeless(mut report: Report) -> Report {
     report.time = Time::of(0.0);
     for stage in &mut report.stages {
@@ -92,7 +93,7 @@ fn the_same_pipeline_gives_the_same_files() {
     let (a, b) = (files(&first.directory), files(&second.directory));
     let names: Vec<&str> = a.keys().map(String::as_str).collect();
     assert_eq!(names, ["direct.npy", "patches.csv", "pictures/view.exr", "pictures/view.png", "result.glb"]);
-    // The names of the channels of errors are in the head of the picture for measuring.
+    // The header of the EXR image has the names of the error channels.
     for band in ["R", "G", "B"] {
         let channel = format!("error.{band}\0");
         let picture = &a["pictures/view.exr"];
@@ -153,7 +154,7 @@ fn the_report_tells_what_happened() {
     }
 }
 
-/// The cube has the surface 24 m², its sphere `4π · 3 m²`.
+/// The surface of the cube is 24 m², that of its bounding sphere `4π · 3 m²`.
 #[test]
 fn the_report_names_the_domain() {
     let folder = folder();
@@ -177,7 +178,7 @@ fn the_report_names_the_domain() {
         let domain = multipath.domain.unwrap();
         assert_eq!(domain.kind, body);
         assert!((domain.surface / surface - 1.0).abs() < 1e-8, "{domain:?}");
-        // Every line that enters the cube meets its walls.
+        // Every line that enters the cube hits its walls.
         let empty = 1.0 - 24.0 / surface;
         let sigma = (empty * (1.0 - empty) / 20_000.0).sqrt();
         assert!((multipath.empty_share - empty).abs() <= 4.0 * sigma, "{}", multipath.empty_share);
@@ -232,13 +233,13 @@ Save([Image(path: "a.png", camera: 0), Image(path: "b.png", camera: "door")]),
     assert_eq!(error.kind(), ErrorKind::Usage);
     let shown = error.to_string().replace(&format!("{}/", folder.path().display()), "");
     insta::assert_snapshot!(shown, @r#"
-    error: so fine a subdivision makes more than 4294967295 patches or sides
+    error: the subdivision makes more than 4294967295 patches or sides
      --> room.ron:3:1
       |
     3 | Subdivide(max_edge: 1e-9),
       | ^^^^^^^^^
       |
-      = help: ask for fewer or larger patches
+      = help: use fewer or larger patches
 
     error: the scene has no camera number 0
      --> room.ron:5:36

@@ -12,13 +12,13 @@ use sir_pipeline::plan::Pipeline;
 use sir_pipeline::run::{RunOptions, RunResult, run_pipeline as run};
 use sir_pipeline::{Error, ErrorKind};
 
-/// A closed room of 2 × 3 × 2 m, y up, all of whose surfaces emit and reflect alike: 4 W/m² of irradiance in green everywhere.
+/// Closed room of 2 × 3 × 2 m, y up, with equal emission and reflectance everywhere: the irradiance is 4 W/m² in green.
 const ROOM: &str = "mtllib room.mtl\nusemtl m
 v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nv 0 0 2\nv 2 0 2\nv 2 3 2\nv 0 3 2
 f 1 2 3 4\nf 6 5 8 7\nf 5 1 4 8\nf 2 6 7 3\nf 5 6 2 1\nf 4 3 7 8\n";
 const MATERIALS: &str = "newmtl m\nKd 0.5 0.5 0.5\nKe 0 0.6366197723675814 0\n";
 
-/// Runs stages after some light has been made.
+/// Runs stages after light has been computed.
 fn measure(stages: &str, threads: usize) -> (tempfile::TempDir, Result<RunResult, Error>) {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
@@ -40,7 +40,7 @@ fn measure(stages: &str, threads: usize) -> (tempfile::TempDir, Result<RunResult
     (folder, outcome)
 }
 
-/// The numbers of a column.
+/// Returns the numbers of a column.
 fn column(directory: &Path, file: &str, name: &str) -> Vec<f64> {
     let text = fs::read_to_string(directory.join(file)).unwrap();
     let mut lines = text.lines();
@@ -96,20 +96,20 @@ fn sensors_are_the_same_by_any_number_of_threads() {
 #[test]
 fn impossible_sensors_are_refused_with_the_reason() {
     for (at, reason) in [
-        (r#"File("bad.txt")"#, "bad.txt:2 is no point: it has 4 numbers, but a point has six"),
+        (r#"File("bad.txt")"#, "bad.txt:2 is not a point: it has 4 numbers, but a point has six"),
         (r#"File("absent.txt")"#, "absent.txt: No such file"),
         ("File(7)", "`File` must have the path of a file in quotes"),
         ("Points([])", "`Points` must have a list of points"),
         (
             "Points([(position: (1, 1, 1), direction: (0, 0, 0))])",
-            "must be a direction, but it has no length",
+            "must be a direction, but its length is zero",
         ),
         ("Plane(height: 5, spacing: 0.5)", "no point of the plane at the height 5 m lies inside the room"),
         ("Plane(height: 1, spacing: 0.5, border: 1)", "nothing is left of the scene"),
         ("Plane(height: 1, spacing: 1e-5)", "is too fine"),
         ("Plane(height: 1, spacing: -1)", "`spacing` must be a number above 0"),
         ("Plane(height: 1, spacing: 1, border: -1)", "`border` must be a number from 0"),
-        ("Plane(height: 1, spacing: 1, up: (0, 0, 0))", "must be a direction, but it has no length"),
+        ("Plane(height: 1, spacing: 1, up: (0, 0, 0))", "must be a direction, but its length is zero"),
         ("Grid(corner: (0, 0, 0), along: (1, 0, 0), across: (2, 0, 0), spacing: 1)", "this grid has no area"),
         ("Plan(height: 1, spacing: 1)", "did you mean `Plane`?"),
         ("Plane(height: 1, spacings: 1)", "did you mean `spacing`?"),
@@ -120,7 +120,7 @@ fn impossible_sensors_are_refused_with_the_reason() {
         assert!(message.contains("x.ron:1:") && message.contains("help: "), "{at}: {message}");
         assert!(
             !folder.path().join("out").exists(),
-            "{at}: nothing is written before all is known to be possible"
+            "{at}: nothing is written before all checks have passed"
         );
     }
 }
@@ -163,12 +163,16 @@ fn a_stopped_run_says_how_it_can_go_on() {
         RunOptions { out: Some(folder.path().join("out")), stop: Arc::clone(&stop), ..RunOptions::default() };
     let outcome = std::thread::scope(|scope| {
         let running = scope.spawn(|| run(&pipeline, &options));
-        // The first shot takes no time, the sensors take minutes.
+        // The first shot takes almost no time; the sensors take minutes.
         std::thread::sleep(std::time::Duration::from_millis(500));
         stop.store(true, std::sync::atomic::Ordering::Relaxed);
         running.join().unwrap()
     });
     let error = outcome.map(|_| ()).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Interrupted);
-    assert!(error.chain().starts_with("interrupted at the sensors; resume the run in "), "{}", error.chain());
+    assert!(
+        error.chain().starts_with("interrupted while measuring at sensors; resume the run in "),
+        "{}",
+        error.chain()
+    );
 }

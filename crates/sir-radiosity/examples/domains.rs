@@ -1,9 +1,9 @@
-//! How many lines the domains waste on scenes, and what lines and crossings cost:
+//! Measures the share of wasted lines of each domain, and the time per line and per crossing, for some scenes:
 //! `cargo run --release -p sir-radiosity --example domains scenes/*/*.gl*`.
 //!
-//! Each domain traces as many lines as should give the same number of crossings, by one thread, in 100,000 patches, in
-//! turn with the others. The fastest of seven tries counts: the least disturbed by whatever else the machine does.
-#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+//! In each domain, one thread traces the number of lines that gives the same expected number of crossings, in 100,000
+//! patches. The domains take turns. The fastest of seven tries counts, which is least disturbed by other load.
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use std::path::Path;
 use std::time::Instant;

@@ -1,7 +1,8 @@
-//! What thousands of lamps cost: the times of a first shot and of sensors, against those with one lamp of the same power.
+//! The cost of thousands of lamps: the times of a first shot and of sensors, relative to those with one lamp of the
+//! same power.
 //!
 //! `cargo run --release -p sir-radiosity --example many_lamps`
-#![allow(clippy::print_stdout, reason = "an example prints")]
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use std::time::Instant;
 
@@ -58,7 +59,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A room of 10 by 10 by 3 m with boxes, and lamps in a grid close to its ceiling.
+/// Returns a room of 10 by 10 by 3 m with boxes, and lamps in a grid close to its ceiling.
 fn room(lamps: &Lamps) -> Result<Model, Box<dyn std::error::Error>> {
     let mut b = SceneBuilder::new();
     let white = b.add_material(Material::diffuse("white", Rgb::splat(0.6)));
@@ -95,9 +96,9 @@ fn room(lamps: &Lamps) -> Result<Model, Box<dyn std::error::Error>> {
     Ok(Model::new(b.build()?.scene, Subdivision::MaxEdge(0.5))?)
 }
 
-/// Seconds per sensor, and the mean relative error.
+/// Returns the seconds per sensor, and the mean relative error.
 fn measure(model: &Model, solution: &Solution, rays: u64) -> (f64, f64) {
-    // What is made once for all sensors does not count.
+    // The preparation for all sensors is not timed.
     let sensors = Gatherer::new(model, solution, SensorSettings { rays, error: 0.0 }, 1);
     let start = Instant::now();
     let mut error = 0.0;

@@ -1,10 +1,10 @@
-//! The radiosity of single triangles by path tracing, without patches:
+//! Computes the radiosity of single triangles by path tracing, without patches:
 //! `cargo run --release -p sir-radiosity --example path_traced SCENE PATHS [TRIANGLE…]`.
 //!
-//! A second opinion on what the solver says, which shares with it the scene and the search for the closest hit. Paths begin on the
-//! front of a triangle and are reflected until a surface absorbs them; at each point the emitters are asked for their light
+//! An independent check of the solver, with which it shares only the scene and the search for the closest hit. Paths
+//! start on the front of a triangle and are reflected until a surface absorbs them. Emitters are sampled at each vertex
 //! (Kajiya 1986). Prints CSV: number of the triangle in the file, material, area, radiosity, and its standard error.
-#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -17,7 +17,7 @@ use sir_lines::{Purpose, Stream, Streams, cosine_direction, point_on_triangle};
 use sir_mesh::Subdivision;
 use sir_radiosity::{Emitter, Model, Source, sources};
 
-/// Paths that are traced side by side.
+/// Number of paths that are traced concurrently.
 const WAVE: u64 = 4096;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -30,7 +30,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let model = Model::new(load(Path::new(&path), &LoadOptions::default())?.scene, Subdivision::PerTriangle)?;
     let sources = sources(&model.scene, &model.mesh);
     if sources.iter().any(|source| !matches!(source.emitter, Emitter::Surface { .. })) {
-        return Err("the scene has lights that are no surfaces, which this example does not know".into());
+        return Err(
+            "the scene has lights without a surface (only emitting surfaces are supported); remove them"
+                .into(),
+        );
     }
     let emitters = Emitters::new(&sources);
     let mut tracer = model.accel.tracer();
@@ -60,10 +63,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Emitters that are chosen in proportion to their power.
+/// Emitters, sampled in proportion to their power.
 struct Emitters<'a> {
     sources: &'a [Source],
-    /// Power of a source and all before it, as the sum over bands.
+    /// Running sums of the power of the sources, summed over bands.
     up_to: Vec<f64>,
     total: f64,
 }
@@ -78,7 +81,7 @@ impl<'a> Emitters<'a> {
         Self { up_to: up_to.collect(), sources, total }
     }
 
-    /// A point of an emitter as seen from a surface: the ray to it, and the irradiance by all emitters that it stands for.
+    /// Samples a point of an emitter: the ray to it, its source, and the irradiance by all emitters that it represents.
     fn sample(&self, from: &Vertex, stream: &mut Stream) -> Option<(Ray, &'a Source, Rgb)> {
         let chosen = stream.unit() * self.total;
         let source = self.sources.get(self.up_to.partition_point(|&sum| sum <= chosen))?;
@@ -92,7 +95,7 @@ impl<'a> Emitters<'a> {
     }
 }
 
-/// A point of a surface.
+/// A vertex of a path, on a surface.
 struct Vertex {
     triangle: TriangleId,
     point: DVec3,
@@ -112,7 +115,7 @@ impl Vertex {
     }
 }
 
-/// A path: how much of the light at its end comes back to its beginning, and which path of the wave it is.
+/// A path: its last vertex, the throughput from there to its start, and its number in the wave.
 struct Walk {
     end: Vertex,
     weight: Rgb,
@@ -120,7 +123,7 @@ struct Walk {
     stream: Stream,
 }
 
-/// Irradiance of the front of a triangle, as each of some paths finds it.
+/// Returns one estimate per path of the irradiance of the front of a triangle.
 fn wave(
     model: &Model,
     emitters: &Emitters<'_>,

@@ -1,6 +1,6 @@
-//! The inside of a sphere has the same irradiance everywhere, whatever emits: ΣΦ / (A (1 − ρ)). This solves one that
-//! emits from its top only: `cargo run --release -p sir-radiosity --example sphere_interior`.
-#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+//! The inside of a sphere has the same irradiance everywhere, wherever it emits: ΣΦ / (A (1 − ρ)). This example solves
+//! a sphere that emits from its top only: `cargo run --release -p sir-radiosity --example sphere_interior`.
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};

@@ -3,10 +3,10 @@
 use sir_accel::{Accel, AccelError, Barycentric, Opacity, Options, TriangleId};
 use sir_geom::{Opacities, Scene};
 
-/// Arranges the triangles of a scene for tracing, with their opacities.
+/// Builds the acceleration structure over the triangles of a scene, with their opacities.
 ///
-/// Of surfaces in contact, those later in the scene lie on top. That is the order of the triangles, and so the default of
-/// [`Options::contact_priorities`].
+/// Of surfaces in contact, those later in the scene lie on top. That is the order of the triangles, and therefore the
+/// default of [`Options::contact_priorities`].
 ///
 /// # Errors
 ///

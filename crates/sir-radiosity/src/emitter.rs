@@ -1,6 +1,7 @@
-//! Where the lines of a source come from.
+//! Emitters, which generate the lines of sources.
 //!
-//! All have the density of the source's radiance over points and directions, so that each carries the same power.
+//! Lines are distributed in proportion to the radiance of the source over points and directions, so that each carries
+//! the same power.
 
 use glam::DVec3;
 use sir_accel::Ray;
@@ -10,38 +11,39 @@ use sir_lines::{
 };
 use sir_mesh::PatchId;
 
-/// What a source is.
+/// Kind and geometry of a source.
 ///
-/// Light from outside is let in through the axis-aligned box around the scene; lines that meet nothing in there are booked as
-/// *escaped*. Uniform lines through the box, of which those are kept that the sky sends, have the density of its radiance. With a focus there are
-/// two sources of each light from outside: what passes `through` a smaller box, and what passes `around` it.
+/// Light from outside enters through the axis-aligned box around the scene. Lines that hit nothing in the box are
+/// counted as *escaped*. Lines of the sky are uniform lines through the box that are accepted in proportion to the
+/// radiance of the sky. With a focus, each light from outside is two sources: what passes `through` a smaller box, and
+/// what passes `around` it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Emitter {
-    /// A side of a triangle, or of a part of one.
+    /// A side of a triangle or of a part of it.
     Surface {
         /// The triangle.
         triangle: TriangleId,
-        /// The patch of it; `None` for all of it.
+        /// The patch of the triangle; `None` for the whole triangle.
         patch: Option<PatchId>,
-        /// Which side of it.
+        /// Side that emits.
         side: Side,
         /// Corners of the part that emits.
         corners: [DVec3; 3],
-        /// Unit normal on that side.
+        /// Unit normal on the emitting side.
         normal: DVec3,
     },
-    /// A point.
+    /// A point light.
     Point {
-        /// Where it is.
+        /// Position of the light.
         position: DVec3,
-        /// Where it sends its light.
+        /// Angular distribution of its intensity.
         spread: Spread,
     },
     /// Parallel light.
     Distant {
         /// The lines through a box.
         lines: ParallelLines,
-        /// Those that meet this box do not count.
+        /// Box that the lines must not meet; `None` for no such box.
         around: Option<BoundingBox>,
     },
     /// The scene's sky, above the horizon.
@@ -50,20 +52,21 @@ pub enum Emitter {
     Ground(SkyAperture),
 }
 
-/// Where light from the sky is let in.
+/// The opening through which light from the sky enters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkyAperture {
-    /// What its lines pass through.
+    /// Box through which the lines pass.
     pub through: BoundingBox,
-    /// Those that meet this box do not count.
+    /// Box that the lines must not meet; `None` for no such box.
     pub around: Option<BoundingBox>,
 }
 
-/// How far outside of the box lines from outside begin, in radii of the scene: a surface in a face of the box must be met.
+/// Distance outside the box at which lines from outside begin, in radii of the scene, so that a surface in a face of
+/// the box is hit.
 const OUTSIDE: f64 = 0.25;
 
 impl Emitter {
-    /// A random ray.
+    /// Returns a random ray.
     #[inline]
     pub(crate) fn ray(&self, scene: &Scene, stream: &mut Stream) -> Ray {
         match self {
@@ -94,10 +97,10 @@ impl Emitter {
     }
 }
 
-/// How often a point is drawn anew that lies in a gap.
-const TRIES: u32 = 1000;
+/// Largest number of attempts to draw a point that is not in a gap.
+const MAX_TRIES: u32 = 1000;
 
-/// A uniform random point of what a part of a triangle covers.
+/// Returns a uniform random point of the covered area of a part of a triangle.
 pub(crate) fn point_on_surface(
     scene: &Scene,
     triangle: TriangleId,
@@ -107,7 +110,7 @@ pub(crate) fn point_on_surface(
     let mut point = point_on_triangle(stream.point()).point(part);
     if scene.is_transparent(triangle) {
         let corners = scene.corners(triangle);
-        for _ in 0..TRIES {
+        for _ in 0..MAX_TRIES {
             if stream.unit() < scene.opacity_at(triangle, Barycentric::of(point, corners)) {
                 break;
             }
@@ -117,7 +120,7 @@ pub(crate) fn point_on_surface(
     point
 }
 
-/// A ray from the sky: a uniform one through an aperture that was kept with the probability `share`.
+/// Returns a ray from the sky: a uniform line through an aperture, accepted with the probability `share`.
 fn from_sky(
     scene: &Scene,
     aperture: &SkyAperture,
@@ -137,7 +140,8 @@ fn from_sky(
     }
 }
 
-/// The ray of a line that begins where it enters a box: that of the scene, or one in it.
+/// Returns the ray of a line that begins where it enters `through`, which is the box of the scene or a box in it. The
+/// ray begins outside the box of the scene.
 fn from_outside(scene: &Scene, through: BoundingBox, line: Line) -> Ray {
     let bounds = scene.bounding_box();
     let entry = if through == bounds { 0.0 } else { entry(bounds, &line) };
@@ -145,7 +149,7 @@ fn from_outside(scene: &Scene, through: BoundingBox, line: Line) -> Ray {
     Line { origin: line.origin - back * line.direction, ..line }.into()
 }
 
-/// How far it is from a point in a box back to where its line has entered the box.
+/// Returns the distance from the origin of a line, which lies in a box, back to where the line enters that box.
 fn entry(bounds: BoundingBox, line: &Line) -> f64 {
     let of = |axis: usize| {
         let (to_min, to_max) = (line.origin[axis] - bounds.min[axis], line.origin[axis] - bounds.max[axis]);

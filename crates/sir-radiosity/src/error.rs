@@ -1,44 +1,45 @@
-//! Errors.
+//! The error type of the crate.
 
 use thiserror::Error;
 
-/// Why light cannot be computed.
+/// An error that prevents a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SolveError {
-    /// There is no light of any kind.
+    /// Nothing in the scene emits light.
     #[error(
         "nothing in the scene emits light; give a material an emission \
-         (glTF: emissiveFactor with KHR_materials_emissive_strength, OBJ: Ke in the MTL file), or add lights in the pipeline, for \
-         instance `Light([Sky(horizontal: 1000)])`"
+         (glTF: emissiveFactor with KHR_materials_emissive_strength, OBJ: Ke in the MTL file), or add lights in \
+         the pipeline, for instance `Light([Sky(horizontal: 1000)])`"
     )]
     NoLight,
-    /// Power was lost or made: a tally overflowed.
+    /// The energy balance does not close, because a tally overflowed.
     #[error(
-        "the energy balance of the {stage} does not close: a tally overflowed, because too few lines \
-         carry too much power each; ask for more lines"
+        "the energy balance of the {stage} does not close (a tally overflowed, because too few lines \
+         carry too much power each); trace more lines"
     )]
     Unbalanced {
-        /// `first shot` or `multipath`.
+        /// Name of the stage, such as `first shot` or `multipath`.
         stage: &'static str,
     },
-    /// View factors are asked for between too many groups.
+    /// View factors are requested between too many groups.
     #[error(
-        "the scene has {groups} groups, and view factors can be had between {most}; group the surfaces by material, or join some"
+        "the scene has {groups} groups, but view factors are limited to {most}; group the surfaces by \
+         material, or join some groups"
     )]
     TooManyGroups {
-        /// How many there are.
+        /// Number of groups.
         groups: usize,
-        /// The most.
+        /// Largest number of groups.
         most: usize,
     },
-    /// View factors are asked for with too few lines.
+    /// View factors are requested with too few lines.
     #[error("{lines} lines are too few for {groups} groups; ask for at least {fewest}")]
     TooFewLines {
-        /// Lines asked for.
+        /// Number of lines requested.
         lines: u64,
         /// Number of groups.
         groups: usize,
-        /// The fewest lines.
+        /// Smallest number of lines.
         fewest: u64,
     },
 }

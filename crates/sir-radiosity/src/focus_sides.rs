@@ -1,4 +1,4 @@
-//! Which sides of patches are in the focus.
+//! The sides of patches that are in the focus.
 
 use sir_geom::Side;
 use sir_lines::Focus;
@@ -6,20 +6,20 @@ use sir_mesh::{PatchId, SideId};
 
 use crate::model::Model;
 
-/// The sides that matter: those whose patch lies in the focus with all of its corners. Without a focus, all of them.
+/// The sides in the focus: those whose patch has all of its corners in the focus. Without a focus, all sides.
 ///
-/// Whatever line crosses such a patch meets the focus, so all that cross it count alike.
+/// Any line that crosses such a patch meets the focus, so all lines that cross it have the same weight.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FocusSides(Option<Vec<bool>>);
 
 impl FocusSides {
-    /// The sides of a model in a focus.
+    /// Returns the sides of a model that are in a focus.
     #[must_use]
     pub fn of(model: &Model, focus: Option<&Focus>) -> Self {
         let Some(focus) = focus else { return Self(None) };
         let bounds = focus.bounds();
         let mut in_focus = vec![true; model.mesh.side_count()];
-        // A face that is one patch has several triangles.
+        // A flat polygon that is one patch has several triangles.
         for triangle in model.scene.triangle_ids() {
             let corners = model.scene.corners(triangle);
             let whole = corners.iter().all(|&corner| bounds.contains(corner));
@@ -38,14 +38,14 @@ impl FocusSides {
         Self(Some(in_focus))
     }
 
-    /// True if a side is one of them.
+    /// True if a side is in the focus.
     #[inline]
     #[must_use]
     pub fn contains(&self, side: SideId) -> bool {
         self.0.as_ref().is_none_or(|in_focus| in_focus[side.index()])
     }
 
-    /// True if there are none.
+    /// True if no side is in the focus.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.as_ref().is_some_and(|in_focus| !in_focus.contains(&true))

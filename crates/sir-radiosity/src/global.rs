@@ -1,4 +1,4 @@
-//! Global lines, and what they meet.
+//! Tracing of global lines.
 
 use std::ops::Range;
 
@@ -9,36 +9,39 @@ use crate::model::Model;
 use crate::segments::{End, Segment, Segments};
 use crate::totals::Counts;
 
-/// How many records ahead memory is asked for.
-pub(crate) const AHEAD: usize = 40;
+/// Prefetch distance in records.
+pub(crate) const PREFETCH_DISTANCE: usize = 40;
 
-/// Lines that are made at a time.
+/// Number of lines that are generated at a time.
 const LINES: usize = 1024;
 
-/// Traces global lines in order, counts what they meet, and calls `visit` for each of their segments with the number
-/// of the line and its weight; `draw` makes both of the number. Some time before, `soon` gets the sides at its ends.
+/// Traces global lines in order, counts their hits, and calls `visit` for each of their segments with the number of the
+/// line and its weight.
+///
+/// `draw` returns a line and its weight for a number. `prefetch` is called for the sides at the ends of a segment some
+/// time before it is visited.
 pub(crate) fn trace(
     model: &Model,
     draw: impl Fn(u64) -> (Line, u32),
     lines: Range<u64>,
     counts: &mut Counts,
-    soon: impl Fn(SideId),
+    prefetch: impl Fn(SideId),
     mut visit: impl FnMut(u64, u32, Segment),
 ) {
     let mut tracer = model.accel.tracer();
     let mut segments = Segments::default();
-    let (mut some, mut weights) = (Vec::with_capacity(LINES), Vec::with_capacity(LINES));
+    let (mut drawn, mut weights) = (Vec::with_capacity(LINES), Vec::with_capacity(LINES));
     let mut first = lines.start;
     while first < lines.end {
         let end = lines.end.min(first + LINES as u64);
-        some.clear();
+        drawn.clear();
         weights.clear();
         for (line, weight) in (first..end).map(&draw) {
-            some.push(line);
+            drawn.push(line);
             weights.push(weight);
         }
         let mut line = first;
-        tracer.all_hits_each(&some, |hits| {
+        tracer.all_hits_each(&drawn, |hits| {
             for hits in hits.lines() {
                 counts.lines += 1;
                 counts.empty += u64::from(hits.is_empty());
@@ -47,10 +50,10 @@ pub(crate) fn trace(
             }
             segments.find(&model.mesh, hits);
             for (i, (of_line, segment)) in segments.iter().enumerate() {
-                if let Some((_, Segment { from, to })) = segments.get(i + AHEAD) {
+                if let Some((_, Segment { from, to })) = segments.get(i + PREFETCH_DISTANCE) {
                     for end in [from, to] {
                         if let End::Side(side, _) = end {
-                            soon(side);
+                            prefetch(side);
                         }
                     }
                 }

@@ -1,9 +1,9 @@
-//! Groups of surfaces between which view factors are asked for.
+//! Groups of surfaces for view factors.
 
 use sir_geom::{Scene, Side, Triangle, TriangleId};
 use sir_mesh::PatchMesh;
 
-/// Which group each triangle of a scene is in. Every group has a triangle, hence an area.
+/// The group of each triangle of a scene. Every group has a triangle, hence an area.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Grouping {
     names: Vec<String>,
@@ -12,22 +12,23 @@ pub struct Grouping {
 }
 
 impl Grouping {
-    /// A group for each material that a triangle has, in the order of their numbers. Materials may have equal names.
+    /// Returns one group for each material that a triangle has, in the order of their numbers. Materials may have equal
+    /// names.
     #[must_use]
     pub fn by_material(scene: &Scene) -> Self {
         let names = scene.materials().iter().map(|m| m.name.as_str());
         Self::new(scene, names, |triangle| triangle.material.index())
     }
 
-    /// A group for each named part of the scene, in the order of their first triangles in the file, after one without a name for
-    /// what is in no part.
+    /// Returns one group for each named part of the scene, in the order of their first triangles in the file. Triangles
+    /// that are in no part form a first group without a name.
     #[must_use]
     pub fn by_part(scene: &Scene) -> Self {
         let names = scene.groups().iter().map(String::as_str);
         Self::new(scene, names, |triangle| triangle.group.index())
     }
 
-    /// Of groups with these names, those to which `number` assigns a triangle.
+    /// Returns those of the groups with these names to which `number` assigns a triangle.
     fn new<'a>(
         scene: &Scene,
         names: impl Iterator<Item = &'a str>,
@@ -51,21 +52,21 @@ impl Grouping {
         }
     }
 
-    /// Names of the groups; one that has none is empty.
+    /// Returns the names of the groups. The name is empty for a group without one.
     #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Number of the group that a triangle is in.
+    /// Returns the number of the group of a triangle.
     #[inline]
     #[must_use]
     pub fn group_of(&self, triangle: TriangleId) -> usize {
         self.of[triangle.index()] as usize
     }
 
-    /// Areas of the groups, in the square of the scene's unit of length. Of a two-sided surface both sides count, of one with gaps
-    /// what is covered.
+    /// Returns the areas of the groups, in the square of the scene's unit of length. Both sides of a two-sided surface
+    /// count, and only the covered area of a surface with gaps.
     #[must_use]
     pub fn areas(&self, scene: &Scene, mesh: &PatchMesh) -> Vec<f64> {
         let mut areas = vec![0.0; self.names.len()];
@@ -76,7 +77,7 @@ impl Grouping {
     }
 }
 
-/// Area of a triangle that stops light, counted for each of its active sides.
+/// Returns the covered area of a triangle, counted for each of its active sides.
 pub(crate) fn active_area(scene: &Scene, mesh: &PatchMesh, triangle: TriangleId) -> f64 {
     let sides = [Side::Front, Side::Back].into_iter().filter(|&side| scene.is_active(triangle, side)).count();
     sides as f64 * mesh.covered_area_of(scene, triangle)

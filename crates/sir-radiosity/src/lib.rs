@@ -3,23 +3,24 @@
 //! # Design
 //!
 //! The method is that of Martínez, Forés and Martín (2009), *Parallel implementation of a global line Monte Carlo
-//! radiosity*, with Sbert's multipath (1996, 1997) at its heart. This crate knows how a range of lines changes a
-//! solution. It knows nothing of threads, ranks, files or progress: those who do cut the ranges, and see the state of a
-//! stage as a sequence of numbers ([`Visitor`]).
+//! radiosity*, which builds on Sbert's multipath (1996, 1997). This crate computes how a range of lines changes a
+//! solution. It contains no threads, ranks, files or progress reports. The caller divides the lines into ranges, and
+//! accesses the state of a stage as a sequence of numbers ([`Visitor`]).
 //!
-//! * A [`Stage`] traces lines in rounds; [`run_stage`] runs one on the calling thread, `sir_parallel` on many.
-//! * [`FirstShot`]: lines from the light sources ([`Emitter`]: surfaces, points, parallel light, the sky) carry the emitted power to
-//!   the first surfaces. [`SecondShot`]: lines from the brightest patches carry what these reflect.
-//! * Lines through the whole scene pass the reflected power on, between every pair of surfaces that face each other
-//!   along a line, in both directions. [`Multipath`] sends it on line by line, as published. [`Batches`] freezes
-//!   what surfaces send while the lines of a batch are traced, so that any number of workers can share them.
-//! * [`Repeats`]: the mean of independent runs of these stages, with the errors that their spread shows.
-//! * [`Solution`]: irradiance and its standard error per side of a patch. [`SensorStage`] measures it at any other point.
-//! * [`ViewFactorLines`] count which share of the light of one group of surfaces arrives at another.
+//! * A [`Stage`] traces lines in rounds. [`run_stage`] runs one on the calling thread, `sir_parallel` on many.
+//! * [`FirstShot`]: lines from the light sources ([`Emitter`]: surfaces, points, parallel light, the sky) carry the
+//!   emitted power to the first surfaces. [`SecondShot`]: lines from the brightest patches carry what these reflect.
+//! * Global lines pass the reflected power on, between every pair of surfaces that face each other along a line, in
+//!   both directions. [`Multipath`] passes it on line by line, as published. [`Batches`] fixes the power that surfaces
+//!   send while the lines of a batch are traced, so that any number of workers can share these lines.
+//! * [`Repeats`]: the mean of independent runs of these stages, with standard errors from their spread.
+//! * [`Solution`]: irradiance and its standard error per side of a patch. [`SensorStage`] measures irradiance at any
+//!   point.
+//! * [`ViewFactorLines`]: the shares of the power of one group of surfaces that arrive at another.
 //!
-//! Power is counted in whole [`Quanta`]: integers add up to the same sum in any order, by any number of workers who
-//! share the tallies, and the energy [`Balance`] closes exactly, not nearly. Lines become [`Segment`]s, which name the two sides that see each other:
-//! a new kind of line or a new transport needs to know nothing else.
+//! Power is counted in whole [`Quanta`]. Sums of integers are the same in any order, for any number of workers that
+//! share the tallies, and the energy [`Balance`] closes exactly. Lines are reduced to [`Segment`]s, which name the two
+//! sides that see each other. A new kind of line or a new transport needs to know nothing else.
 //!
 //! # Example
 //!

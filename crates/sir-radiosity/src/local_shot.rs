@@ -1,4 +1,4 @@
-//! A shot: local lines from sources, each carrying the same power to the first surface that it meets.
+//! A shot: local lines from sources, each carrying the same power to the first surface that it hits.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use sir_lines::{Allocation, Purpose, Streams};
 use sir_mesh::SideId;
 
 use crate::error::SolveError;
-use crate::global::AHEAD;
+use crate::global::PREFETCH_DISTANCE;
 use crate::model::Model;
 use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
@@ -18,19 +18,19 @@ use crate::tallies::{Counters, HEADROOM, PatchTallies, SquareUnit};
 use crate::totals::StageTotals;
 use crate::visitor::Visitor;
 
-/// Rays that are made at a time.
+/// Number of rays that are generated at a time.
 const RAYS: usize = 1024;
 
-/// Copies of the tallies that are made however large they are: later stages need more memory per side than this one.
+/// Smallest number of copies of the tallies, whatever their size. Later stages need more memory per side than this one.
 const COPIES: usize = 2;
 
-/// A first shot, which starts from nothing, or a second one, which starts from the outcome of the first.
+/// A first shot, which starts from nothing, or a second shot, which starts from the outcome of the first.
 #[derive(Debug)]
 pub struct LocalShot<'m, I> {
     input: I,
     model: &'m Model,
     sources: Vec<Source>,
-    /// The side that each source is, or is a part of; none in a first shot.
+    /// Side to which each source belongs; empty in a first shot.
     sides: Vec<SideId>,
     /// Power of one line of each source.
     per_line: Vec<Quanta>,
@@ -41,13 +41,13 @@ pub struct LocalShot<'m, I> {
     tallies: PatchTallies,
 }
 
-/// What a shot starts from. The sources of its lines follow from it.
+/// Starting point of a shot, from which the sources of its lines follow.
 pub(crate) trait ShotInput: Sync + Sized {
-    /// The name of the shot.
+    /// Name of the shot.
     const NAME: &'static str;
-    /// Tells the shot from other stages.
+    /// Number that identifies the shot among the stages.
     const KIND: u64;
-    /// Tells its random numbers from others.
+    /// Purpose of its random numbers.
     const PURPOSE: Purpose;
 
     /// Returns the sources.
@@ -57,13 +57,13 @@ pub(crate) trait ShotInput: Sync + Sized {
     /// If there is no light.
     fn sources(&self, settings: &ShotSettings<'_>) -> Result<ShotSources, SolveError>;
 
-    /// Shows the input to a visitor.
+    /// Visits the input.
     fn visit(&mut self, visitor: &mut dyn Visitor);
 
-    /// Returns the input that [`visit`](Self::visit) has shown to the visitor who saved it.
+    /// Restores the input that [`visit`](Self::visit) passed to the visitor that saved it.
     fn restore(model: &Model, visitor: &mut dyn Visitor) -> Self;
 
-    /// Returns the power that sides have received, and that which they have sent.
+    /// Returns the power that sides have received, and the power that they have sent.
     fn into_power(self, model: &Model) -> (Received, Vec<(SideId, Quanta)>);
 }
 
@@ -71,14 +71,14 @@ pub(crate) trait ShotInput: Sync + Sized {
 pub(crate) struct ShotSources {
     /// The sources, all of which emit.
     pub(crate) sources: FocusedSources,
-    /// The side that each of them is, or is a part of; none in a first shot.
+    /// Side to which each source belongs; empty in a first shot.
     pub(crate) sides: Vec<SideId>,
-    /// The size of a quantum.
+    /// Size of a quantum.
     pub(crate) unit: PowerUnit,
 }
 
 impl<I> LocalShot<'_, I> {
-    /// Returns what the shot started from, without what its lines have brought.
+    /// Returns the input of the shot, without the results of its lines.
     #[must_use]
     pub fn into_input(self) -> I {
         self.input
@@ -106,15 +106,15 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
         settings.identity(I::KIND)
     }
 
-    /// Shares lines among sources in proportion to their power, so that all lines carry the same; with a focus, all lines in it, and
-    /// all others. There are no lines if there are no sources.
+    /// Distributes lines among sources in proportion to their power, so that all lines carry the same power; with a
+    /// focus, all lines of sources in it, and all others. There are no lines if there are no sources.
     fn begin(settings: Self::Settings, input: I, workers: &dyn Workers) -> Result<Self, SolveError> {
         let ShotSources { sources, sides, unit } = input.sources(&settings)?;
         let ShotSettings { model, lines, seed } = settings;
         let weights = sources.weights();
         let FocusedSources { sources, density, .. } = sources;
         let lines = if sources.is_empty() { 0 } else { lines.count };
-        // A line carries ΣΦ/N in all, in the color of its source; less where lines are denser, for which there are more.
+        // A line carries ΣΦ/N in the color of its source, and less in the focus, where there are more lines.
         let line = weights.iter().sum::<f64>() / lines.max(1) as f64;
         let quanta = |(source, weight): (&Source, _)| unit.quanta(source.power * (line / weight));
         let per_line: Vec<Quanta> = sources.iter().zip(&weights).map(quanta).collect();
@@ -122,7 +122,8 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
             Streams::new(seed, Purpose::ALLOCATION).line(I::PURPOSE.0 - Purpose::FIRST_SHOT.0).unit();
         let allocation = Allocation::new(&weights, lines, offset);
         let streams = Streams::new(seed, I::PURPOSE);
-        // No line brings more than this: where those in a focus bring much less, squares need no headroom but all digits.
+        // No line brings more than this. Lines in a focus may bring much less, so squares then need precision, not
+        // headroom.
         let exact = if density > 1.0 { 1.0 / HEADROOM.sqrt() } else { 1.0 };
         let largest = |band: usize| exact * per_line.iter().map(|q| q.0[band] as f64).fold(0.0, f64::max);
         let squares = SquareUnit::new([0, 1, 2].map(largest), lines as f64);
@@ -130,7 +131,7 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
         Ok(Self { input, model, sources, sides, per_line, allocation, streams, unit, lines, tallies })
     }
 
-    /// Restores the input and the tallies: the sources follow from the input.
+    /// Restores the input and the tallies. The sources follow from the input.
     fn restore(
         settings: Self::Settings,
         workers: &dyn Workers,
@@ -155,7 +156,7 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
         let tallies = self.tallies.of_worker(worker);
         let mut tracer = accel.tracer();
         let (mut rays, mut powers) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
-        let (mut met, mut gifts) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
+        let (mut hits, mut deposits) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
         let mut first = lines.start;
         while first < lines.end {
             let end = lines.end.min(first + RAYS as u64);
@@ -166,35 +167,35 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
                 powers.push(self.per_line[source]);
             }
             first = end;
-            met.clear();
-            gifts.clear();
+            hits.clear();
+            deposits.clear();
             tracer.closest_each(&rays, |i, hit| {
                 totals.balance.emitted += powers[i];
                 totals.counts.lines += 1;
                 match hit {
-                    Some(hit) => met.push((hit, powers[i])),
+                    Some(hit) => hits.push((hit, powers[i])),
                     None => {
                         totals.balance.escaped += powers[i];
                         totals.counts.empty += 1;
                     }
                 }
             });
-            totals.counts.crossings += met.len() as u64;
-            for (i, &(hit, power)) in met.iter().enumerate() {
-                if let Some((ahead, _)) = met.get(i + AHEAD) {
+            totals.counts.crossings += hits.len() as u64;
+            for (i, &(hit, power)) in hits.iter().enumerate() {
+                if let Some((ahead, _)) = hits.get(i + PREFETCH_DISTANCE) {
                     sir_accel::prefetch(mesh.place_of(ahead.triangle));
                 }
                 match mesh.side_at(hit.triangle, hit.point, hit.side) {
-                    Some(side) => gifts.push((side, power)),
+                    Some(side) => deposits.push((side, power)),
                     None => totals.balance.blocked += power,
                 }
             }
-            // Records are far apart in memory, which is asked for some time before.
-            for (i, &(side, power)) in gifts.iter().enumerate() {
-                if let Some(&(ahead, _)) = gifts.get(i + AHEAD) {
+            // Records are far apart in memory, so they are prefetched.
+            for (i, &(side, power)) in deposits.iter().enumerate() {
+                if let Some(&(ahead, _)) = deposits.get(i + PREFETCH_DISTANCE) {
                     tallies.prefetch(ahead);
                 }
-                tallies.give(side, power);
+                tallies.deposit(side, power);
             }
         }
     }
@@ -208,7 +209,7 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
         self.visit_round(visitor);
     }
 
-    /// Adds to the input what the lines have brought, and what their sources have sent.
+    /// Adds what the lines have brought and what their sources have sent to the input.
     fn finish(self, totals: StageTotals) -> Result<Shot, SolveError> {
         let Self { input, model, sides, per_line, allocation, unit, tallies, .. } = self;
         let (mut received, mut sent) = input.into_power(model);
@@ -220,7 +221,7 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
             balance.unshot += reflected;
             balance.absorbed += power - reflected;
             received.power[side.index()] += power;
-            // The number of lines is given, so the variance of a sum is binomial: Σw² − (Σw)²/N.
+            // The number of lines is fixed, so the variance of a sum is binomial: Σw² − (Σw)²/N.
             let (squares, variance) = (tallies.squares(side), &mut received.variance[side.index()]);
             for (k, variance) in variance.iter_mut().enumerate() {
                 let power = power.0[k] as f64;

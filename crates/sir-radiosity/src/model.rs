@@ -1,4 +1,4 @@
-//! What is solved: a scene, its patches, and the means to trace lines through it.
+//! The input of all stages: a scene, its patches, and an acceleration structure.
 
 use sir_accel::{Accel, AccelError};
 use sir_geom::{BoundingBox, Rgb, Scene, Side, TriangleId};
@@ -7,43 +7,44 @@ use thiserror::Error;
 
 use crate::build_accel::build_accel;
 
-/// The reason why a scene cannot be prepared.
+/// An error that prevents a scene from being prepared.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ModelError {
     /// The triangles cannot be cut into patches.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The triangles cannot be arranged for tracing.
+    /// The acceleration structure cannot be built.
     #[error(transparent)]
     Accel(#[from] AccelError),
 }
 
-/// A scene, cut into patches and ready for lines. Immutable, and shared by all who trace.
+/// A scene with its patches and its acceleration structure. Immutable, and shared by all workers.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// The surfaces.
+    /// The scene: surfaces, lights and sky.
     pub scene: Scene,
-    /// Their patches.
+    /// Patches of the surfaces.
     pub mesh: PatchMesh,
-    /// The same triangles, arranged for tracing.
+    /// Acceleration structure over the same triangles.
     pub accel: Accel,
 }
 
 impl Model {
-    /// Cuts a scene into patches and prepares it for tracing.
+    /// Cuts a scene into patches and builds its acceleration structure.
     ///
     /// # Errors
     ///
-    /// If the subdivision is impossible, or the triangles cannot be arranged for tracing.
+    /// If the subdivision is impossible, or the acceleration structure cannot be built.
     pub fn new(scene: Scene, subdivision: Subdivision) -> Result<Self, ModelError> {
         Self::within(scene, subdivision, None)
     }
 
-    /// As [`new`](Self::new), but triangles whose box does not meet this one, if there is one, are not cut.
+    /// Does the same as [`new`](Self::new), but does not cut triangles whose bounding box does not meet `bounds`, if
+    /// given.
     ///
     /// # Errors
     ///
-    /// If the subdivision is impossible, or the triangles cannot be arranged for tracing.
+    /// If the subdivision is impossible, or the acceleration structure cannot be built.
     pub fn within(
         scene: Scene,
         subdivision: Subdivision,
@@ -54,7 +55,9 @@ impl Model {
         Ok(Self { scene, mesh, accel })
     }
 
-    /// Reflectance of the patch to which a side belongs; `id` must be a side of a patch of `triangle`, here and in the functions below.
+    /// Returns the reflectance of the patch to which a side belongs.
+    ///
+    /// Here and in the functions below, `id` must be a side of a patch of `triangle`.
     #[inline]
     #[must_use]
     pub fn reflectance(&self, triangle: TriangleId, id: SideId) -> Rgb {
@@ -65,7 +68,8 @@ impl Model {
         }
     }
 
-    /// Area of the patch to which a side belongs, without its gaps: what power is divided by. It may be zero.
+    /// Returns the covered area of the patch to which a side belongs, which excludes gaps. Power is divided by it. It
+    /// may be zero.
     #[inline]
     #[must_use]
     pub fn area(&self, triangle: TriangleId, id: SideId) -> f64 {
@@ -76,13 +80,14 @@ impl Model {
         }
     }
 
-    /// The exitance `M` \[W/m²\] of a side of a patch.
+    /// Returns the exitance `M` \[W/m²\] of a side of a patch.
     #[must_use]
     pub fn exitance(&self, triangle: TriangleId, patch: PatchId, side: Side) -> Rgb {
         self.mesh.exitance(&self.scene, triangle, patch, side)
     }
 
-    /// The radiosity `B = M + ρ E` \[W/m²\] under the irradiance `E` \[W/m²\]; `side` must be the one with the number `id`.
+    /// Returns the radiosity `B = M + ρ E` \[W/m²\] for the irradiance `E` \[W/m²\]. `side` must be the side with the
+    /// number `id`.
     #[must_use]
     pub fn radiosity(&self, triangle: TriangleId, side: Side, id: SideId, irradiance: Rgb) -> Rgb {
         let patch = self.mesh.patch_of_side(triangle, id);

@@ -1,17 +1,17 @@
-//! Multipath: global lines pass power on between all surfaces that face each other, one after the other.
+//! Multipath: global lines, traced one after the other, pass power on between all surfaces that face each other.
 //!
 //! Sbert, Pueyo, Neumann and Purgathofer (1996), *Global multipath Monte Carlo algorithms for radiosity*; Martínez,
 //! Forés and Martín (2009), sections 2 and 4.
 //!
-//! What a line carries depends on the lines before it, so this transport can only be shared among workers by running it
-//! several times: the *replicas* of Martínez, Forés and Martín share the lines and the light, and their results add up
-//! (which is to say that full results are averaged). Power that has been reflected but not sent on when the lines of a
-//! replica end is missing from the result: a share of about `ρ/(1−ρ) · P/n` for patches that `n` lines cross in `P`
-//! replicas together.
+//! What a line carries depends on the lines before it, so workers can share this transport only by running it several
+//! times. The *replicas* of Martínez, Forés and Martín share the lines and the light, and their results add up, which
+//! is the same as averaging full results. Power that has been reflected but not sent on when the lines of a replica end
+//! is missing from the result: a share of about `ρ/(1−ρ) · P/n` for patches that `n` lines cross in `P` replicas
+//! together.
 //!
-//! Here the last lines of a replica, the *tail*, take no power from the sources and only send on: what is left then
-//! falls off like `exp(−(1−ρ) m)` with the number `m` of them that cross a patch. Without a tail, the method is as
-//! published.
+//! Here the last lines of a replica, the *tail*, take no power from the sources and only send on reflected power. What
+//! is left then falls off like `exp(−(1−ρ) m)`, where `m` is the number of tail lines that cross a patch. Without a
+//! tail, the method is as published.
 
 use std::ops::Range;
 
@@ -33,17 +33,17 @@ use crate::totals::{Balance, StageTotals};
 use crate::transported::Transported;
 use crate::visitor::Visitor;
 
-/// Settings of a transport by multipath.
+/// Settings of a multipath transport.
 #[derive(Clone, Debug)]
 pub struct MultipathSettings<'m> {
     /// The scene and its patches.
     pub model: &'m Model,
-    /// What lines are drawn through.
+    /// The domain through which lines are drawn.
     pub domain: Domain,
-    /// Number of lines, of all replicas together.
+    /// Number of lines of all replicas together.
     pub lines: u64,
-    /// Number of lines, at the ends of the replicas, that only send on what was reflected. With none, the method is as
-    /// published.
+    /// Number of lines of all tails together: the last lines of each replica, which only send on reflected power. With
+    /// zero, the method is as published.
     pub tail: u64,
     /// Number of independent replicas that share the lines: at least 1.
     pub replicas: u64,
@@ -52,7 +52,7 @@ pub struct MultipathSettings<'m> {
 }
 
 impl<'m> MultipathSettings<'m> {
-    /// Returns the settings for this number of lines in one replica, of which the last tenth is the tail.
+    /// Returns the settings for this number of lines in one replica, whose last tenth is the tail.
     #[must_use]
     pub fn new(model: &'m Model, domain: Domain, lines: u64, seed: u64) -> Self {
         Self { model, domain, lines, tail: lines / 10, replicas: 1, seed }
@@ -65,18 +65,18 @@ pub struct Multipath<'m> {
     settings: MultipathSettings<'m>,
     /// The direct light.
     received: Received,
-    /// What the lines bring, and the share of the reflected direct power that leaves with each line.
+    /// Power that the lines bring, and the share of the reflected direct power that leaves with each line.
     tallies: PatchTallies,
     streams: Streams,
     unit: PowerUnit,
 }
 
-/// State of one replica: multipath on its share of the lines.
+/// State of one replica: multipath with its share of the lines.
 #[derive(Clone, Debug)]
 pub struct Replica {
-    /// The line after its last one.
+    /// The end of its range of lines, exclusive.
     end: u64,
-    /// From which line on nothing is taken from the sources.
+    /// The first line of the tail.
     tail: u64,
     /// Power received and reflected, but not sent on.
     unshot: Vec<Quanta>,
@@ -113,8 +113,8 @@ impl<'m> Stage for Multipath<'m> {
 
     /// Prepares the transport of the reflected direct power of a shot.
     ///
-    /// A side of a patch of area `A` is left by `n = N · 2A/S` of the `N` lines that are not in a tail on average, so
-    /// each takes `1/n` of its reflected direct power along.
+    /// Of the `N` lines that are not in a tail, `n = N · 2A/S` leave a side of a patch of area `A` on average, so each
+    /// takes `1/n` of the reflected direct power of the side along.
     fn begin(settings: Self::Settings, shot: Shot, workers: &dyn Workers) -> Result<Self, SolveError> {
         let model = settings.model;
         let forecast = settings.domain.forecast(settings.lines.saturating_sub(settings.tail));
@@ -124,7 +124,7 @@ impl<'m> Stage for Multipath<'m> {
         model.mesh.for_each_side(|triangle, _, _, side| {
             let reflectance = model.reflectance(triangle, side);
             let crossings = forecast.crossings(model.area(triangle, side));
-            // A patch that is all gap holds nothing.
+            // A patch without covered area holds no power.
             let share = unshot[side.index()].0.map(|q| if q == 0 { 0.0 } else { q as f64 / crossings });
             for band in 0..3 {
                 largest[band] = f64::max(largest[band], share[band] / (1.0 - reflectance[band]));
@@ -169,16 +169,16 @@ impl<'m> Stage for Multipath<'m> {
         Replica { end: lines.end, tail, unshot: vec![Quanta::ZERO; model.mesh.side_count()] }
     }
 
-    /// Traces the next lines of a replica. At its end, what is unshot is counted as such.
+    /// Traces the next lines of a replica. After its last line, its unshot power is added to the balance.
     fn trace(&self, worker: usize, replica: &mut Replica, lines: Range<u64>, totals: &mut StageTotals) {
         let Replica { end, tail, unshot } = replica;
         let at_the_end = lines.end == *end;
         let StageTotals { balance, counts } = totals;
         let MultipathSettings { model, domain, .. } = &self.settings;
         let tallies = self.tallies.of_worker(worker);
-        let soon = |side| tallies.prefetch(side);
+        let prefetch = |side| tallies.prefetch(side);
         let draw = |index| (domain.line(self.streams.line(index).point()), 1);
-        global::trace(model, draw, lines, counts, soon, |index, _, segment| {
+        global::trace(model, draw, lines, counts, prefetch, |index, _, segment| {
             exchange(model, tallies, unshot, balance, segment, index < *tail);
         });
         if at_the_end {
@@ -216,7 +216,7 @@ impl<'m> Stage for Multipath<'m> {
 }
 
 impl Multipath<'_> {
-    /// Shows the state, except the units that are needed before.
+    /// Visits the state except the units, which are needed before the tallies can be created.
     fn visit_after_units(&mut self, visitor: &mut dyn Visitor) {
         self.tallies.visit(Counters::All, visitor);
         self.tallies.visit_shares(visitor);
@@ -224,7 +224,7 @@ impl Multipath<'_> {
     }
 }
 
-/// Both ends of a segment send what they hold to the other one.
+/// Exchanges the power that the two ends of a segment hold.
 #[inline]
 fn exchange(
     model: &Model,
@@ -243,8 +243,8 @@ fn exchange(
     match (segment.from, segment.to) {
         (End::Side(i, triangle_i), End::Side(j, triangle_j)) => {
             let (from_i, from_j) = (take(i), take(j));
-            give(model, tallies, unshot, balance, (j, triangle_j), from_i);
-            give(model, tallies, unshot, balance, (i, triangle_i), from_j);
+            deposit(model, tallies, unshot, balance, (j, triangle_j), from_i);
+            deposit(model, tallies, unshot, balance, (i, triangle_i), from_j);
         }
         (End::Side(i, _), End::Outside) | (End::Outside, End::Side(i, _)) => {
             let power = take(i);
@@ -258,9 +258,9 @@ fn exchange(
     }
 }
 
-/// A side receives power, absorbs some and keeps the rest to send it on.
+/// Adds received power to a side, which absorbs a part and keeps the rest to send it on.
 #[inline]
-fn give(
+fn deposit(
     model: &Model,
     tallies: WorkerTallies<'_>,
     unshot: &mut [Quanta],
@@ -268,7 +268,7 @@ fn give(
     (side, triangle): (SideId, TriangleId),
     power: Quanta,
 ) {
-    tallies.give(side, power);
+    tallies.deposit(side, power);
     let reflected = power.scaled(model.reflectance(triangle, side));
     unshot[side.index()] += reflected;
     balance.absorbed += power - reflected;

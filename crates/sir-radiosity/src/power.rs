@@ -1,4 +1,4 @@
-//! Power as whole numbers.
+//! Power in integers.
 
 use std::ops::{Add, AddAssign, Sub};
 
@@ -16,7 +16,7 @@ impl Quanta {
     /// No power.
     pub const ZERO: Self = Self([0; 3]);
 
-    /// This power times a fraction per band, to the nearest quantum, halves away from zero.
+    /// Returns this power times a fraction per band, rounded to the nearest quantum, halves away from zero.
     #[inline]
     #[must_use]
     pub fn scaled(self, fraction: Rgb) -> Self {
@@ -27,14 +27,14 @@ impl Quanta {
         }))
     }
 
-    /// This power so many times; saturates.
+    /// Returns `count` times this power; saturates.
     #[inline]
     #[must_use]
     pub fn times(self, count: i64) -> Self {
         Self(self.0.map(|q| q.saturating_mul(count)))
     }
 
-    /// Sum over the bands.
+    /// Returns the sum over the bands.
     #[must_use]
     pub fn total(self) -> f64 {
         self.0.iter().map(|&q| q as f64).sum()
@@ -69,56 +69,56 @@ impl Sub for Quanta {
     }
 }
 
-/// Shows power that every worker holds identically.
+/// Visits power that every worker holds identically.
 pub(crate) fn visit_quanta(quanta: &mut [Quanta], visitor: &mut dyn Visitor) {
     visit_slice(quanta, visitor, |quanta| quanta.0, Quanta);
 }
 
-/// The size of a quantum in watts: a power of two, so that converting costs no more than one rounding.
+/// Size of a quantum in watts: a power of two, so that a conversion costs at most one rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerUnit {
     quantum: f64,
 }
 
 impl PowerUnit {
-    /// A unit fine enough to lose nothing and coarse enough not to overflow.
+    /// Returns a unit that is fine enough to lose nothing and coarse enough not to overflow.
     ///
     /// All the power that is ever received, counted again at each reflection, is at most `total / (1 − ρ)` for the
-    /// largest reflectance `ρ`; the unit lets that number, four times over for chance, fill 62 bits. For `ρ ≤ 0.999`
-    /// the quantum is at most 2⁻⁵⁰ of the total. `total` \[W\] is that of the strongest band.
+    /// largest reflectance `ρ`. The unit lets four times that number, as a margin for chance, fill 62 bits. For
+    /// `ρ ≤ 0.999` the quantum is at most 2⁻⁵⁰ of the total. `total` \[W\] is that of the strongest band.
     #[must_use]
     pub fn for_total(total: f64, largest_reflectance: f64) -> Self {
         let ceiling = 4.0 * total / (1.0 - largest_reflectance);
-        // The next power of two, by its exponent bits: exact, where `log2` is not.
+        // The next power of two from the exponent bits, which is exact, unlike `log2`.
         let exponent = ((ceiling.max(f64::MIN_POSITIVE).to_bits() >> 52) as i32) - 1023 + 1;
         Self { quantum: 2f64.powi((exponent - 62).max(-1000)) }
     }
 
-    /// Returns the unit that [`visit`](Self::visit) has shown to the visitor who saved it.
+    /// Restores the unit that [`visit`](Self::visit) passed to the visitor that saved it.
     pub(crate) fn restore(visitor: &mut dyn Visitor) -> Self {
         let mut unit = Self { quantum: 1.0 };
         unit.visit(visitor);
         unit
     }
 
-    /// Shows the unit to a visitor.
+    /// Visits the unit.
     pub(crate) fn visit(&mut self, visitor: &mut dyn Visitor) {
         visit_float(&mut self.quantum, visitor);
     }
 
-    /// The nearest whole number of quanta; saturates.
+    /// Returns the nearest whole number of quanta; saturates.
     #[must_use]
     pub fn quanta(self, power: Rgb) -> Quanta {
         Quanta(power.to_array().map(|p| (p / self.quantum + 0.5) as i64))
     }
 
-    /// The power \[W\].
+    /// Returns the power in watts.
     #[must_use]
     pub fn watts(self, quanta: Quanta) -> Rgb {
         Rgb::from_array(quanta.0.map(|q| q as f64 * self.quantum))
     }
 
-    /// Watts per quantum.
+    /// Returns the number of watts per quantum.
     #[must_use]
     pub fn quantum(self) -> f64 {
         self.quantum

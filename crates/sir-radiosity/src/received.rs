@@ -14,19 +14,19 @@ pub struct Received {
     pub power: Vec<Quanta>,
     /// Estimated variance of `power` per band \[quanta²\], indexed by [`SideId`](sir_mesh::SideId).
     ///
-    /// If lines bring the amounts `w` independently, the variance of their sum is about `Σw²` (compound Poisson), less where the
-    /// number of lines is corrected: that is where the standard errors of a single run come from.
+    /// If lines bring the amounts `w` independently, the variance of their sum is about `Σw²` (compound Poisson), and
+    /// smaller where the number of lines is corrected. The standard errors of a single run follow from it.
     pub variance: Vec<[f32; 3]>,
 }
 
 impl Received {
-    /// Nothing received yet on this number of sides.
+    /// Returns zero power for this number of sides.
     #[must_use]
     pub fn nothing(sides: usize) -> Self {
         Self { power: vec![Quanta::ZERO; sides], variance: vec![[0.0; 3]; sides] }
     }
 
-    /// SHA-256 of the tallies in hexadecimal: the same for the same result, on any machine.
+    /// Returns the SHA-256 hash of the tallies in hexadecimal. It is the same for the same result on any machine.
     #[must_use]
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();

@@ -1,12 +1,12 @@
-//! Independent repeats of the same stages: their mean, and the errors that their spread shows.
+//! Independent repeats of the same stages: their mean, and standard errors from their spread.
 //!
-//! A run of few lines is right on average, so the mean of `k` runs with independent random numbers is right, too, and its
-//! variance can be told without any assumption about what happens within a run: `Σ(x − mean)²/(k (k − 1))`. What the
-//! errors of a single run leave out, such as noise that a patch inherits from its neighbors, is in there.
+//! A run of few lines is unbiased, so the mean of `k` runs with independent random numbers is, too. Its variance can be
+//! estimated without any assumption about a single run: `Σ(x − mean)²/(k (k − 1))`. It includes what the errors of a
+//! single run leave out, such as noise that a patch inherits from its neighbors.
 //!
-//! The spread of few runs is itself uncertain: with `k` of them the deviation from the truth over the standard error
-//! follows Student's t distribution of `k − 1` degrees of freedom. With fewer than [`MIN_REPEATS`] the variance is therefore the mean of
-//! those that the runs state, over `k`.
+//! The spread of few runs is itself uncertain. For `k` runs, the deviation from the truth over the standard error
+//! follows Student's t distribution with `k − 1` degrees of freedom. With fewer than [`MIN_REPEATS`], the variance is
+//! therefore the mean of the variances that the runs state, over `k`.
 
 use std::ops::AddAssign;
 
@@ -16,10 +16,10 @@ use crate::totals::{Balance, Counts};
 use crate::visitor::Visitor;
 use crate::visitor::{from_word, to_word, visit_counts, visit_slice};
 
-/// Repeats from which on errors come from their spread.
+/// Smallest number of repeats for which errors are computed from their spread.
 pub const MIN_REPEATS: u64 = 8;
 
-/// A sum of power over repeats, of which there may be too many for the 64 bits of [`Quanta`].
+/// Sum of power over repeats. The sum may exceed the 64 bits of [`Quanta`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct QuantaSum([i128; 3]);
 
@@ -30,13 +30,13 @@ impl AddAssign<Quanta> for QuantaSum {
 }
 
 impl QuantaSum {
-    /// The mean of `count` repeats to the nearest quantum, halves away from zero.
+    /// Returns the mean of `count` repeats to the nearest quantum, halves away from zero.
     fn mean(self, count: u64) -> Quanta {
         let count = i128::from(count.max(1));
         Quanta(self.0.map(|sum| ((2 * sum + sum.signum() * count) / (2 * count)) as i64))
     }
 
-    /// As words of 64 bits, the low ones first.
+    /// Returns the sum as words of 64 bits, low words first.
     fn words(self) -> [i64; 6] {
         let [r, g, b] = self.0;
         [r as i64, (r >> 64) as i64, g as i64, (g >> 64) as i64, b as i64, (b >> 64) as i64]
@@ -59,42 +59,45 @@ pub struct Repeats {
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     power: QuantaSum,
-    /// Of the squared deviations from the mean \[quanta²\].
+    /// Sum of the squared deviations from the mean \[quanta²\].
     squares: [f64; 3],
-    /// Of the variances that the repeats state \[quanta²\].
+    /// Sum of the variances that the repeats state \[quanta²\].
     stated: [f32; 3],
 }
 
 impl Repeats {
-    /// Memory that a side takes \[bytes\].
+    /// Memory per side \[bytes\].
     pub const BYTES_PER_SIDE: usize = size_of::<Sums>();
 
-    /// No repeats yet, of runs with this number of sides.
+    /// Returns the sums over no repeats, for runs with this number of sides.
     #[must_use]
     pub fn new(sides: usize) -> Self {
         Self { count: 0, sides: vec![Sums::default(); sides] }
     }
 
-    /// Number of repeats so far.
+    /// Returns the number of repeats so far.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// Whether the errors come from the spread of the repeats, and not from what each of them states.
+    /// True if the errors are computed from the spread of the repeats, and not from the errors that each of them
+    /// states.
     #[must_use]
     pub fn have_spread(&self) -> bool {
         self.count >= MIN_REPEATS
     }
 
-    /// Adds one more repeat, in the order of their numbers: power adds up in any, squares are rounded.
+    /// Adds a repeat. Repeats must be added in the order of their numbers: sums of power are the same in any order, but
+    /// squared deviations are rounded.
     pub fn add(&mut self, received: &Received) {
         let n = self.count;
         for (sums, (power, variance)) in
             self.sides.iter_mut().zip(received.power.iter().zip(&received.variance))
         {
             if n > 0 {
-                // Welford (1962). The deviation from the mean before is that of whole numbers, so nothing cancels.
+                // Welford (1962). The deviation from the previous mean is computed in integers, so there is no
+                // cancellation.
                 let weight = n as f64 / (n + 1) as f64;
                 for ((square, sum), power) in sums.squares.iter_mut().zip(sums.power.0).zip(power.0) {
                     let deviation = (i128::from(power) * i128::from(n) - sum) as f64 / n as f64;
@@ -107,7 +110,8 @@ impl Repeats {
         self.count += 1;
     }
 
-    /// The mean of all repeats, to the nearest quantum, with the variance of the mean. The mean of one is that one.
+    /// Returns the mean of all repeats, to the nearest quantum, with the variance of the mean. The mean of a single
+    /// repeat is that repeat.
     #[must_use]
     pub fn mean(&self) -> Received {
         let k = self.count.max(1);
@@ -122,7 +126,7 @@ impl Repeats {
         }
     }
 
-    /// Shows the sums to a visitor.
+    /// Visits the sums.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
         visit_counts([&mut self.count], visitor);
         visit_slice(
@@ -143,7 +147,7 @@ impl Repeats {
     }
 }
 
-/// What the lines of one stage met, and where their power went, in all repeats so far.
+/// Counts and energy balance of one stage, summed over all repeats so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RepeatedTotals {
     counts: Counts,
@@ -153,7 +157,7 @@ pub struct RepeatedTotals {
 }
 
 impl RepeatedTotals {
-    /// Adds those of one more repeat.
+    /// Adds the totals of one more repeat.
     pub fn add(&mut self, balance: &Balance, counts: Counts, extrapolated: Quanta) {
         let Balance { emitted, absorbed, blocked, escaped, unshot } = *balance;
         let powers = [emitted, absorbed, blocked, escaped, unshot];
@@ -162,14 +166,14 @@ impl RepeatedTotals {
         self.extrapolated += extrapolated;
     }
 
-    /// What all lines met.
+    /// Returns the counts of all lines.
     #[must_use]
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// The mean balance of `count` repeats: to the nearest quantum, but for the unshot, which takes what is left by rounding, so that
-    /// it closes if those of all repeats do.
+    /// Returns the mean balance of `count` repeats, to the nearest quantum, except for the unshot power. That is the
+    /// remainder, so that the mean closes if the balances of all repeats do.
     #[must_use]
     pub fn mean_balance(&self, count: u64) -> Balance {
         let closes = |k: usize| {
@@ -184,13 +188,13 @@ impl RepeatedTotals {
         Balance { emitted, absorbed, blocked, escaped, unshot }
     }
 
-    /// The mean power made up for the unshot in `count` repeats.
+    /// Returns the mean extrapolated power of `count` repeats.
     #[must_use]
     pub fn mean_extrapolated(&self, count: u64) -> Quanta {
         self.extrapolated.mean(count)
     }
 
-    /// Shows the sums to a visitor.
+    /// Visits the sums.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
         let Counts { lines, empty, odd, crossings } = &mut self.counts;
         visit_counts([lines, empty, odd, crossings], visitor);
@@ -233,7 +237,7 @@ mod tests {
 
     #[test]
     fn the_spread_is_that_of_the_textbook() {
-        // Small deviations of large numbers: nothing may cancel.
+        // Small deviations of large numbers, which must not cancel.
         let far = 1_i64 << 60;
         let deviations = [3, -1, 4, -1, 5, -9, 2, -6, 5, 3];
         let mut repeats = Repeats::new(1);

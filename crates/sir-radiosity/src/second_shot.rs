@@ -1,9 +1,12 @@
-//! The second shot: the brightest patches send what they reflect of the first one along local lines, too.
+//! The second shot: local lines from the brightest patches, which send what these reflect of the first shot.
 //!
-//! Castro, Martínez and Sbert (1998) call it an extended first shot. A global line carries as much as the patch that it leaves is
-//! bright; where light falls on a wall from nearby, it is as bright as a lamp, and what it sends makes most of the noise of all that
-//! see it. Local lines carry the same from everywhere. The brightest patches are those whose power is to all the power of the
-//! sources as the lines of this shot are to those of the first: then a line carries as much as a line of the first shot.
+//! Castro, Martínez and Sbert (1998) call it an extended first shot. The power that a global line carries is in
+//! proportion to the radiosity of the patch that it leaves. Where light falls on a wall from nearby, the wall is as
+//! bright as a lamp, and its global lines cause most of the noise of all surfaces that see it. Local lines carry the
+//! same power from everywhere.
+//!
+//! The ratio of the power of the brightest patches to the power of all sources is that of the lines of this shot to the
+//! lines of the first shot. A line of this shot then carries as much power as a line of the first shot.
 
 use sir_geom::{Rgb, Side};
 use sir_lines::Purpose;
@@ -21,8 +24,8 @@ use crate::sources::{FocusedSources, Source};
 use crate::totals::{Balance, Counts};
 use crate::visitor::{Visitor, visit_counts};
 
-/// The second shot: lines from the brightest patches; with a focus, that of the first shot, from those in it. There are no lines
-/// if nothing reflects.
+/// The second shot: lines from the brightest patches; with the focus of the first shot, from the brightest patches in
+/// it. There are no lines if nothing reflects.
 pub type SecondShot<'m> = LocalShot<'m, Shot>;
 
 impl ShotInput for Shot {
@@ -69,13 +72,13 @@ impl ShotInput for Shot {
     }
 }
 
-/// Returns the patches of the bright sides as sources of what they have still to send, with the side of each.
+/// Returns the patches of the bright sides as sources of the power that they still have to send, with the side of each.
 fn sources_of(model: &Model, shot: &Shot, unshot: &[Quanta], bright: &[bool]) -> (Vec<Source>, Vec<SideId>) {
     let (mut sources, mut sides) = (Vec::new(), Vec::new());
     for triangle in model.scene.triangle_ids() {
         let (corners, front) = (model.scene.corners(triangle), model.scene.normal(triangle));
         let patches = model.mesh.patches_of(triangle);
-        // A face that is one patch has several triangles.
+        // A flat polygon that is one patch has several triangles.
         let part = model.scene.area(triangle) / (patches.len() as f64 * model.mesh.patch_area(triangle));
         for patch in patches.map(PatchId) {
             for (side, normal) in [(Side::Front, front), (Side::Back, -front)] {
@@ -93,7 +96,8 @@ fn sources_of(model: &Model, shot: &Shot, unshot: &[Quanta], bright: &[bool]) ->
     (sources, sides)
 }
 
-/// Returns, per side, whether it is one of the brightest in the focus that hold `total` together, or of all that hold something.
+/// Returns, per side, true if it is one of the brightest sides in the focus that hold `total` together. If all sides
+/// together hold less, all that hold power are bright.
 fn brightest(model: &Model, unshot: &[Quanta], in_focus: &FocusSides, total: f64) -> Vec<bool> {
     let mut sides = Vec::new();
     model.mesh.for_each_side(|triangle, _, _, side| {

@@ -4,18 +4,18 @@ use sir_accel::LineHits;
 use sir_geom::{Side, TriangleId};
 use sir_mesh::{PatchMesh, SideId};
 
-/// What is at one end of a segment.
+/// One end of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// Nothing: the line comes from, or goes to, the outside of the scene.
+    /// Nothing: the line comes from or goes to the outside of the scene.
     Outside,
-    /// The back of a one-sided surface: it absorbs what it gets.
+    /// The back of a one-sided surface, which absorbs what it receives.
     Inactive,
-    /// A side that reflects, of a patch of a triangle.
+    /// A reflecting side of a patch of a triangle.
     Side(SideId, TriangleId),
 }
 
-/// A part of a line between two neighboring surfaces.
+/// The part of a line between two neighboring surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     /// The end nearer to the origin of the line.
@@ -24,7 +24,7 @@ pub struct Segment {
     pub to: End,
 }
 
-/// An end in eight bytes: the number of the side, or what else there is, and of the triangle.
+/// An end in eight bytes: the number of the side, or a code for the other two ends, and the number of the triangle.
 #[derive(Clone, Copy, Debug)]
 struct Packed(u32, u32);
 
@@ -42,34 +42,34 @@ impl Packed {
     }
 }
 
-/// Finds the segments of lines. Holds scratch memory, so it belongs to one thread.
+/// Finds the segments of lines. It holds scratch memory, so it belongs to one thread.
 #[derive(Clone, Debug, Default)]
 pub struct Segments {
-    /// For each hit, the end towards the origin of the line and the opposite one.
+    /// Per hit, the end that faces the origin of the line and the opposite one.
     ends: Vec<[Packed; 2]>,
-    /// For each hit, the number of its line if it is the first one of it, or `LATER`.
+    /// Per hit, the number of its line if it is the first hit of that line, or `LATER`.
     first_of: Vec<u32>,
     /// The line and the ends of each segment.
     found: Vec<(u32, [Packed; 2])>,
 }
 
-/// How many hits ahead memory is asked for.
-const AHEAD: usize = 24;
+/// Prefetch distance in hits.
+const PREFETCH_DISTANCE: usize = 24;
 
-/// The mark of a hit that is not the first of its line.
+/// Mark of a hit that is not the first of its line.
 const LATER: u32 = u32::MAX;
 
 impl Segments {
-    /// Finds all segments of some lines, line by line and in order along each, the two outer ones included. A line without hits
-    /// has none.
+    /// Finds all segments of some lines, line by line and in order along each, including the two outer ones. A line
+    /// without hits has none.
     pub fn find(&mut self, mesh: &PatchMesh, hits: &LineHits<'_>) {
-        // Loops over all hits, without a branch that depends on them: the processor then works at, and waits for, many of
-        // them at once.
+        // Loops over all hits without data-dependent branches, so that the processor overlaps the memory accesses of
+        // many hits.
         let count = hits.hits().len();
         self.ends.clear();
         let found = hits.hits();
         self.ends.extend(found.iter().enumerate().map(|(i, hit)| {
-            let ahead = found[(i + AHEAD).min(count - 1)].triangle;
+            let ahead = found[(i + PREFETCH_DISTANCE).min(count - 1)].triangle;
             sir_accel::prefetch(mesh.place_of(ahead));
             let (front, back) = mesh.sides_at(hit.triangle, hit.point);
             let front = Packed(front.0, hit.triangle.0);
@@ -81,7 +81,7 @@ impl Segments {
         self.first_of.clear();
         self.first_of.resize(count + 1, LATER);
         for (line, range) in hits.lines().enumerate() {
-            // Of lines that begin at the same hit, all but the last are empty.
+            // Of several lines that begin at the same hit, all but the last are empty.
             self.first_of[range.start] = line as u32;
         }
         self.first_of[count] = 0;
@@ -98,13 +98,13 @@ impl Segments {
         self.found.truncate(next);
     }
 
-    /// How many were found.
+    /// Returns the number of segments found.
     #[must_use]
     pub fn count(&self) -> usize {
         self.found.len()
     }
 
-    /// One of those that were found, with the number of its line among those that were given.
+    /// Returns a segment with the number of its line among the given lines.
     #[inline]
     #[must_use]
     pub fn get(&self, i: usize) -> Option<(usize, Segment)> {
@@ -112,7 +112,7 @@ impl Segments {
         Some((line as usize, Segment { from: from.end(), to: to.end() }))
     }
 
-    /// All that were found.
+    /// Returns all segments found.
     pub fn iter(&self) -> impl Iterator<Item = (usize, Segment)> {
         (0..self.count()).filter_map(|i| self.get(i))
     }

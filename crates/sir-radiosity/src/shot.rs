@@ -1,4 +1,4 @@
-//! The outcome of a shot, and what is asked of one.
+//! Settings and outcome of a shot.
 
 use sir_lines::LocalLines;
 use sir_mesh::SideId;
@@ -14,7 +14,7 @@ use crate::totals::{Balance, Counts};
 pub struct ShotSettings<'m> {
     /// The scene and its patches.
     pub model: &'m Model,
-    /// Number of lines, and a focus if there is one.
+    /// Number of lines, and an optional focus.
     pub lines: LocalLines,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -26,7 +26,7 @@ impl<'m> ShotSettings<'m> {
         Self { model, lines: lines.into(), seed }
     }
 
-    /// Returns what tells a shot of this `kind` from other stages.
+    /// Returns numbers that identify a shot of this `kind` and its settings.
     pub(crate) fn identity(&self, kind: u64) -> Vec<u64> {
         let mut words = vec![kind, self.model.mesh.side_count() as u64, self.lines.count, self.seed];
         words.extend(self.lines.focus.iter().flat_map(|focus| focus.identity()));
@@ -39,19 +39,19 @@ impl<'m> ShotSettings<'m> {
 pub struct Shot {
     /// Direct power received by each side.
     pub received: Received,
-    /// The size of a quantum, for this and all later stages.
+    /// Size of a quantum, for this and all later stages.
     pub unit: PowerUnit,
-    /// Where the power went. Its `unshot` is the reflected direct power that has to be sent on.
+    /// Energy balance. Its `unshot` is the reflected direct power that has yet to be sent.
     pub balance: Balance,
-    /// What the lines met.
+    /// Counts of lines and hits.
     pub counts: Counts,
-    /// Power that some sides have sent of the light that they reflect, in a second shot.
+    /// Power that sides have sent in a second shot, of the light that they reflect.
     pub sent: Vec<(SideId, Quanta)>,
 }
 
 impl Shot {
-    /// Returns the power that each side reflects and has not sent, indexed by [`SideId`]. By chance it is a little below
-    /// zero where a side has sent all.
+    /// Returns the power that each side reflects and has not sent, indexed by [`SideId`]. By chance it is slightly
+    /// negative for some sides that have sent all of it.
     #[must_use]
     pub fn unshot(&self, model: &Model) -> Vec<Quanta> {
         let mut unshot = Vec::with_capacity(model.mesh.side_count());
@@ -65,7 +65,7 @@ impl Shot {
         unshot
     }
 
-    /// Returns the direct light alone: the irradiance by the sources, before any reflection.
+    /// Returns the direct light alone: the irradiance by the sources before any reflection.
     #[must_use]
     pub fn solution(&self, model: &Model) -> Solution {
         Solution::new(model, &self.received, self.unit)

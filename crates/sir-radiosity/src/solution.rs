@@ -1,4 +1,4 @@
-//! The result.
+//! The result: irradiances with standard errors.
 
 use sir_geom::{Rgb, Side, TriangleId};
 use sir_mesh::SideId;
@@ -17,20 +17,20 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Returns a solution without any light, of this number of sides.
+    /// Returns a solution of this number of sides in which all irradiances are zero.
     #[must_use]
     pub fn dark(sides: usize) -> Self {
         Self { irradiance: vec![Rgb::ZERO; sides], error: vec![Rgb::ZERO; sides] }
     }
 
-    /// Irradiance is received power over covered area; `unit` is that of the power.
+    /// Returns the irradiance of all sides: received power over covered area. `unit` is the unit of the power.
     #[must_use]
     pub fn new(model: &Model, received: &Received, unit: PowerUnit) -> Self {
         let sides = model.mesh.side_count();
         let mut solution = Self { irradiance: Vec::with_capacity(sides), error: Vec::with_capacity(sides) };
         model.mesh.for_each_side(|triangle, _, _, side| {
             let area = model.area(triangle, side);
-            // No line ends on a patch that is all gap.
+            // No line ends on a patch without covered area.
             let per_area = if area > 0.0 { 1.0 / area } else { 0.0 };
             solution.irradiance.push(unit.watts(received.power[side.index()]) * per_area);
             let deviation = received.variance[side.index()].map(|v| f64::from(v).sqrt() * unit.quantum());
@@ -39,13 +39,13 @@ impl Solution {
         solution
     }
 
-    /// Radiosity `B = M + ρ E` \[W/m²\]; `side` must be the given side of a patch of `triangle`.
+    /// Returns the radiosity `B = M + ρ E` \[W/m²\]. `side` must be the side of `triangle` to which `id` belongs.
     #[must_use]
     pub fn radiosity(&self, model: &Model, triangle: TriangleId, side: Side, id: SideId) -> Rgb {
         model.radiosity(triangle, side, id, self.irradiance[id.index()])
     }
 
-    /// Standard error of the radiosity \[W/m²\]; `id` must be a side of a patch of `triangle`.
+    /// Returns the standard error of the radiosity \[W/m²\]. `id` must be a side of a patch of `triangle`.
     #[must_use]
     pub fn standard_error(&self, model: &Model, triangle: TriangleId, id: SideId) -> Rgb {
         model.reflectance(triangle, id) * self.error[id.index()]

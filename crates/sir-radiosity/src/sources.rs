@@ -1,4 +1,4 @@
-//! Light sources: what there is, and how much power it has.
+//! Light sources and their power.
 
 use sir_geom::{LightKind, Rgb, Scene, Side};
 use sir_lines::{Focus, MAX_FOCUS_DENSITY, ParallelLines};
@@ -7,18 +7,20 @@ use sir_mesh::{PatchId, PatchMesh};
 use crate::emitter::{Emitter, SkyAperture};
 use crate::model::Model;
 
-/// Something that emits.
+/// A light source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
-    /// Where its lines come from.
+    /// Kind and geometry of the source.
     pub emitter: Emitter,
-    /// Emitted power `Φ` per band \[W\]: `M A` of a surface; of light from outside, what enters the box around the scene, or a part of that.
+    /// Emitted power `Φ` per band \[W\]: `M A` for a surface. For light from outside, the power that enters the box
+    /// around the scene, or a part of it.
     pub power: Rgb,
 }
 
-/// All sources of a scene: surfaces in the order of their triangles, front before back, patch by patch where a texture makes them
-/// differ (a source is then a patch, evenly bright where it is covered), then lights in their order, then the sky and
-/// its ground.
+/// Returns all sources of a scene: surfaces in the order of their triangles, front before back; then lights in their
+/// order; then the sky and its ground.
+///
+/// Where patches differ because of a texture, each patch is a source, uniformly bright where it is covered.
 #[must_use]
 pub fn sources(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
     let mut sources = surfaces(scene, mesh);
@@ -45,7 +47,7 @@ pub fn sources(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
     sources
 }
 
-/// Whether anything emits.
+/// True if anything in the scene emits.
 #[must_use]
 pub fn emits(scene: &Scene) -> bool {
     let has_sky = scene.sky().is_some_and(|sky| {
@@ -75,7 +77,7 @@ fn surfaces(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
                 continue;
             }
             let patches = mesh.patches_of(triangle);
-            // A face that is one patch has several triangles.
+            // A flat polygon that is one patch has several triangles.
             let part = area / (patches.len() as f64 * mesh.patch_area(triangle));
             for patch in patches.map(PatchId) {
                 let corners = mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
@@ -88,24 +90,27 @@ fn surfaces(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
     sources
 }
 
-/// Least share of the light from outside that must pass around a focus to be a source of its own: its lines are those of all that do
-/// not meet the focus, and would be looked for too long.
-const AROUND: f64 = 1.0 / 64.0;
+/// Smallest share of the light from outside that must pass around a focus for it to be a source of its own. Its lines
+/// are found by rejecting lines that meet the focus, which would take too long below this share.
+const MIN_AROUND_SHARE: f64 = 1.0 / 64.0;
 
-/// Sources, and where more of their lines go.
+/// Sources, with the relative density of lines in the focus.
 #[derive(Clone, Debug)]
 pub(crate) struct FocusedSources {
-    /// All sources; with a focus, light from outside is cut into what passes through it and what does not.
+    /// All sources. With a focus, light from outside is split into what passes through the focus and what does not.
     pub(crate) sources: Vec<Source>,
-    /// Which of them are in the focus.
+    /// Per source, true if it is in the focus.
     in_focus: Vec<bool>,
-    /// How many times as many lines those in the focus have for the same power: at least 1.
+    /// Ratio of lines per power in the focus to lines per power elsewhere: at least 1.
     pub(crate) density: f64,
 }
 
 impl FocusedSources {
-    /// The sources of a scene, with so many lines for those in the focus that they have the share of all that it asks for. Within both kinds lines
-    /// are in proportion to power. Where sources in the focus have that share of the power, all lines are alike.
+    /// Returns the sources of a scene. Those in the focus get enough lines to reach the share of all lines that the
+    /// focus asks for.
+    ///
+    /// Within and outside the focus, lines are in proportion to power. If the sources in the focus already have that
+    /// share of the power, all lines carry the same power.
     pub(crate) fn new(model: &Model, focus: Option<&Focus>) -> Self {
         let scene = &model.scene;
         let all = sources(scene, &model.mesh);
@@ -129,12 +134,13 @@ impl FocusedSources {
         Self { sources: cut, in_focus: inside, density: wanted.min(f64::from(MAX_FOCUS_DENSITY)) }
     }
 
-    /// Sources whose lines are all alike.
+    /// Returns sources whose lines all carry the same power.
     pub(crate) fn plain(sources: Vec<Source>) -> Self {
         Self { in_focus: vec![false; sources.len()], sources, density: 1.0 }
     }
 
-    /// For how much power each source has lines as if all were alike \[W\].
+    /// Returns weights \[W\] that are in proportion to the number of lines of each source: its power, times the density
+    /// if it is in the focus.
     pub(crate) fn weights(&self) -> Vec<f64> {
         let powers = self.sources.iter().map(|source| source.power.element_sum());
         powers
@@ -143,21 +149,21 @@ impl FocusedSources {
             .collect()
     }
 
-    /// Power of a line in the focus over the mean of all lines.
+    /// Returns the power of a line in the focus over the mean power of all lines.
     pub(crate) fn inner_share(&self) -> f64 {
         let power: f64 = self.sources.iter().map(|source| source.power.element_sum()).sum();
         self.weights().iter().sum::<f64>() / power / self.density
     }
 }
 
-/// The part of a source that is in a focus, and that which is not.
+/// Splits a source into the part that is in a focus, marked true, and the part that is not.
 fn split(scene: &Scene, source: Source, focus: &Focus) -> Vec<(Source, bool)> {
     let bounds = focus.bounds();
     let around = Some(bounds);
-    let beside = |around| SkyAperture { through: scene.bounding_box(), around };
+    let passing_aperture = |around| SkyAperture { through: scene.bounding_box(), around };
     let aperture = SkyAperture { through: bounds, around: None };
     let [whole, inner] = [scene.bounding_box().face_areas(), bounds.face_areas()];
-    // Shares of all bands are the same.
+    // The share is the same for all bands.
     let (through, passing, share) = match source.emitter {
         Emitter::Surface { corners: [a, b, c], .. } => {
             return vec![(source, bounds.contains((a + b + c) / 3.0))];
@@ -170,16 +176,16 @@ fn split(scene: &Scene, source: Source, focus: &Focus) -> Vec<(Source, bool)> {
         }
         Emitter::Dome(_) => {
             let power = |areas| scene.sky().map_or(Rgb::ZERO, |sky| sky.dome_through(areas)).element_sum();
-            (Emitter::Dome(aperture), Emitter::Dome(beside(around)), power(inner) / power(whole))
+            (Emitter::Dome(aperture), Emitter::Dome(passing_aperture(around)), power(inner) / power(whole))
         }
         Emitter::Ground(_) => {
             let share = inner.element_sum() / whole.element_sum();
-            (Emitter::Ground(aperture), Emitter::Ground(beside(around)), share)
+            (Emitter::Ground(aperture), Emitter::Ground(passing_aperture(around)), share)
         }
     };
     match share {
         0.0 => vec![(source, false)],
-        share if share > 1.0 - AROUND => vec![(source, true)],
+        share if share > 1.0 - MIN_AROUND_SHARE => vec![(source, true)],
         share => vec![
             (Source { emitter: through, power: source.power * share }, true),
             (Source { emitter: passing, power: source.power * (1.0 - share) }, false),

@@ -1,9 +1,9 @@
-//! What every stage of lines has in common.
+//! The interface of all stages of lines.
 //!
 //! A stage is a number of lines that are traced in *rounds*. The lines of a round may be shared among any number of
-//! workers, since what they change are integers to which they only add. Between two rounds the stage looks at what the lines have
-//! brought and decides about the next one. Whoever runs a stage cuts the ranges of lines, adds up what several processes
-//! have, and saves the state; the stage knows nothing of this.
+//! workers, because they change only integers, and only by adding to them. Between two rounds the stage evaluates what
+//! the lines have brought and decides about the next round. The caller divides the ranges of lines, adds up the tallies
+//! of several processes, and saves the state. The stage knows nothing of this.
 
 use std::ops::Range;
 
@@ -13,32 +13,33 @@ use crate::visitor::Visitor;
 
 /// A stage of lines: a shot, a transport, a measurement.
 ///
-/// The calls, in order: [`begin`](Self::begin) or [`restore`](Self::restore); then per round, until
+/// The order of the calls is: [`begin`](Self::begin) or [`restore`](Self::restore); then, in each round, until
 /// [`advance`](Self::advance) returns false: [`trace`](Self::trace) for every unit of [`round`](Self::round),
-/// [`visit_round`](Self::visit_round) to add up over processes, `advance`; in the end [`visit_end`](Self::visit_end) and
+/// [`visit_round`](Self::visit_round) to add up over processes, `advance`; finally [`visit_end`](Self::visit_end) and
 /// [`finish`](Self::finish). [`run_stage`] is the shortest program that does so.
 pub trait Stage: Sync + Sized {
-    /// What is asked for: the scene, the number of lines, the seed.
+    /// Parameters of the stage: the scene, the number of lines, the seed.
     type Settings;
-    /// What the stage starts from: the outcome of the stage before it, or `()`.
+    /// Starting point of the stage: the outcome of the stage before it, or `()`.
     type Input;
-    /// What the stage makes.
+    /// Result of the stage.
     type Outcome;
-    /// State of a chain of lines: [`AnyOrder`] if what a line does never depends on other lines of the same round.
+    /// State of a chain of lines: [`AnyOrder`] if a line never depends on other lines of the same round.
     type Chain: Chain;
 
-    /// Returns numbers that tell this stage and its settings from all others, whose saved states it cannot restore.
+    /// Returns numbers that identify this stage and its settings. Saved states of other stages or settings cannot be
+    /// restored.
     fn identity(settings: &Self::Settings) -> Vec<u64>;
 
     /// Prepares the first round.
     ///
     /// # Errors
     ///
-    /// If there is nothing to trace, or the settings make no sense for the scene.
+    /// If there is nothing to trace, or the settings are invalid for the scene.
     fn begin(settings: Self::Settings, input: Self::Input, workers: &dyn Workers)
     -> Result<Self, SolveError>;
 
-    /// Returns the stage with the state that [`visit`](Self::visit) has shown to the visitor who saved it.
+    /// Restores a stage from the state that [`visit`](Self::visit) passed to the visitor that saved it.
     ///
     /// # Errors
     ///
@@ -49,21 +50,21 @@ pub trait Stage: Sync + Sized {
         visitor: &mut dyn Visitor,
     ) -> Result<Self, SolveError>;
 
-    /// Returns the units of the current round: lines, or what [`lines_per_unit`](Self::lines_per_unit) says.
+    /// Returns the units of the current round: lines, or groups of [`lines_per_unit`](Self::lines_per_unit) lines.
     fn round(&self) -> Range<u64>;
 
-    /// Returns how many units there will be in all rounds, as far as that is known.
+    /// Returns the expected number of units in all rounds, as far as it is known.
     fn expected(&self) -> u64 {
         self.round().end
     }
 
-    /// Returns how many lines a unit is.
+    /// Returns the number of lines per unit.
     fn lines_per_unit(&self) -> u64 {
         1
     }
 
-    /// Returns into how many chains the units of a round are divided, as [`share`] divides them. The units of a chain are
-    /// traced in order, with its state. 0 if any unit may be traced at any time.
+    /// Returns the number of chains into which the units of a round are divided, as [`share`] divides them; 0 if any
+    /// unit may be traced at any time. The units of a chain are traced in order, with its state.
     fn chains(&self) -> u64 {
         0
     }
@@ -71,24 +72,25 @@ pub trait Stage: Sync + Sized {
     /// Returns the state of a chain before its first unit.
     fn chain(&self, number: u64) -> Self::Chain;
 
-    /// Traces some units of the current round; `worker` is the number of the thread that does.
+    /// Traces some units of the current round. `worker` is the number of the calling thread.
     fn trace(&self, worker: usize, chain: &mut Self::Chain, units: Range<u64>, totals: &mut StageTotals);
 
-    /// Shows what the lines of this round have brought, as far as the next round depends on it.
+    /// Visits the part of the tallies of this round on which the next round depends.
     fn visit_round(&mut self, visitor: &mut dyn Visitor);
 
-    /// Closes a round whose units are all traced and added up, and prepares the next one. Returns false if there is none.
+    /// Closes a round whose units are all traced and added up, and prepares the next one. Returns false if there is
+    /// none.
     fn advance(&mut self, _workers: &dyn Workers) -> bool {
         false
     }
 
-    /// Shows what only the outcome depends on, and no round.
+    /// Visits the part of the state on which only the outcome depends, and no round.
     fn visit_end(&mut self, _visitor: &mut dyn Visitor) {}
 
-    /// Shows the whole state, except that of the chains under way.
+    /// Visits the whole state, except that of unfinished chains.
     fn visit(&mut self, visitor: &mut dyn Visitor);
 
-    /// Returns how many rounds or chains the lines were traced in, for the report.
+    /// Returns the number of rounds or chains in which the lines were traced, for the report.
     fn batches(&self) -> u64 {
         1
     }
@@ -103,11 +105,11 @@ pub trait Stage: Sync + Sized {
 
 /// State of a chain of lines, which are traced in order.
 pub trait Chain: Send {
-    /// Shows the state. The visitor is told that all workers hold it identically, and has to see to it that they do.
+    /// Visits the state, as numbers that every worker holds identically. The visitor must ensure that they do.
     fn visit(&mut self, visitor: &mut dyn Visitor);
 }
 
-/// The chain of a stage whose lines may be traced in any order: it has no state.
+/// The chain of a stage whose lines may be traced in any order. It has no state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AnyOrder;
 
@@ -118,16 +120,16 @@ impl Chain for AnyOrder {
 /// A job for one of the [`Workers`].
 pub type Job<'a> = Box<dyn FnOnce() + Send + 'a>;
 
-/// The threads of this process, for work that is not lines.
+/// The threads of this process, for work other than lines.
 pub trait Workers: Sync {
-    /// Returns how many there are: at least 1.
+    /// Returns the number of workers: at least 1.
     fn count(&self) -> usize;
 
-    /// Does all jobs, at the same time if there are several workers.
+    /// Runs all jobs, concurrently if there are several workers.
     fn run(&self, jobs: Vec<Job<'_>>);
 }
 
-/// The calling thread alone.
+/// A single worker: the calling thread.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OneWorker;
 
@@ -188,8 +190,8 @@ pub fn chain_units(round: &Range<u64>, number: u64, chains: u64) -> Range<u64> {
     round.start + units.start..round.start + units.end
 }
 
-/// Returns the part of `0..count` that belongs to one of several workers or chains. The parts follow each other and differ in
-/// length by one at most.
+/// Returns the part of `0..count` that belongs to one of several workers or chains. The parts are consecutive and their
+/// lengths differ by at most one.
 #[must_use]
 pub fn share(count: u64, part: u64, parts: u64) -> Range<u64> {
     let start = |p: u64| (u128::from(count) * u128::from(p) / u128::from(parts)) as u64;

@@ -1,4 +1,4 @@
-//! The tallies of a stage: what every side receives and gives, written by all workers at once.
+//! The tallies of a stage: what every side receives and sends, written by all workers concurrently.
 
 use std::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 use std::sync::atomic::{AtomicI64, AtomicU32};
@@ -9,72 +9,73 @@ use crate::power::Quanta;
 use crate::received::Received;
 use crate::visitor::Visitor;
 
-/// What one side receives and gives: one cache line, so that a line of light touches one place per side.
+/// What one side receives and sends, in one cache line, so that a line of light accesses one memory location per side.
 ///
-/// Everything that lines change is an integer, to which they only add. The sums are therefore the same in whatever order
-/// and by however many workers.
+/// Lines change only integers, and only by adding to them. The sums are therefore the same in any order and for any
+/// number of workers.
 ///
-/// A worker that changes a record locks it: one atomic operation instead of seven, each of which would take as long as all
-/// else that is done to a record. Nothing is locked where only one worker writes.
+/// A worker that changes a record locks it. That is one atomic operation instead of seven, each of which would take as
+/// long as all other work on a record. Nothing is locked where only one worker writes.
 #[derive(Debug, Default)]
 #[repr(align(64))]
 struct Record {
     power: [AtomicI64; 3],
     squares: [AtomicI64; 3],
     share: [AtomicU32; 3],
-    /// Lines that left the side, by their weights, and [`LOCKED`] while a worker writes.
+    /// Number of lines that left the side, counted by their weights; combined with [`LOCKED`] while a worker writes.
     crossings: AtomicU32,
 }
 
-/// The highest bit of the number of crossings.
+/// Lock bit: the highest bit of the number of crossings.
 const LOCKED: u32 = 1 << 31;
 
 /// Power that sides receive in a stage, and the share that each of them sends with a line.
 ///
-/// Writing needs no more than `&self`. Where that is affordable there are several copies of all
-/// records, because two cores that write to the same cache line wait for each other; only sums over the copies count.
+/// Writing requires only `&self`. There are several copies of all records if memory allows, because two cores that
+/// write to the same cache line wait for each other. Only sums over the copies are meaningful.
 #[derive(Debug)]
 pub(crate) struct PatchTallies {
-    /// All sides in the first copy, then all in the second, and so on.
+    /// All sides of the first copy, then all of the second, and so on.
     records: Vec<Record>,
     sides: usize,
     unit: SquareUnit,
-    /// Whether several workers write to the same copy.
+    /// True if several workers write to the same copy.
     shared: bool,
 }
 
-/// Size of all copies together up to which every worker gets one of its own \[bytes\]: about what caches hold.
-const AFFORDABLE: usize = 16 << 20;
+/// Largest total size of the copies \[bytes\] for which every worker gets its own copy: about the size of caches.
+const MAX_COPIES_SIZE: usize = 16 << 20;
 
-/// Which counters of a [`PatchTallies`] a visitor goes through.
+/// The counters of a [`PatchTallies`] that a visitor visits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Counters {
-    /// All of them.
+    /// All counters.
     All,
-    /// Power and crossings: what the next batch of lines depends on.
+    /// Power and crossings, on which the next batch of lines depends.
     Batch,
-    /// The squares.
+    /// Sums of squares.
     Squares,
 }
 
-/// Sides whose counters are handed over at a time: 16,384 sides in at most 0.9 MB.
+/// Number of sides whose counters are visited at a time: 16,384 sides take at most 0.9 MB.
 const CHUNK: usize = 1 << 14;
 
 impl PatchTallies {
-    /// An empty tallies for some workers, of at least `least` copies however large it is, if there are as many workers.
-    pub(crate) fn new(sides: usize, workers: usize, least: usize, unit: SquareUnit) -> Self {
-        let affordable = workers * sides * size_of::<Record>() <= AFFORDABLE;
-        let copies = if affordable { workers.max(1) } else { workers.clamp(1, least) };
+    /// Returns empty tallies for some workers. There are at least `min_copies` copies, whatever their size, if there
+    /// are as many workers.
+    pub(crate) fn new(sides: usize, workers: usize, min_copies: usize, unit: SquareUnit) -> Self {
+        let fits = workers * sides * size_of::<Record>() <= MAX_COPIES_SIZE;
+        let copies = if fits { workers.max(1) } else { workers.clamp(1, min_copies) };
         let records = sir_accel::collect_in_huge_pages((0..sides * copies).map(|_| Record::default()));
         Self { records, sides, unit, shared: copies < workers }
     }
 
-    /// The records of a side, one in each copy.
+    /// Returns the records of a side, one in each copy.
     fn of(&self, side: usize) -> impl Iterator<Item = &Record> {
         self.records[side..].iter().step_by(self.sides)
     }
 
-    /// The copy that a worker writes to.
+    /// Returns the copy that a worker writes to.
     pub(crate) fn of_worker(&self, worker: usize) -> WorkerTallies<'_> {
         let copy = worker % (self.records.len() / self.sides);
         WorkerTallies {
@@ -84,12 +85,12 @@ impl PatchTallies {
         }
     }
 
-    /// What a side sends with a line.
+    /// Returns the power that a side sends with a line.
     pub(crate) fn share(&self, side: SideId) -> Quanta {
         self.records[side.index()].share()
     }
 
-    /// Sets what a side sends with a line, rounded to 24 significant bits.
+    /// Sets the power that a side sends with a line, rounded to 24 significant bits.
     pub(crate) fn set_share(&self, side: SideId, share: [f64; 3]) {
         for record in self.of(side.index()) {
             for (place, share) in record.share.iter().zip(share) {
@@ -98,13 +99,13 @@ impl PatchTallies {
         }
     }
 
-    /// Power received by a side.
+    /// Returns the power received by a side.
     pub(crate) fn power(&self, side: SideId) -> Quanta {
         let copies = self.of(side.index()).map(Record::power);
         copies.fold(Quanta::ZERO, |sum, power| sum + power)
     }
 
-    /// Takes out the power received by a side and the weight of all lines that left it.
+    /// Returns and resets the power received by a side and the weight of all lines that left it.
     pub(crate) fn take(&self, side: SideId) -> (Quanta, u32) {
         let (mut power, mut crossings) = (Quanta::ZERO, 0);
         for record in self.of(side.index()) {
@@ -116,8 +117,8 @@ impl PatchTallies {
         (power, crossings)
     }
 
-    /// Sum of the squares of what each line brought to a side \[quanta²\]: the variance of the sum, if the number of lines
-    /// is that of a Poisson distribution.
+    /// Returns the sum of the squares of the power that each line brought to a side \[quanta²\]. It is the variance of
+    /// the sum if the number of lines is Poisson-distributed.
     pub(crate) fn squares(&self, side: SideId) -> [f64; 3] {
         std::array::from_fn(|band| {
             let squares: i64 = self.of(side.index()).map(|record| record.squares[band].load(Relaxed)).sum();
@@ -125,7 +126,7 @@ impl PatchTallies {
         })
     }
 
-    /// Adds the power, and its variance, to what was received before.
+    /// Adds the power and its variance to those received before.
     pub(crate) fn add_to(&self, received: &mut Received) {
         for (i, (power, variance)) in received.power.iter_mut().zip(&mut received.variance).enumerate() {
             let side = SideId::new(i);
@@ -135,12 +136,12 @@ impl PatchTallies {
         }
     }
 
-    /// Shows the unit of the squares to a visitor.
+    /// Visits the unit of the squares.
     pub(crate) fn visit_unit(&mut self, visitor: &mut dyn Visitor) {
         self.unit.visit(visitor);
     }
 
-    /// Shows counters of all sides to a visitor.
+    /// Visits counters of all sides.
     pub(crate) fn visit(&self, counters: Counters, visitor: &mut dyn Visitor) {
         let (batch, squares) = (counters != Counters::Squares, counters != Counters::Batch);
         let width = if batch { 4 } else { 0 } + if squares { 3 } else { 0 };
@@ -159,7 +160,7 @@ impl PatchTallies {
                 }
             }
             visitor.sum(&mut words);
-            // The first copy takes it all.
+            // The first copy takes the whole sum.
             for (i, copy) in self.records.chunks(self.sides).enumerate() {
                 if i > 0 {
                     words.fill(0);
@@ -175,7 +176,7 @@ impl PatchTallies {
         }
     }
 
-    /// Shows the shares of all sides to a visitor.
+    /// Visits the shares of all sides.
     pub(crate) fn visit_shares(&self, visitor: &mut dyn Visitor) {
         let mut words = Vec::new();
         for start in (0..self.sides).step_by(CHUNK) {
@@ -192,7 +193,7 @@ impl PatchTallies {
     }
 }
 
-/// One copy of a tallies.
+/// One copy of the tallies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WorkerTallies<'a> {
     records: &'a [Record],
@@ -201,32 +202,33 @@ pub(crate) struct WorkerTallies<'a> {
 }
 
 impl WorkerTallies<'_> {
-    /// Says that a side will soon be needed.
+    /// Prefetches the record of a side.
     #[inline]
     pub(crate) fn prefetch(self, side: SideId) {
         sir_accel::prefetch(&self.records[side.index()]);
     }
 
-    /// What a side sends with a line.
+    /// Returns the power that a side sends with a line.
     #[inline]
     pub(crate) fn share(self, side: SideId) -> Quanta {
         self.records[side.index()].share()
     }
 
-    /// A line brings power to a side.
+    /// Adds the power that a line brings to a side.
     #[inline]
-    pub(crate) fn give(self, side: SideId, power: Quanta) {
+    pub(crate) fn deposit(self, side: SideId, power: Quanta) {
         self.change(side, 0, power);
     }
 
-    /// A line of some weight leaves a side, which sends its share with it, so many times.
+    /// Counts a line that leaves a side, and returns the power that it takes along: the share of the side times the
+    /// weight of the line.
     #[inline]
     pub(crate) fn leave(self, side: SideId, weight: u32) -> Quanta {
         self.change(side, weight, Quanta::ZERO);
         self.share(side).times(i64::from(weight))
     }
 
-    /// A line of some weight leaves two sides, each towards the other one.
+    /// Exchanges the shares of two sides along a line that leaves each of them towards the other.
     #[inline]
     pub(crate) fn exchange(self, i: SideId, j: SideId, weight: u32) {
         let [from_i, from_j] = [i, j].map(|side| self.share(side).times(i64::from(weight)));
@@ -234,7 +236,7 @@ impl WorkerTallies<'_> {
         self.change(j, weight, from_i);
     }
 
-    /// Some lines leave a side, or power comes to it.
+    /// Adds to the weight of the lines that left a side, and to the power that it received.
     #[inline]
     fn change(self, side: SideId, lines: u32, power: Quanta) {
         let record = &self.records[side.index()];
@@ -248,8 +250,8 @@ impl WorkerTallies<'_> {
 }
 
 impl Record {
-    /// Waits until no other worker writes, which takes nanoseconds, and gives the number of crossings. To store that number,
-    /// or a larger one, unlocks the record.
+    /// Locks the record and returns the number of crossings. It waits until no other worker writes, which takes
+    /// nanoseconds. Storing that number, or a larger one, unlocks the record.
     #[inline]
     fn lock(&self) -> u32 {
         let mut tries = 0u32;
@@ -274,48 +276,49 @@ impl Record {
         Quanta(std::array::from_fn(|band| self.power[band].load(Relaxed)))
     }
 
-    /// The counters of 64 bits that are asked for: power, squares, or both.
+    /// Returns the 64-bit counters that are requested: power, squares, or both.
     fn counters(&self, batch: bool, squares: bool) -> impl Iterator<Item = &AtomicI64> {
         let power = self.power.iter().take(if batch { 3 } else { 0 });
         power.chain(self.squares.iter().take(if squares { 3 } else { 0 }))
     }
 }
 
-/// The size in which squares of power are counted, per band, so that their sums fit 62 bits.
+/// Unit in which squares of power are counted, per band, such that their sums fit 62 bits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SquareUnit {
     /// Square quanta per count.
     size: [f64; 3],
     /// Counts per square quantum.
     density: [f64; 3],
-    /// Largest count of one gift.
-    most: f64,
+    /// Largest count of a single contribution.
+    max_count: f64,
 }
 
-/// How much larger than foreseen a square may be.
+/// Safety factor on the largest squared contribution.
 pub(crate) const HEADROOM: f64 = 64.0;
 
 impl SquareUnit {
-    /// A unit for gifts of about `largest` quanta at most, of which a side gets about `gifts` at most.
-    pub(crate) fn new(largest: [f64; 3], gifts: f64) -> Self {
-        let most = 2f64.powi(60) / (gifts.max(1.0) + 16.0);
-        Self::of(largest.map(|l| (l * l * HEADROOM / most).max(1.0)), most)
+    /// Returns a unit for contributions of at most about `largest` quanta, of which a side gets at most about
+    /// `count`.
+    pub(crate) fn new(largest: [f64; 3], count: f64) -> Self {
+        let max_count = 2f64.powi(60) / (count.max(1.0) + 16.0);
+        Self::of(largest.map(|l| (l * l * HEADROOM / max_count).max(1.0)), max_count)
     }
 
-    fn of(size: [f64; 3], most: f64) -> Self {
-        Self { size, density: size.map(|s| 1.0 / s), most }
+    fn of(size: [f64; 3], max_count: f64) -> Self {
+        Self { size, density: size.map(|s| 1.0 / s), max_count }
     }
 
-    /// The square of a gift, to the nearest count.
+    /// Returns the square of a contribution, to the nearest count.
     #[inline]
     fn counts(&self, power: Quanta) -> [i64; 3] {
         std::array::from_fn(|band| {
             let power = power.0[band] as f64;
-            (power * power * self.density[band] + 0.5).min(self.most) as i64
+            (power * power * self.density[band] + 0.5).min(self.max_count) as i64
         })
     }
 
-    /// Returns the unit that was shown to the visitor who saved it.
+    /// Restores the unit that was passed to the visitor that saved it.
     pub(crate) fn restore(visitor: &mut dyn Visitor) -> Self {
         let mut unit = Self::of([1.0; 3], 0.0);
         unit.visit(visitor);
@@ -324,9 +327,9 @@ impl SquareUnit {
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
         let [r, g, b] = self.size;
-        let mut words = [r, g, b, self.most].map(|x| x.to_bits() as i64);
+        let mut words = [r, g, b, self.max_count].map(|x| x.to_bits() as i64);
         visitor.same(&mut words);
-        let [r, g, b, most] = words.map(|w| f64::from_bits(w as u64));
-        *self = Self::of([r, g, b], most);
+        let [r, g, b, max_count] = words.map(|w| f64::from_bits(w as u64));
+        *self = Self::of([r, g, b], max_count);
     }
 }

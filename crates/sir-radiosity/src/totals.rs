@@ -1,4 +1,4 @@
-//! Where the power went, and what the lines met.
+//! Energy balance and counts of a stage.
 
 use std::ops::AddAssign;
 
@@ -8,20 +8,20 @@ use crate::visitor::Visitor;
 /// Energy balance of a stage. It closes exactly: `emitted = absorbed + blocked + escaped + unshot`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Balance {
-    /// Sent out.
+    /// Power sent out.
     pub emitted: Quanta,
-    /// Absorbed by the active sides that received it.
+    /// Power absorbed by the active sides that received it.
     pub absorbed: Quanta,
-    /// Absorbed by the backs of one-sided surfaces.
+    /// Power absorbed by the backs of one-sided surfaces.
     pub blocked: Quanta,
-    /// Left the scene, or never met it: light from outside enters the box around it.
+    /// Power that left the scene or never met it. Light from outside enters through the box around the scene.
     pub escaped: Quanta,
-    /// Reflected, but not sent out again.
+    /// Power reflected, but not sent out again.
     pub unshot: Quanta,
 }
 
 impl Balance {
-    /// Whether no power was lost or made.
+    /// True if no power was lost or created.
     #[must_use]
     pub fn closes(&self) -> bool {
         (0..3).all(|band| {
@@ -31,25 +31,25 @@ impl Balance {
     }
 }
 
-/// What the lines of a stage met.
+/// Counts of the lines of a stage and of their hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Lines traced.
+    /// Number of lines traced.
     pub lines: u64,
-    /// Lines that met nothing.
+    /// Number of lines that hit nothing.
     pub empty: u64,
-    /// Global lines that met an odd number of triangles: none in scenes of closed surfaces.
+    /// Number of global lines that hit an odd number of triangles: zero in scenes of closed surfaces.
     pub odd: u64,
-    /// Triangles met.
+    /// Number of triangles hit.
     pub crossings: u64,
 }
 
-/// What one worker writes down: its part of the balance and of the counts. Those of all workers add up.
+/// The part of the balance and of the counts that one worker records. The totals of all workers add up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StageTotals {
-    /// Where the power went.
+    /// Energy balance.
     pub balance: Balance,
-    /// What the lines met.
+    /// Counts of lines and hits.
     pub counts: Counts,
 }
 
@@ -75,7 +75,7 @@ impl AddAssign for StageTotals {
 }
 
 impl StageTotals {
-    /// Shows the totals to a visitor.
+    /// Visits the totals.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
         let Self { balance: b, counts: c } = self;
         for quanta in [&mut b.emitted, &mut b.absorbed, &mut b.blocked, &mut b.escaped, &mut b.unshot] {

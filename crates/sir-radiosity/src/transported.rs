@@ -12,15 +12,16 @@ pub struct Transported {
     pub solution: Solution,
     /// Power received by each side, direct and indirect: the exact tallies.
     pub received: Received,
-    /// The size of a quantum.
+    /// Size of a quantum.
     pub unit: PowerUnit,
-    /// Where the power of this stage went.
+    /// Energy balance of this stage.
     ///
-    /// In multipath, `emitted` is what the lines took from the sources by forecast, which differs from the reflected
-    /// direct power by chance; in batches it is that power.
+    /// In multipath, `emitted` is the power that the lines took from the sources by forecast, which differs from the
+    /// reflected direct power by chance. In batches it is the reflected direct power.
     pub balance: Balance,
-    /// What the lines met.
+    /// Counts of lines and hits.
     pub counts: Counts,
-    /// Power added to what was received to make up for the unshot; none in multipath, where the unshot is missing.
+    /// Power added to the received power for what is unshot at the end. Zero in multipath, where the unshot power is
+    /// missing.
     pub extrapolated: Quanta,
 }

@@ -1,19 +1,19 @@
 //! The state of a stage as a sequence of numbers.
 
-/// Goes through the state of a stage.
+/// Visits the state of a stage.
 ///
-/// A stage shows all the numbers that it needs to go on, always in the same order and number. What the visitor makes of
-/// them is its business: add them up over several workers, save them, or put back what was saved. The stage takes
-/// over what the visitor leaves in place.
+/// A stage passes all the numbers that it needs to continue, always in the same order and number. The visitor may add
+/// them up over several workers, save them, or restore saved ones. The stage uses the values that the visitor leaves in
+/// place.
 pub trait Visitor {
-    /// Numbers of which every worker has a part: the true ones are the sums over all workers.
+    /// Visits numbers of which every worker holds a part. The true values are the sums over all workers.
     fn sum(&mut self, words: &mut [i64]);
 
-    /// Numbers that all workers have alike.
+    /// Visits numbers that every worker holds identically.
     fn same(&mut self, words: &mut [i64]);
 }
 
-/// Shows a few whole numbers that all workers have alike.
+/// Visits counters that every worker holds identically.
 pub(crate) fn visit_counts<const N: usize>(counts: [&mut u64; N], visitor: &mut dyn Visitor) {
     for count in counts {
         let mut word = [*count as i64];
@@ -22,17 +22,17 @@ pub(crate) fn visit_counts<const N: usize>(counts: [&mut u64; N], visitor: &mut 
     }
 }
 
-/// Shows a number in double precision that all workers have alike.
+/// Visits a double-precision number that every worker holds identically.
 pub(crate) fn visit_float(float: &mut f64, visitor: &mut dyn Visitor) {
     let mut word = [float.to_bits() as i64];
     visitor.same(&mut word);
     *float = f64::from_bits(word[0] as u64);
 }
 
-/// How many elements of a slice are shown at a time.
+/// Number of elements of a slice that are visited at a time.
 const CHUNK: usize = 1 << 14;
 
-/// Shows a slice that all workers have alike to a visitor, each element as some numbers.
+/// Visits a slice that every worker holds identically, each element as `N` numbers.
 pub(crate) fn visit_slice<T, const N: usize>(
     slice: &mut [T],
     visitor: &mut dyn Visitor,
@@ -50,17 +50,17 @@ pub(crate) fn visit_slice<T, const N: usize>(
     }
 }
 
-/// Shows numbers in single precision, three by three.
+/// Visits single-precision numbers in groups of three.
 pub(crate) fn visit_floats(floats: &mut [[f32; 3]], visitor: &mut dyn Visitor) {
     visit_slice(floats, visitor, |floats| floats.map(to_word), |words| words.map(from_word));
 }
 
-/// A number in single precision as a whole one.
+/// Returns the bits of a single-precision number as an integer.
 pub(crate) fn to_word(float: f32) -> i64 {
     i64::from(float.to_bits())
 }
 
-/// The number that [`to_word`] has made whole.
+/// Returns the number whose bits [`to_word`] returned.
 pub(crate) fn from_word(word: i64) -> f32 {
     f32::from_bits(word as u32)
 }

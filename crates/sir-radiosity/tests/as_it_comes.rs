@@ -1,6 +1,6 @@
-//! Geometry as it comes, against exact answers: surfaces that coincide and go through each other, walls of a single sheet, millimeters
-//! and kilometers, places far from the origin, a ground under a room.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+//! Imperfect geometry against exact answers: coincident and intersecting surfaces, walls of a single sheet, scenes in
+//! millimeters and kilometers, scenes far from the origin, a ground under a room.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -19,12 +19,12 @@ fn model(builder: SceneBuilder, subdivision: Subdivision) -> Model {
     Model::new(scene(builder), subdivision).unwrap()
 }
 
-/// A gray surface that is alike on both sides, emission included.
+/// Returns a gray material whose two sides are equal, including emission.
 fn both(m: f64, rho: f64) -> Material {
     Material { back_emits: true, ..gray(m, rho).with_sides(Sides::Both) }
 }
 
-/// A share of the lines, within four standard errors of a binomial variable.
+/// Asserts that a share of the lines is within four standard errors of a binomial variable.
 #[track_caller]
 fn assert_share(found: f64, exact: f64, lines: u64, what: &str) {
     let sigma = (exact * (1.0 - exact) / lines as f64).sqrt();
@@ -32,8 +32,8 @@ fn assert_share(found: f64, exact: f64, lines: u64, what: &str) {
     assert!((found - exact).abs() <= 4.0 * sigma, "{what}: {found}, exactly {exact} ± {sigma}");
 }
 
-/// In a room all of whose surfaces, on both sides, emit and reflect alike, the radiosity is `M/(1 − ρ)` everywhere, in and between
-/// boxes that go through each other, through the floor and through a wall.
+/// In a room whose surfaces all emit and reflect equally on both sides, the radiosity is `M/(1 − ρ)` everywhere, in and
+/// between boxes that intersect each other, the floor and a wall.
 #[test]
 fn a_furnace_of_boxes_that_go_through_each_other() {
     let (m, rho) = (1.0, 0.7);
@@ -49,7 +49,7 @@ fn a_furnace_of_boxes_that_go_through_each_other() {
         let box_material = b.add_material(both(m, rho));
         cuboid(&mut b, min, max, [box_material; 6], Facing::Outward);
     }
-    // All around, so that what sticks out is in a furnace, too.
+    // An enclosure around everything, so that parts outside the room are in a furnace, too.
     let outer = b.add_material(both(m, rho));
     cuboid(&mut b, DVec3::splat(-1.0), v(5.0, 5.0, 3.0), [outer; 6], Facing::Inward);
     let model = model(b, Subdivision::PerFace);
@@ -61,8 +61,8 @@ fn a_furnace_of_boxes_that_go_through_each_other() {
     }
 }
 
-/// Two boxes that share a part of their volume send out what the surface of their union emits: it does not matter that four of
-/// their faces coincide, nor that the others lie in each other.
+/// Two overlapping boxes emit the power that the surface of their union emits, although four of their faces coincide
+/// and the others intersect.
 #[test]
 fn the_light_of_boxes_in_each_other_is_that_of_their_union() {
     let lines = 400_000;
@@ -73,14 +73,14 @@ fn the_light_of_boxes_in_each_other_is_that_of_their_union() {
         let lamp = b.add_material(gray(1.0, 0.0));
         turned_box(&mut b, turn, DVec3::ZERO, v(2.0, 1.0, 1.0), lamp);
         turned_box(&mut b, turn, v(1.0, 0.0, 0.0), v(3.0, 1.0, 1.0), lamp);
-        // Right through both, in the plane of no face.
+        // Through both boxes, not in the plane of any face.
         turned_box(&mut b, turn, v(1.25, -1.0, 0.25), v(1.75, 2.0, 0.75), lamp);
         let model = model(b, Subdivision::PerTriangle);
         let shot = shoot(&model, lines, 5);
         assert!(shot.balance.closes());
         let (all, union) = (2.0 * 10.0 + 6.5, 14.0 - 2.0 * 0.25 + 4.0 + 2.0 * 0.25);
         assert!((shot.unit.watts(shot.balance.emitted).x / all - 1.0).abs() < 1e-9);
-        // What part of it meets another part of the union is received there.
+        // Power that meets another part of the union is received there.
         let on_fronts: f64 = received(&model, &shot).iter().sum();
         assert_share(on_fronts / all, union / all, lines, "union");
         let blocked = shot.unit.watts(shot.balance.blocked).x / all;
@@ -98,8 +98,8 @@ fn turned_box(b: &mut SceneBuilder, turn: DQuat, min: DVec3, max: DVec3, materia
     }
 }
 
-/// A square in the middle of the floor of a furnace, in the plane of the floor and of the same material: the later one is on top,
-/// what lies below gets nothing, and all that is seen has `M/(1 − ρ)`.
+/// A square in the middle of the floor of a furnace, coplanar with the floor and of the same material. The later
+/// surface is on top, the one below receives nothing, and everything visible has `M/(1 − ρ)`.
 #[test]
 fn a_decal_covers_what_is_below_and_changes_nothing_else() {
     let (m, rho) = (1.0, 0.6);
@@ -117,7 +117,7 @@ fn a_decal_covers_what_is_below_and_changes_nothing_else() {
         if decal_last {
             square(&mut b);
         }
-        // Quarters of the edges of the cube, so that patches are covered whole or not at all.
+        // Patch edges are a quarter of the edges of the cube, so that patches are covered completely or not at all.
         let model = model(b, Subdivision::MaxEdge(0.36));
         let shot = shoot(&model, 200_000, 2);
         assert!(shot.balance.closes());
@@ -144,8 +144,8 @@ fn a_decal_covers_what_is_below_and_changes_nothing_else() {
     }
 }
 
-/// A room in two by one sheet, with a lamp in one half: the other gets no light at all, whether the sheet has one side or two, ends
-/// at the walls or behind them, and however the room is turned.
+/// A room divided by a single sheet, with a lamp in one half. The other half receives no light at all, whether the
+/// sheet has one side or two, whether it ends at the walls or behind them, and however the room is rotated.
 #[test]
 fn a_wall_of_one_sheet_lets_nothing_through() {
     for sides in [Sides::Front, Sides::Both] {
@@ -159,7 +159,7 @@ fn a_wall_of_one_sheet_lets_nothing_through() {
                 let x = [0.0, 2.0, 4.0];
                 for half in 0..2 {
                     let (l, r) = (x[half], x[half + 1]);
-                    // No wall where the sheet is.
+                    // No wall in the plane of the sheet.
                     let faces = [
                         [v(l, 0., 0.), v(r, 0., 0.), v(r, 3., 0.), v(l, 3., 0.)],
                         [v(l, 0., 2.), v(l, 3., 2.), v(r, 3., 2.), v(r, 0., 2.)],
@@ -191,7 +191,7 @@ fn a_wall_of_one_sheet_lets_nothing_through() {
                 let mut lit = 0;
                 model.mesh.for_each_side(|triangle, _, side, id| {
                     let material = model.scene.triangle(triangle).material;
-                    // The front of the sheet looks to the lamp.
+                    // The front of the sheet faces the lamp.
                     let dark = material == halves[1] || material == sheet && side == Side::Back;
                     if dark {
                         assert_eq!(run.received.power[id.index()].0, [0; 3], "{sides:?} {beyond} {triangle}");
@@ -205,7 +205,7 @@ fn a_wall_of_one_sheet_lets_nothing_through() {
     }
 }
 
-/// A room with a lamp and a box, all corners on multiples of an eighth.
+/// Returns a room with a lamp and a box, with all corners on multiples of an eighth.
 fn furnished(scale: f64, offset: DVec3) -> Model {
     let mut b = SceneBuilder::new();
     let at = |p: DVec3| offset + scale * p;
@@ -230,7 +230,8 @@ fn solve(model: &Model) -> Solution {
     batches(model, shot, 200_000, 11).solution
 }
 
-/// Mean deviation of the irradiances from those of another solution, weighted by area, relative to the mean.
+/// Returns the mean deviation of the irradiances from those of another solution, weighted by area and relative to the
+/// mean.
 fn deviation(model: &Model, found: &Solution, expected: &Solution) -> f64 {
     let (mut off, mut sum) = (0.0, 0.0);
     model.mesh.for_each_side(|triangle, _, _, side| {
@@ -241,11 +242,11 @@ fn deviation(model: &Model, found: &Solution, expected: &Solution) -> f64 {
     off / sum
 }
 
-/// The same room in other units has the same irradiances if its lamps have the same exitance: the same bits if lengths are
-/// multiplied by a power of two; else the same but for rounding, which may also cut a flat side of the convex hull along its other
-/// diagonal, and then some of the lines are others.
+/// The same room in other units has the same irradiances if its lamps have the same exitance. They have the same bits
+/// if the scale is a power of two. Otherwise they differ by rounding, which may also split a flat side of the convex
+/// hull along its other diagonal, and then some of the lines differ.
 #[test]
-fn millimetres_and_kilometers() {
+fn millimeters_and_kilometers() {
     let model = furnished(1.0, DVec3::ZERO);
     let meters = solve(&model);
     for scale in [1024.0, 1.0 / 1024.0, 1_048_576.0] {
@@ -258,8 +259,8 @@ fn millimetres_and_kilometers() {
     }
 }
 
-/// Far from the origin, too, as long as coordinates have digits left: at 10⁶ m they have steps of 10⁻¹⁰ m, at 10⁹ m of 10⁻⁷ m, at
-/// 10¹² m of 0.1 mm. What is closer to each other than that is undone.
+/// The light is the same far from the origin, as long as coordinates have enough digits: their step is 10⁻¹⁰ m at 10⁶
+/// m, 10⁻⁷ m at 10⁹ m, and 0.1 mm at 10¹² m. Smaller distances are lost.
 #[test]
 fn far_from_the_origin() {
     let model = furnished(1.0, DVec3::ZERO);
@@ -272,7 +273,7 @@ fn far_from_the_origin() {
     }
 }
 
-/// A disc 200 m wide, in the plane of the floor.
+/// Adds a disc 200 m wide, in the plane of the floor.
 fn ground(b: &mut SceneBuilder, material: MaterialId) {
     let corners: Vec<_> = (0..64)
         .map(|i| std::f64::consts::TAU * f64::from(i) / 64.0)
@@ -281,7 +282,7 @@ fn ground(b: &mut SceneBuilder, material: MaterialId) {
     b.add_polygon(&corners, material);
 }
 
-/// A furnace that stands on a ground 200 m wide keeps its light: all of it stays inside, and nothing gets out below the walls.
+/// A furnace on a ground 200 m wide keeps its light: nothing escapes below the walls.
 #[test]
 fn a_room_on_a_wide_ground_is_as_tight_as_one_without() {
     let (m, rho) = (1.0, 0.5);
@@ -290,7 +291,7 @@ fn a_room_on_a_wide_ground_is_as_tight_as_one_without() {
         let mut b = SceneBuilder::new();
         let outside = b.add_material(gray(0.0, 0.5));
         ground(&mut b, outside);
-        // Walls are single sheets with two sides; only the insides emit.
+        // Walls are single two-sided sheets. Only the insides emit.
         let wall = b.add_material(gray(m, rho).with_sides(Sides::Both));
         let size = v(4.0, 3.0, 2.5);
         let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
@@ -334,15 +335,16 @@ fn a_room_on_a_wide_ground_is_as_tight_as_one_without() {
             mean.assert_is(m / (1.0 - rho), "furnace on a ground");
             assert_eq!(of_ground, 0.0);
         } else {
-            // The ground gets what a floor would: reciprocity gives the share of a face that sees the same exitance everywhere.
+            // The ground receives what a floor would receive. By reciprocity, that is the share of a face that sees the
+            // same exitance everywhere.
             let power = 47.0 * m;
             assert_share(of_ground / power, 12.0 / 47.0, lines, "ground as a floor");
         }
     }
 }
 
-/// A room whose wall at x = 0 has its front outside: a furnace if surfaces have two sides; with fronts alone, its back absorbs a
-/// sixth of all light, and a sixth, its own, gets out.
+/// A room whose wall at x = 0 has its front outside. It is a furnace if surfaces are two-sided. If they are one-sided,
+/// the back of the wall absorbs a sixth of all light, and another sixth, its own, escapes.
 #[test]
 fn a_wall_turned_outside_is_a_matter_of_sides() {
     let (m, rho) = (1.0, 0.6);

@@ -1,5 +1,5 @@
-//! The light does not depend on the body that global lines are drawn through; only the waste does.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+//! The light does not depend on the domain of the global lines. Only the share of wasted lines does.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -14,12 +14,12 @@ use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_radiosity::{Model, Shot, Transported};
 
-/// Transports the light of a first shot with lines of a domain; takes the number of lines and the seed.
+/// Transports the light of a first shot with lines of a domain, with a number of lines and a seed.
 type Transport = fn(Domain, &Model, Shot, u64, u64) -> Transported;
 
 const TRANSPORTS: [(&str, Transport); 2] = [("batches", batches_in), ("multipath", multipath_in)];
 
-/// Two plates with a common edge: an open scene, whose hull is a wedge. With one patch per plate, the exact radiosities
+/// Two plates with a common edge: an open scene whose hull is a wedge. With one patch per plate, the exact radiosities
 /// are `B₁ = M₁ + ρ₁F₁₂B₂` and `B₂ = M₂ + ρ₂F₂₁B₁`.
 #[test]
 fn plates_have_their_exact_radiosities_in_all_domains() {
@@ -53,8 +53,8 @@ fn plates_have_their_exact_radiosities_in_all_domains() {
     }
 }
 
-/// A room with a table, a ball and a screen that reflects from both sides, in 900 patches, of which some have two sides. Its walls are those of a
-/// box, of which a corner is cut off.
+/// Returns a room with a table, a ball and a two-sided screen, in 900 patches, some of which have two sides. Its walls
+/// are those of a box with one corner cut off.
 fn room() -> Model {
     let mut b = SceneBuilder::new();
     let diffuse = |r, g, blue| Material::diffuse("", Rgb::new(r, g, blue));
@@ -88,10 +88,10 @@ fn room() -> Model {
     Model::new(b.build().unwrap().scene, Subdivision::Patches(900)).unwrap()
 }
 
-/// All domains give every material the same radiosity, and every patch the same irradiance, but for the errors that runs
-/// show and state. The mean square of the differences of patches in units of their errors is 1 ± √(2/7000) per band
-/// if patches are independent; it is a little larger in batches, because the stated errors leave out what patches inherit from
-/// each other (`errors.rs`).
+/// All domains give every material the same radiosity, and every patch the same irradiance, within the errors that runs
+/// show and state. The mean square of the differences of patches in units of their errors is 1 ± √(2/7000) per band if
+/// patches are independent. It is a little larger in batches, because the stated errors leave out the noise that
+/// patches inherit from each other (`errors.rs`).
 #[test]
 fn a_furnished_room_looks_the_same_in_all_domains() {
     const LINES: u64 = 100_000;
@@ -101,7 +101,7 @@ fn a_furnished_room_looks_the_same_in_all_domains() {
     let direct = shot.solution(&model).error;
     let hull = Domain::hull(model.scene.vertices()).surface();
     for (way, transport) in TRANSPORTS {
-        // As many crossings in each domain.
+        // The same number of crossings in each domain.
         let runs = domains(&model).map(|domain| {
             let lines = (LINES as f64 * domain.surface() / hull) as u64;
             let first = domain.name().len() as u64 * 100;
@@ -116,7 +116,7 @@ fn a_furnished_room_looks_the_same_in_all_domains() {
                 for band in 0..3 {
                     let [a, b] = [&a, &b].map(|r| Estimate::of(r.iter().map(|r| r[material][band])));
                     let sigma = a.sigma.hypot(b.sigma);
-                    assert!(sigma < 0.006 * a.mean, "{sigma} is too coarse to tell anything");
+                    assert!(sigma < 0.006 * a.mean, "{sigma} is too large for a meaningful comparison");
                     let z = (a.mean - b.mean) / sigma;
                     let values = format!("{} and {}, z {z:+.2}", a.mean, b.mean);
                     println!("{way}, {name} and {other}, material {material}: {values}");
@@ -128,7 +128,7 @@ fn a_furnished_room_looks_the_same_in_all_domains() {
                 for (side, &direct) in direct.iter().enumerate() {
                     let square = |v: Rgb| v * v;
                     let [a, b] = [a, b].map(|run| (run.solution.irradiance[side], run.solution.error[side]));
-                    // The direct light is the same in both, and its error is in both.
+                    // Both runs have the same direct light and share its error.
                     let variance = square(a.1) + square(b.1) - 2.0 * square(direct);
                     squares += square(a.0 - b.0) / variance;
                     terms += 1.0;
@@ -153,7 +153,7 @@ fn in_a_convex_room_no_line_of_the_hull_is_wasted() {
         let counts = batches_in(domain, &model, shot.clone(), 300_000, 1).counts;
         let hit = (counts.lines - counts.empty) as f64 / counts.lines as f64;
         let sigma = (hit * (1.0 - hit) / counts.lines as f64).sqrt();
-        println!("{name}: {hit:.4} of the lines meet something, {:.4} by area", hull / surface);
+        println!("{name}: {hit:.4} of the lines hit something, {:.4} by area", hull / surface);
         assert!((hit - hull / surface).abs() <= 4.0 * sigma, "{name}: {hit}");
         if name == "Hull" {
             assert_eq!(counts.empty, 0);

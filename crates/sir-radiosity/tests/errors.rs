@@ -1,15 +1,17 @@
-//! Whether the standard errors that a single run states are those that many runs show.
+//! The standard errors that a single run states agree with the spread of many runs.
 //!
-//! They take the lines that reach a patch as independent, which is nearly so where patches are many. Of few patches the
-//! stated errors are too large, for two reasons. What a patch holds leaves with the next line, sooner or later: chance
-//! decides only who gets it, and a patch that gets the share `F` scatters by `√(1−F)` of what it would if the number
-//! of gifts were random too. And who got more than usual passes it on to all but itself: what it gets later is
-//! less than usual, so that for equal view factors `F` a deviation shrinks by `1 + ρF`.
+//! Stated errors assume that the lines that reach a patch are independent, which is nearly true if there are many
+//! patches. With few patches the stated errors are too large, for two reasons. First, the power that a patch holds
+//! leaves with the next line, sooner or later. Chance decides only which patch receives it, so a patch that receives
+//! the share `F` scatters by `√(1−F)` of the scatter with a random number of contributions. Second, a patch that
+//! received more than usual passes the excess on to all patches except itself. What it receives later is less than
+//! usual, so that for equal view factors `F` a deviation shrinks by `1 + ρF`.
 //!
-//! Batches correct the number of lines that meet a patch, but not what a patch sends on: its neighbors inherit that noise, which
-//! the stated errors leave out. It shows where little other noise is left, as in a furnace of high reflectance.
+//! Batches correct the number of lines that meet a patch, but not the power that a patch sends on. Its neighbors
+//! inherit that noise, which the stated errors leave out. It shows where there is little other noise, as in a furnace
+//! of high reflectance.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -20,7 +22,7 @@ use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_mesh::Subdivision;
 use sir_radiosity::{Model, Solution};
 
-/// A cube of these materials, the top's last.
+/// Returns a cube with these materials, where `top` is the last face.
 fn cube(walls: Material, top: Material, subdivision: Subdivision) -> Model {
     let mut b = SceneBuilder::new();
     let (walls, top) = (b.add_material(walls), b.add_material(top));
@@ -28,27 +30,27 @@ fn cube(walls: Material, top: Material, subdivision: Subdivision) -> Model {
     Model::new(scene(b), subdivision).unwrap()
 }
 
-/// Every face glows.
+/// Returns a cube in which every face emits.
 fn furnace(subdivision: Subdivision) -> Model {
     let glowing = Material::diffuse("", Rgb::new(0.5, 0.8, 0.9)).emitting(Rgb::ONE);
     cube(glowing.clone(), glowing, subdivision)
 }
 
-/// One face glows.
+/// Returns a cube in which one face emits.
 fn lamp(subdivision: Subdivision) -> Model {
     cube(gray(0.0, 0.8), gray(1.0, 0.8), subdivision)
 }
 
-/// How far results lie from their mean over all seeds, in units of the errors that the runs state: root mean square
-/// over all patches and seeds, per band.
+/// Returns the deviations from the mean over all seeds in units of the stated errors: the root mean square over all
+/// patches and seeds, per band.
 fn spread(runs: &[Solution]) -> Rgb {
     let n = runs.len() as f64;
     let (mut sum, mut freedom) = (Rgb::ZERO, 0.0);
     for side in 0..runs[0].irradiance.len() {
         let mean = runs.iter().map(|r| r.irradiance[side]).sum::<Rgb>() / n;
-        // The mean, because a run that brought a patch less than usual states a smaller error as well.
+        // The mean variance, because a run that brought less than usual to a patch also states a smaller error.
         let variance = runs.iter().map(|r| r.error[side] * r.error[side]).sum::<Rgb>() / n;
-        // Lamps that cannot see each other receive nothing from the first shot.
+        // Patches of the lamp cannot see each other, so they receive nothing from the first shot.
         if variance != Rgb::ZERO {
             let squares = runs.iter().map(|r| (r.irradiance[side] - mean) * (r.irradiance[side] - mean));
             sum += squares.sum::<Rgb>() / variance;
@@ -58,7 +60,7 @@ fn spread(runs: &[Solution]) -> Rgb {
     (sum / freedom).map(f64::sqrt)
 }
 
-/// The spread must lie between `least` and `most`, but for `chance` to either side.
+/// Asserts that the spread lies between `least` and `most`, with a tolerance of `chance` on either side.
 #[track_caller]
 fn assert_honest(what: &str, runs: &[Solution], [least, most]: [f64; 2], chance: f64) {
     let spread = spread(runs);
@@ -67,12 +69,13 @@ fn assert_honest(what: &str, runs: &[Solution], [least, most]: [f64; 2], chance:
     assert!(spread.max_element() < most + chance, "{what}: the stated errors are too small: {spread}");
 }
 
-/// How much larger than 1 the spread may be, but for chance: what is inherited in batches.
+/// Returns the excess of the spread over 1 due to noise that patches inherit in batches.
 fn inherited(way: &str) -> f64 {
     if way == "batches" { 0.06 } else { 0.0 }
 }
 
-/// Seeds enough for a relative error of the spread of 0.5 % if patches were independent and normal; they are not quite.
+/// The number of seeds gives a relative error of the spread of 0.5 % if patches are independent and normal, which they
+/// are only approximately.
 #[test]
 fn errors_of_many_patches_are_honest() {
     const LINES: u64 = 50_000;
@@ -104,8 +107,8 @@ fn errors_of_few_patches_are_not_too_small() {
     }
 }
 
-/// The noise of the first shot travels on with the reflected light, which the errors leave out: it is shared by all
-/// lines of the shot, and small unless they are fewer than the lines that cross a patch.
+/// The noise of the first shot is passed on with the reflected light, which the stated errors leave out. It is common
+/// to all lines of the transport, and small unless the shot has fewer lines than cross a patch.
 #[test]
 fn noise_of_the_first_shot_that_is_reflected_can_be_left_out() {
     let model = lamp(Subdivision::Patches(600));

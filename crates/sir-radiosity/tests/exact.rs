@@ -1,5 +1,5 @@
 //! Radiosity against exact solutions, with a confidence of four standard errors of at most 0.3 % each.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -120,7 +120,8 @@ fn sphere_interior_with_uneven_emission() {
     }
 }
 
-/// RE-08 and RE-09: boxes with one patch per face. Not the continuous solution, but that of six unknowns.
+/// RE-08 and RE-09: boxes with one patch per face. The reference is the solution for six unknowns, not the continuous
+/// one.
 #[test]
 fn boxes_with_one_patch_per_face() {
     let file = exact_file();
@@ -145,8 +146,8 @@ fn boxes_with_one_patch_per_face() {
     }
 }
 
-/// An open box loses light, and the books say how much: the emission of the floor of a box without a ceiling
-/// leaves through the opening, and what does not is absorbed.
+/// The balance of an open scene states the escaped power: the emission of the floor of a box without a ceiling escapes
+/// through the opening or is absorbed.
 #[test]
 fn an_open_scene_books_what_escapes() {
     let mut b = SceneBuilder::new();

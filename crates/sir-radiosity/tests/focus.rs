@@ -1,5 +1,5 @@
-//! More lines in a part of the scene change no light, and lose none; they only take the noise out of that part.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+//! A focus changes no light and loses none. It only reduces the noise in a part of the scene.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -13,9 +13,11 @@ use sir_radiosity::{
     BatchSettings, Batches, FirstShot, Model, Shot, ShotSettings, Transported, run_stage, sources,
 };
 
-/// A black square meter in the middle of a black ground of 60 × 60 m, a hand above it, under a sky and the sun. A
-/// speck high above a corner of the ground, which nearly covers no sky, makes the box of the scene high: of the lines through the
-/// focus, which reaches as high, not nearly all meet the square.
+/// Returns a black square of one square meter 10 cm above the middle of a black ground of 60 × 60 m, under a sky and
+/// the sun.
+///
+/// A speck high above a corner of the ground, which covers almost no sky, makes the box of the scene high. The focus is
+/// equally high, so that a considerable share of its lines miss the square.
 fn square() -> (Model, Focus, f64) {
     let mut b = SceneBuilder::new();
     let [small, wide, speck] = [0; 3].map(|_| b.add_material(gray(0.0, 0.0)));
@@ -47,7 +49,7 @@ fn batches(model: &Model, shot: Shot, lines: u64, domain: GlobalLines, seed: u64
     run_stage::<Batches<'_>>(BatchSettings::new(model, domain, lines, seed), shot).unwrap()
 }
 
-/// Mean irradiance of the patches of a material, and its error if that of each patch is independent.
+/// Returns the mean irradiance of the patches of a material, and its error if the errors of patches are independent.
 fn of_material(model: &Model, irradiance: &[Rgb], error: &[Rgb], material: usize) -> (f64, f64) {
     let (mut area, mut sum, mut square) = (0.0, 0.0, 0.0);
     model.mesh.for_each_side(|triangle, _, _, side| {
@@ -73,13 +75,13 @@ fn sky_and_sun_on_a_square_in_a_field() {
             let shot = shoot(&model, LINES, focus, seed);
             assert!(shot.balance.closes());
             let emitted = shot.unit.watts(shot.balance.emitted).x;
-            // Each source has a whole number of lines, and those that pass around the focus carry more.
+            // Each source has an integer number of lines, and those that pass around the focus carry more power.
             let lines = if focus.is_some() { 2e-4 } else { 1e-6 };
             assert!((emitted / power - 1.0).abs() < lines, "{emitted} of {power}");
             let solution = shot.solution(&model);
             for (material, exact) in [(0, exact), (1, exact * (3_600.0 - 1.0) / 3_600.0)] {
                 let (value, error) = of_material(&model, &solution.irradiance, &solution.error, material);
-                // The sides of what lies under the square still see some sky.
+                // The ground under the edges of the square still sees some sky from the side.
                 let tolerance = if material == 0 { 4.5 * error } else { 4.5 * error + 0.001 * exact };
                 assert!((value - exact).abs() <= tolerance, "{material}: {value} ± {error}, exactly {exact}");
                 if material == 0 {
@@ -89,15 +91,17 @@ fn sky_and_sun_on_a_square_in_a_field() {
             }
         }
         println!("error {stated}, deviations {squares}");
-        // χ² with 40 degrees of freedom. With a focus a third of the lines of the sun meet the square, so the true error is somewhat smaller than the
-        // stated one, which takes the number of all lines as given, and not that of each source.
+        // χ² with 40 degrees of freedom. With a focus, a third of the lines of the sun meet the square, so the true
+        // error is somewhat smaller than the stated one, which assumes a fixed total number of lines instead of a fixed
+        // number per source.
         assert!(squares > 0.3 && squares < 2.0, "{squares}");
         errors.push(stated);
     }
     assert!(errors[0] > 8.0 * errors[1], "{errors:?}");
 }
 
-/// A closed furnace that stands on a glowing ground of a hundred times its surface: the irradiance in it is `M/(1 − ρ)`.
+/// Returns a closed furnace on an emitting ground of a hundred times its surface. The irradiance in the furnace is
+/// `M/(1 − ρ)`.
 fn furnace() -> (Model, Focus) {
     let mut b = SceneBuilder::new();
     let wall = b.add_material(Material::diffuse("", Rgb::splat(0.7)).emitting(Rgb::ONE));

@@ -1,10 +1,10 @@
-//! Whether the errors that results state are those that they have: over 200 seeds of scenes with an exact answer, the
-//! deviation over the standard error has a root mean square of 1, and a 95 % interval has the answer in 95 % of all cases.
+//! Stated errors agree with true ones. Over 200 seeds of scenes with an exact answer, the deviation over the standard
+//! error has a root mean square of 1, and a 95 % interval contains the answer in 95 % of all cases.
 //!
-//! Lines and patches are chosen such that what is not noise does not matter: some hundred lines meet a patch, since of few lines the
-//! stated error is itself uncertain, and goes with the value.
+//! The numbers of lines and patches are chosen such that only noise matters. About a hundred lines meet a patch,
+//! because with few lines the stated error is itself uncertain, and correlated with the value.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -18,26 +18,26 @@ use sir_radiosity::{MIN_REPEATS, Model, MultipathSettings, PowerUnit, Received, 
 
 const SEEDS: u64 = 200;
 
-/// A deviation that 5 % of all normal deviates exceed, to either side.
+/// Quantile of the normal distribution: 5 % of all deviates exceed it in magnitude.
 const NORMAL: f64 = 1.959_964;
 
-/// The same of Student's t with seven degrees of freedom, and its root mean square: `√(7/5)`.
+/// The same quantile of Student's t with seven degrees of freedom, and its root mean square: `√(7/5)`.
 const STUDENT: (f64, f64) = (2.364_624, 1.183_216);
 
-/// A model, and the irradiance of all its patches: by the sources alone, and all of it.
+/// A model with the exact irradiance of all its patches: by the sources alone, and in total.
 struct Exact {
     name: &'static str,
     model: Model,
     direct: Rgb,
     all: Rgb,
-    /// Lines of each stage that meet a patch, on average.
+    /// Mean number of lines of each stage that meet a patch.
     per_patch: u64,
 }
 
-/// What a run makes: power with its variance, in units.
+/// Result of a run: power with its variance, and the unit of the power.
 type Outcome = (Received, PowerUnit);
 
-/// A closed cube whose faces all emit 1 W/m². Its irradiance is a geometric series.
+/// Returns a closed cube whose faces all emit 1 W/m². Its irradiance is a geometric series.
 fn furnace() -> Exact {
     let reflectance = Rgb::new(0.5, 0.8, 0.9);
     let mut b = SceneBuilder::new();
@@ -53,8 +53,9 @@ fn furnace() -> Exact {
     }
 }
 
-/// The inside of a sphere, a cap of which emits. Light from anywhere falls evenly on all of it: the irradiance is the same
-/// geometric series. The facets of 5° change it by less than a percent, a tenth of the noise.
+/// Returns the inside of a sphere, a cap of which emits. Light from anywhere is distributed uniformly over the sphere,
+/// so the irradiance is the same geometric series. The facets of 5° change it by less than a percent, a tenth of the
+/// noise.
 fn lamp_in_a_sphere() -> Exact {
     let reflectance = 0.6;
     let mut b = SceneBuilder::new();
@@ -68,7 +69,7 @@ fn lamp_in_a_sphere() -> Exact {
 }
 
 impl Exact {
-    /// So many lines that each patch is met by this number on average.
+    /// Returns the number of lines for which each patch is met by `per_patch` lines on average.
     fn lines(&self, per_patch: u64, ends: u64) -> u64 {
         per_patch * self.model.mesh.side_count() as u64 / ends
     }
@@ -89,7 +90,7 @@ impl Exact {
         let first = shoot(&self.model, self.lines(self.per_patch, 1), seed);
         let shot = shoot_again(&self.model, &first, self.lines(self.per_patch / 4, 1), seed);
         let lines = self.lines(2 * self.per_patch, 2);
-        // A tail as long as this lets so little be missing that it does not matter.
+        // With a tail of this length, the missing power is negligible.
         let settings = MultipathSettings {
             replicas: 2,
             tail: lines / 2,
@@ -99,7 +100,7 @@ impl Exact {
         (all.received, all.unit)
     }
 
-    /// The mean of so many repeats that their spread is just enough.
+    /// Returns the mean of the smallest number of repeats for which errors are computed from their spread.
     fn repeats(&self, seed: u64) -> Outcome {
         let mut repeats = Repeats::new(self.model.mesh.side_count());
         let mut unit = None;
@@ -112,8 +113,8 @@ impl Exact {
         (repeats.mean(), unit.unwrap())
     }
 
-    /// Checks one way to light the scene: a deviation of `quantile` is exceeded by 5 %, and `rms` is the root mean square, if
-    /// the errors are honest.
+    /// Checks one way to light the scene. If the stated errors are correct, 5 % of the deviations exceed `quantile`,
+    /// and `rms` is their root mean square.
     #[track_caller]
     fn assert_honest(
         &self,

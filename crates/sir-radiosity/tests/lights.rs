@@ -1,5 +1,5 @@
-//! Light without a surface against exact solutions: what each surface receives, within four standard errors of the number of lines
-//! that meet it. Sections are those of CIE 171:2006.
+//! Light without a surface against exact solutions: the power that each surface receives is exact within four standard
+//! errors of the number of lines that meet it. Sections are those of CIE 171:2006.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod common;
@@ -24,13 +24,13 @@ fn model(builder: SceneBuilder, subdivision: Subdivision) -> Model {
     Model::new(builder.build().unwrap().scene, subdivision).unwrap()
 }
 
-/// A rectangle from `corner`, seen counterclockwise from where `a × b` points, of a black material of its own.
+/// Adds a rectangle from `corner`, with a black material of its own. Its front faces the direction of `a × b`.
 fn rectangle(builder: &mut SceneBuilder, corner: DVec3, a: DVec3, b: DVec3) {
     let material = builder.add_material(gray(0.0, 0.0));
     quad(builder, [corner, corner + a, corner + a + b, corner + b], material);
 }
 
-/// The inside of a box from the origin without its ceiling: floor, and the walls at x = 0, x, y = 0, y.
+/// Adds the inside of a box from the origin without its ceiling: the floor, and the walls at x = 0, x, y = 0, y.
 fn open_box(builder: &mut SceneBuilder, size: DVec3) {
     let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
     rectangle(builder, DVec3::ZERO, x, y);
@@ -40,7 +40,7 @@ fn open_box(builder: &mut SceneBuilder, size: DVec3) {
     rectangle(builder, y, x, z);
 }
 
-/// Shoots, and compares what materials receive with the exact power; returns the shot.
+/// Traces a first shot, compares the power that materials receive with the exact power, and returns the shot.
 fn compare(model: &Model, exact: &[f64], what: &str) -> Shot {
     let shot = shoot(model, LINES, 7);
     assert!(shot.balance.closes());
@@ -58,8 +58,8 @@ fn compare(model: &Model, exact: &[f64], what: &str) -> Shot {
     shot
 }
 
-/// 5.2: patches of a plane under a small Lambertian source get `∫ I h²/(x² + y² + h²)² dA`. Deviations of all of them are
-/// χ²-distributed.
+/// 5.2: patches of a plane under a small Lambertian source receive `∫ I h²/(x² + y² + h²)² dA`. The deviations of all
+/// patches are χ²-distributed.
 #[test]
 fn cie_5_2_a_lambertian_point_over_a_plane() {
     let (intensity, h) = (1000.0, 3.0);
@@ -83,7 +83,7 @@ fn cie_5_2_a_lambertian_point_over_a_plane() {
     });
     assert!(patches >= 100.0);
     assert!((chi - patches).abs() < 4.0 * (2.0 * patches).sqrt(), "χ² = {chi} of {patches}");
-    // The point right below: 111.11 lx.
+    // The point directly below: 111.11 lx.
     let solution = shot.solution(&model);
     let mut nearest = (f64::INFINITY, 0.0);
     model.mesh.for_each_side(|triangle, patch, _, side| {
@@ -97,7 +97,7 @@ fn cie_5_2_a_lambertian_point_over_a_plane() {
     assert!((nearest.1 / 111.11 - 1.0).abs() < 0.1, "{nearest:?}");
 }
 
-/// An integral over a triangle, by the centers of 32² congruent parts.
+/// Returns an integral over a triangle, from the centers of 32² congruent parts.
 fn integral([a, b, c]: [DVec3; 3], f: impl Fn(DVec3) -> f64) -> f64 {
     let n = 32;
     let at = |i: f64, k: f64| f(a + (b - a) * (i / f64::from(n)) + (c - a) * (k / f64::from(n)));
@@ -114,8 +114,8 @@ fn integral([a, b, c]: [DVec3; 3], f: impl Fn(DVec3) -> f64) -> f64 {
     sum * 0.5 * (b - a).cross(c - a).length() / f64::from(n * n)
 }
 
-/// 5.4: solid angles of the walls of a closed room. Ω of a rectangle is the sum of `atan(ab / d√(a² + b² + d²))` over its four
-/// parts.
+/// 5.4: solid angles of the walls of a closed room. Ω of a rectangle is the sum of `atan(ab / d√(a² + b² + d²))` over
+/// its four parts.
 #[test]
 fn cie_5_4_an_isotropic_point_in_a_room() {
     let (size, lamp) = (DVec3::new(4.0, 4.0, 3.0), DVec3::new(1.0, 2.5, 1.25));
@@ -146,7 +146,7 @@ fn cie_5_4_an_isotropic_point_in_a_room() {
     assert_eq!(shot.counts.empty, 0);
 }
 
-/// A spot in the axis of a square that lies in its inner cone, above a plane that catches all of its light.
+/// A spot on the axis of a square that lies in its inner cone, above a plane that receives all of its light.
 #[test]
 fn a_spot_is_full_in_its_inner_cone_and_has_its_power() {
     let (intensity, h, half) = (500.0, 2.0, 0.2);
@@ -162,7 +162,7 @@ fn a_spot_is_full_in_its_inner_cone_and_has_its_power() {
     compare(&model, &exact, "spot");
 }
 
-/// A square that is tilted gets the cosine; one that lies behind it, in its shadow, nothing; the back of a third absorbs its part.
+/// A tilted square receives the cosine, one in its shadow nothing, and the back of a third absorbs its part.
 #[test]
 fn parallel_light_falls_by_the_cosine_and_casts_shadows() {
     let (tilt, irradiance) = (0.6f64, 800.0);
@@ -180,14 +180,14 @@ fn parallel_light_falls_by_the_cosine_and_casts_shadows() {
     let shot = compare(&model, &[irradiance * tilt.cos(), 0.0, 0.0], "parallel");
     let blocked = shot.unit.watts(shot.balance.blocked).x;
     assert!((blocked / irradiance - 1.0).abs() < 0.01, "{blocked}");
-    // What misses all of them has escaped.
+    // Lines that miss all of them have escaped.
     let outside = shot.unit.watts(shot.balance.escaped).x;
     let box_area = 5.0;
     assert!((outside / (irradiance * (box_area - 1.0 - tilt.cos())) - 1.0).abs() < 0.01, "{outside}");
 }
 
-/// One square under a sky: flat, tilted and upright. A uniform sky gives `E_h (1 + cos β)/2`, a uniform ground `π L (1 − cos β)/2`,
-/// an overcast sky on an upright surface `E_h 3/(7π) (π/2 + 4/3)`.
+/// One square under a sky: horizontal, tilted and upright. A uniform sky gives `E_h (1 + cos β)/2`, a uniform ground
+/// `π L (1 − cos β)/2`, an overcast sky on an upright surface `E_h 3/(7π) (π/2 + 4/3)`.
 #[test]
 fn open_squares_get_what_the_sky_sends() {
     let (horizontal, ground) = (1000.0, 50.0);
@@ -210,8 +210,8 @@ fn open_squares_get_what_the_sky_sends() {
     }
 }
 
-/// 5.4: of the flux of a uniform sky through the open roof, or through a hole of a square meter in it, the floor gets what the view
-/// factor says, and the walls the rest.
+/// 5.4: of the flux of a uniform sky through the open roof, or through a hole of a square meter in it, the floor
+/// receives the share given by the view factor, and the walls the rest.
 #[test]
 fn cie_5_4_sky_through_a_roof_opening() {
     let size = DVec3::new(4.0, 4.0, 3.0);
@@ -242,7 +242,7 @@ fn cie_5_4_sky_through_a_roof_opening() {
     }
 }
 
-/// In a closed room all light stays: the mean irradiance is `Φ/(A (1 − ρ))`, wherever the lamp is.
+/// In a closed room no light is lost: the mean irradiance is `Φ/(A (1 − ρ))`, wherever the lamp is.
 #[test]
 fn a_furnace_with_a_point_light() {
     let (rho, power) = (0.8, 100.0);
@@ -263,12 +263,12 @@ fn a_furnace_with_a_point_light() {
     assert!((sum / area / exact - 1.0).abs() < 2e-3, "{} of {exact}", sum / area);
 }
 
-/// What has no power has no lines, and a scene with nothing else no light.
+/// Lights without power are not sources, and a scene with only such lights has no light.
 #[test]
 fn lights_without_power_are_no_sources() {
     let mut b = SceneBuilder::new();
     rectangle(&mut b, DVec3::ZERO, DVec3::X, DVec3::Y);
-    // Parallel to the only surface, so that nothing of it enters the box.
+    // Parallel to the only surface, so that no light enters the box.
     let kind = LightKind::Distant { direction: DVec3::X, irradiance: Rgb::ONE };
     b.add_light(Light { name: String::new(), kind });
     b.add_light(point(DVec3::Z, 0.0, Spread::Isotropic));

@@ -1,5 +1,5 @@
-//! What lines cross, and who sees whom along them, against integral geometry and exact view factors.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+//! Crossings and view factors of lines, against integral geometry and exact view factors.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -11,8 +11,8 @@ use sir_lines::{Domain, Purpose, Streams};
 use sir_mesh::Subdivision;
 use sir_radiosity::{End, Model, Segment, Segments};
 
-/// Counts, over uniform lines, how often each pair of sides faces each other: `count[i][j]` for light from `i` to
-/// `j`, with one more column for what is not a side.
+/// Counts how often each pair of sides faces each other along uniform lines: `count[i][j]` for light from `i` to `j`,
+/// with one more column for everything that is not a side.
 fn facing_counts(model: &Model, domain: &Domain, lines: u64) -> Vec<Vec<u64>> {
     let n = model.mesh.side_count();
     let mut count = vec![vec![0u64; n + 1]; n];
@@ -104,7 +104,7 @@ fn view_factors_of_a_cube() {
     }
 }
 
-/// The view factor of concentric spheres, with everything that curved surfaces see of themselves.
+/// The view factors of concentric spheres, including those of curved surfaces to themselves.
 #[test]
 fn view_factors_of_concentric_spheres() {
     let factors = reference("view-factors.json");
@@ -135,7 +135,7 @@ fn view_factors_of_concentric_spheres() {
             for j in 0..2 {
                 let expected = c["values"][format!("F{}{}", i + 1, j + 1)].as_f64().unwrap();
                 let measured = count[i][j] as f64 / leaving as f64;
-                // Both ends of a chord that a surface sees of itself are counted: at most twice the variance.
+                // A chord of a surface that sees itself is counted at both ends, so the variance is at most doubled.
                 let sigma = (2.0 * expected * (1.0 - expected) / leaving as f64).sqrt();
                 assert!((measured - expected).abs() <= 4.0 * sigma, "{id} F{i}{j}: {measured} {expected}");
             }

@@ -1,6 +1,7 @@
-//! The second shot sends what the brightest patches reflect: nothing is lost, and the light is the same with less noise.
+//! The second shot sends what the brightest patches reflect: no power is lost, and the light is the same with less
+//! noise.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -13,7 +14,7 @@ use sir_geom::{Material, Rgb, SceneBuilder, Side, Sides};
 use sir_mesh::Subdivision;
 use sir_radiosity::{Model, Quanta};
 
-/// A room with a lamp close to its ceiling, and a sheet that reflects from both sides.
+/// Returns a room with a lamp close to its ceiling, and a sheet that reflects from both sides.
 fn room(subdivision: Subdivision) -> Model {
     let mut b = SceneBuilder::new();
     let walls = b.add_material(Material::diffuse("", Rgb::new(0.8, 0.7, 0.5)));
@@ -49,20 +50,21 @@ fn power_is_kept_to_the_quantum() {
         let second = shoot_again(&model, &first, 10_000, 1);
         assert_eq!(sum(&first.unshot(&model)), first.balance.unshot);
         let left = first.balance.unshot - second.balance.emitted + second.balance.unshot;
-        // What is reflected of both shots together is rounded once, and not twice.
+        // The power reflected of both shots together is rounded once, not twice.
         let rounding = (sum(&second.unshot(&model)) - left).0.map(i64::abs);
         assert!(rounding.iter().all(|r| *r <= model.mesh.side_count() as i64), "{rounding:?}");
-        // A quarter of the lines for a quarter of the power, but for the last of the patches.
+        // A quarter of the lines for a quarter of the power, except for the last patch.
         let share = second.balance.emitted.0[0] as f64 / first.balance.emitted.0[0] as f64;
         assert!(share > 0.2, "{share}");
-        // What has been sent is what has been held, but for a line.
+        // The power sent is the power held, within one line.
         let lines = 2 * second.balance.emitted.0[0] / 10_000;
         let least = second.unshot(&model).iter().map(|q| q.0[0]).min().unwrap();
         assert!(least > -lines, "{least} {lines}");
     }
 }
 
-/// Means of all triangles over many seeds agree, and so do errors with what they state; the noise of what is seen of the bright ceiling is less.
+/// Means of all triangles over many seeds agree, and errors agree with the stated ones. There is less noise on surfaces
+/// that see the bright ceiling.
 #[test]
 fn light_is_the_same_with_less_noise() {
     const RUNS: u64 = 40;

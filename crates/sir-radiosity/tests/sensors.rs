@@ -1,5 +1,5 @@
 //! Sensors against exact irradiances, with a confidence of four standard errors.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -17,7 +17,7 @@ use sir_radiosity::{
 
 const RAYS: SensorSettings = SensorSettings { rays: 16_384, error: 0.0 };
 
-/// Where a source is found by chance only.
+/// For sources that are only found by chance.
 const MANY: SensorSettings = SensorSettings { rays: 1 << 18, error: 0.0 };
 
 const fn v(x: f64, y: f64, z: f64) -> DVec3 {
@@ -28,7 +28,7 @@ fn model(builder: SceneBuilder) -> Model {
     Model::new(builder.build().unwrap().scene, Subdivision::PerTriangle).unwrap()
 }
 
-/// The same irradiance everywhere, without error.
+/// Returns a solution with the same irradiance everywhere, without error.
 fn uniform(model: &Model, irradiance: f64) -> Solution {
     let sides = model.mesh.side_count();
     Solution { irradiance: vec![Rgb::splat(irradiance); sides], error: vec![Rgb::ZERO; sides] }
@@ -38,8 +38,8 @@ fn at(position: DVec3, direction: DVec3) -> Sensor {
     Sensor::new(position, direction).unwrap()
 }
 
-/// Share of the hemisphere of a sensor, weighted with the cosine, that a polygon takes which is wholly in front of it (Lambert 1760):
-/// a sum over its edges.
+/// Returns the cosine-weighted share of the hemisphere of a sensor that a polygon takes, as a sum over its edges
+/// (Lambert 1760). The polygon must be completely in front of the sensor.
 fn factor(sensor: &Sensor, corners: &[DVec3]) -> f64 {
     let to = |i: usize| (corners[i % corners.len()] - sensor.position()).normalize();
     let edge = |i: usize| {
@@ -49,7 +49,7 @@ fn factor(sensor: &Sensor, corners: &[DVec3]) -> f64 {
     ((0..corners.len()).map(edge).sum::<f64>() / (2.0 * PI)).abs()
 }
 
-/// Measures, and compares with what is exact: within four standard errors, which are at most `largest` of the exact value.
+/// Asserts that measurements are exact within four standard errors, which are at most `largest` of the exact value.
 #[track_caller]
 fn assert_exact(what: &str, sensors: &Gatherer<'_>, cases: &[(Sensor, f64)], largest: f64) {
     let start = Instant::now();
@@ -63,7 +63,7 @@ fn assert_exact(what: &str, sensors: &Gatherer<'_>, cases: &[(Sensor, f64)], lar
     println!("{what}: {:.1} ms per point", 1e3 * start.elapsed().as_secs_f64() / cases.len() as f64);
 }
 
-/// The test room of CIE 171:2006, 4 by 4 by 3 meters, black, without a ceiling.
+/// Adds the test room of CIE 171:2006, 4 by 4 by 3 meters, black, without a ceiling.
 fn black_room(builder: &mut SceneBuilder) {
     let black = builder.add_material(gray(0.0, 0.0));
     for corners in [
@@ -86,8 +86,8 @@ fn points() -> impl Iterator<Item = Sensor> {
     wall.chain((0..8).map(|i| at(v(2.0, 0.25 + 0.5 * f64::from(i), 0.0), DVec3::Z)))
 }
 
-/// The same square in 1,250 triangles, each square of two as bright as it happens to be: more than sensors tell apart, and one of
-/// them a hundred times as bright as the others.
+/// The same square in 1,250 triangles, in cells of two with varying brightness: more than the largest number of groups
+/// of a sensor, and one cell about a hundred times as bright as the others.
 #[test]
 fn a_thousand_lamps_are_measured_as_one_by_one() {
     const CELLS: u32 = 25;
@@ -131,7 +131,7 @@ fn a_luminous_square_is_measured_to_a_thousandth() {
     assert_exact("5.3", &Gatherer::new(&model, &uniform(&model, 0.0), RAYS, 1), &cases, 0.001);
 }
 
-/// CIE 171:2006, 5.2: a point light with the distribution of a diffuse surface. And sunlight, and a shadow.
+/// CIE 171:2006, 5.2: a point light with the distribution of a diffuse surface. Also sunlight with a shadow.
 #[test]
 fn lights_without_a_surface_are_exact() {
     let mut b = SceneBuilder::new();
@@ -154,7 +154,7 @@ fn lights_without_a_surface_are_exact() {
         [(0.0, 0.0, 111.111_111_111), (0.5, 0.5, 99.722_991_689_8), (1.0, 0.5, 85.663_295_657_3)]
     {
         let measured = sensors.measure(0, &at(v(2.0 + x, 2.0 + y, 0.0), DVec3::Z));
-        // The sun stands over the wall at x = 0, which shades the first 9/4 meters of the floor.
+        // The sun is over the wall at x = 0, which shades the first 9/4 meters of the floor.
         let exact = point + if x > 0.25 { 40.0 } else { 0.0 };
         // Sensors are lifted by 30 µm.
         assert!((measured.irradiance.x / exact - 1.0).abs() < 3e-5, "{measured:?}, exact {exact}");
@@ -188,7 +188,7 @@ fn the_sky_is_measured_through_an_opening() {
     assert_exact("5.9", &Gatherer::new(&model, &uniform(&model, 0.0), MANY, 1), &cases, 0.01);
 }
 
-/// CIE 171:2006, 5.7: what a wall sends past an obstruction, whether it emits or reflects.
+/// CIE 171:2006, 5.7: light that a wall sends past an obstruction, emitted or reflected.
 #[test]
 fn an_obstruction_hides_a_wall_that_emits_or_reflects() {
     for emits in [true, false] {
@@ -206,7 +206,7 @@ fn an_obstruction_hides_a_wall_that_emits_or_reflects() {
         let floors = [0.25, 1.25].map(|y| at(v(2.0, y, 0.0), DVec3::Z));
         let all = exact.into_iter().chain([3.382_335_192_98, 3.012_951_244_96]);
         let cases: Vec<_> = walls.into_iter().chain(floors).zip(all).collect();
-        // Reflected: 200 of irradiance times one half.
+        // Reflected light: half of an irradiance of 200.
         let solution = uniform(&model, if emits { 0.0 } else { 200.0 });
         let settings = if emits { RAYS } else { MANY };
         assert_exact("5.7", &Gatherer::new(&model, &solution, settings, 1), &cases, 0.004);
@@ -215,7 +215,8 @@ fn an_obstruction_hides_a_wall_that_emits_or_reflects() {
     }
 }
 
-/// In a closed box whose faces all emit and reflect alike, the irradiance is `M/(1 − ρ)` everywhere: on faces, at corners, in between.
+/// In a closed box whose faces all emit and reflect equally, the irradiance is `M/(1 − ρ)` everywhere: on faces, at
+/// corners, in between.
 #[test]
 fn in_a_furnace_the_irradiance_is_the_same_everywhere() {
     let mut b = SceneBuilder::new();
@@ -227,8 +228,8 @@ fn in_a_furnace_the_irradiance_is_the_same_everywhere() {
     assert_exact("furnace", &Gatherer::new(&model, &uniform(&model, 6.0), RAYS, 1), &cases, 0.001);
 }
 
-/// Thousands of emitters, most of which do not matter; one so close that it takes nearly the whole hemisphere; one that
-/// nearly touches the sensor, upright.
+/// Thousands of emitters, most of which are irrelevant; one so close that it takes nearly the whole hemisphere; and an
+/// upright one that nearly touches the sensor.
 #[test]
 fn many_and_close_emitters_are_measured_well() {
     let mut b = SceneBuilder::new();
@@ -254,7 +255,7 @@ fn many_and_close_emitters_are_measured_well() {
         bright,
         1000.0,
     ));
-    // Upright, and its lower edge a hair above the plane of the sensors.
+    // Upright, with its lower edge just above the plane of the sensors.
     lamps.push(([v(10., -1., 2e-3), v(10., 1., 2e-3), v(10., 1., 1.), v(10., -1., 1.)], bright, 1000.0));
     for (corners, material, _) in &lamps {
         shapes::quad(&mut b, *corners, *material);
@@ -269,7 +270,7 @@ fn many_and_close_emitters_are_measured_well() {
     let sensors = Gatherer::new(&model, &solution, RAYS, 1);
     let below = at(DVec3::ZERO, DVec3::Z);
     assert_exact("tiny", &sensors, &[(below, exact(below))], 0.003);
-    // The two large ones hide faint ones, which bring less than 1.
+    // The two large emitters hide faint ones, whose irradiance is less than 1.
     let lift = SENSOR_OFFSET * model.scene.bounding_sphere().radius;
     for (x, lamp, largest) in
         [(21.0, 2501, 1e-3), (10.001, 2502, 0.005), (10.01, 2502, 0.002), (10.3, 2502, 0.002)]
@@ -284,7 +285,7 @@ fn many_and_close_emitters_are_measured_well() {
     }
 }
 
-/// The back of a one-sided surface is black, that of a two-sided one is not.
+/// The back of a one-sided surface is black. That of a two-sided one is not.
 #[test]
 fn backs_are_black() {
     for (sides, exact) in [(Sides::Front, 0.0), (Sides::Both, 5.0)] {
@@ -298,7 +299,7 @@ fn backs_are_black() {
     }
 }
 
-/// Over many seeds, the deviations are what the standard errors say. In a room with everything: a lamp, a sky, a light, patches.
+/// Over many seeds, the deviations agree with the standard errors, in a room with a lamp, a sky and patches.
 #[test]
 fn standard_errors_are_honest() {
     let mut b = SceneBuilder::new();
@@ -317,18 +318,18 @@ fn standard_errors_are_honest() {
     assert!((0.9..1.1).contains(&rms), "{rms}");
 }
 
-/// Root of the mean square of the deviations from the mean in standard errors.
+/// Returns the root mean square of the deviations from the mean in units of standard errors.
 fn rms_of_deviations(runs: &[Measurement]) -> f64 {
     let n = runs.len() as f64;
     let mean = runs.iter().map(|m| m.irradiance.x).sum::<f64>() / n;
     let z = |m: &Measurement| (m.irradiance.x - mean) / m.error().x;
-    // Of a mean of n, and of errors from a few replications (Student's t).
+    // Corrects for the mean of `n` values, and for errors from a few replications (Student's t).
     let freedom = (REPLICATIONS - 1) as f64;
     let expected = (1.0 - 1.0 / n) * freedom / (freedom - 2.0);
     (runs.iter().map(|m| z(m) * z(m)).sum::<f64>() / n / expected).sqrt()
 }
 
-/// With the errors of patches: many solutions of a room, each measured.
+/// The errors of patches are included: many solutions of a room, each measured.
 #[test]
 fn errors_of_patches_are_passed_on() {
     let mut b = SceneBuilder::new();
@@ -354,12 +355,12 @@ fn errors_of_patches_are_passed_on() {
         let rms = rms_of_deviations(&runs);
         println!("{:?}\nrms of the deviations: {rms:.3}", runs[0]);
         assert!(runs[0].inherited.x > 3.0 * runs[0].sampling.x, "errors of patches prevail");
-        // As uncertain as the spread of a hundred runs, 7 % each; and patches are a little correlated.
+        // The uncertainty of the spread of a hundred runs is 7 %. Patches are also slightly correlated.
         assert!((0.75..1.25).contains(&rms), "{rms}");
     }
 }
 
-/// With an aim, a sensor takes as many rays as it needs.
+/// With a target error, a sensor traces only the rays that it needs.
 #[test]
 fn an_aim_saves_rays() {
     let mut b = SceneBuilder::new();

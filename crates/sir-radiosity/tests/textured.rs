@@ -1,5 +1,5 @@
-//! Rooms whose surfaces vary from place to place, and whose light is known all the same.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+//! Rooms whose surfaces vary from place to place, but whose light is known.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -9,18 +9,18 @@ use sir_geom::{ColorMap, Material, Rgb, SceneBuilder, Side, Texture, TextureMap,
 use sir_mesh::Subdivision;
 use sir_radiosity::{Emitter, Model, sources};
 
-/// Bright and dark texels, and what 8-bit sRGB has near the linear value .2.
+/// Bright and dark texels, and the 8-bit sRGB value closest to the linear value .2.
 const DARK: [u8; 4] = [0, 0, 0, 255];
 const WHITE: [u8; 4] = [255; 4];
 const GRAY: [u8; 4] = [124, 124, 124, 255];
 
-/// An irregular pattern of two texels.
+/// Returns an irregular pattern of two texels.
 fn pattern([one, other]: [[u8; 4]; 2]) -> Texture {
     let texel = |i: u32| if i.wrapping_mul(2_654_435_761) >> 30 == 0 { one } else { other };
     Texture::new(13, 7, (0..91).map(texel).collect()).unwrap()
 }
 
-/// A cube whose walls emit where they do not reflect: `M = 1 − ρ`, so that `B = E = 1` everywhere.
+/// Returns a cube whose walls emit where they do not reflect: `M = 1 − ρ`, so that `B = E = 1` everywhere.
 fn complementary_cube(subdivision: Subdivision) -> Model {
     let mut b = SceneBuilder::new();
     let gray = Texture::new(1, 1, vec![GRAY]).unwrap().mean_color().x;
@@ -92,8 +92,8 @@ fn sources_are_patches_where_a_texture_emits() {
         let expected = model.exitance(triangle, patch, Side::Front) * model.mesh.patch_area(triangle);
         assert!((source.power - expected).length() < 1e-12);
     }
-    // Each wall shows the pattern 1.7 times across and 2.5 times along: on the mean over triangles that is not the mean of the
-    // image, but what the same integral over the whole wall says.
+    // Each wall shows the pattern 1.7 times across and 2.5 times along. The mean over triangles is therefore not the
+    // mean of the image, but it equals the same integral over the whole wall.
     let coarse = complementary_cube(Subdivision::PerTriangle);
     let whole: Rgb = sir_radiosity::sources(&coarse.scene, &coarse.mesh).iter().map(|s| s.power).sum();
     let sum: Rgb = sources.iter().map(|s| s.power).sum();

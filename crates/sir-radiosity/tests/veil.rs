@@ -1,5 +1,5 @@
-//! Light that passes where surfaces are open.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+//! Light that passes through gaps in surfaces.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 mod common;
 
@@ -21,9 +21,10 @@ fn across(b: &mut SceneBuilder, x: f64, material: MaterialId) {
     }
 }
 
-/// A closed room in which everything emits and reflects alike, partitions included: two that let 40 % of the light pass, one
-/// of them with an irregular mask, and one that is all gap. All that is not gap has the radiosity `M / (1 − ρ)`: a partition that stops more or
-/// fewer lines than it has area would be brighter or darker.
+/// A closed room in which everything emits and reflects equally, including three partitions: two let 40 % of the light
+/// pass, one of these with an irregular mask, and the third has no covered area. All covered area has the radiosity
+/// `M / (1 − ρ)`. A partition that stopped more or fewer lines than its covered area implies would be brighter or
+/// darker.
 #[test]
 fn a_furnace_with_partitions_that_have_gaps() {
     let (m, rho) = (1.0, 0.6);
@@ -49,7 +50,7 @@ fn a_furnace_with_partitions_that_have_gaps() {
         let runs: Vec<Vec<f64>> = (1..=16)
             .map(|seed| {
                 let run = transport(&model, shoot(&model, 300_000, seed), 300_000, seed);
-                // Walls, and both sides of the partitions that are there.
+                // Walls, and both sides of the partitions with covered area.
                 let (mut sums, mut areas) = ([0.0; 5], [0.0; 5]);
                 model.mesh.for_each_side(|t, patch, side, id| {
                     let material = model.scene.triangle(t).material.index();
@@ -76,8 +77,8 @@ fn a_furnace_with_partitions_that_have_gaps() {
     }
 }
 
-/// Between two squares hangs a veil: of the light from one to the other it lets its share pass, to the accuracy of 400,000
-/// lines and five standard deviations.
+/// A veil between two squares lets its share of the light between them pass, within five standard deviations for
+/// 400,000 lines.
 #[test]
 fn a_veil_dims_what_is_behind_it() {
     const LINES: u64 = 400_000;

@@ -1,4 +1,4 @@
-//! View factors against exact ones, and whether their errors are what they say.
+//! View factors against exact ones, and their stated errors against true ones.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -41,13 +41,13 @@ fn count(model: &Model, settings: ViewFactorSettings) -> ViewFactors {
     }
 }
 
-/// Why the factors cannot be counted.
+/// Returns the error of settings for which view factors cannot be computed.
 fn refusal(model: &Model, grouping: &Grouping, settings: ViewFactorSettings) -> SolveError {
     let task = ViewFactorTask { model, grouping, settings };
     ViewFactorLines::begin(task, (), &OneWorker).unwrap_err()
 }
 
-/// With a standard error of at most `error`, the factor is what it should be but for chance.
+/// Asserts that the factor is exact within four standard errors, which are at most `error`.
 #[track_caller]
 fn assert_factor(factors: &ViewFactors, i: usize, j: usize, exact: f64, error: f64) {
     let (found, sigma) = (factors.factor(i, j), factors.error(i, j));
@@ -89,7 +89,7 @@ fn faces_of_a_cube() {
         assert_eq!(receivers(6).map(|r| factors.count(i, r)).sum::<u64>(), factors.lines()[i]);
         assert_eq!(factors.count(i, Receiver::Blocked) + factors.count(i, Receiver::Escaped), 0);
     }
-    // A quarter more lines than are needed, at most.
+    // At most a quarter more lines than needed.
     let needed = 6.0 * ADJACENT * (1.0 - ADJACENT) / 1e-6;
     let lines = factors.total_lines() as f64;
     assert!(lines > 0.98 * needed && lines < 1.27 * needed, "{lines} lines, {needed} needed");
@@ -127,8 +127,8 @@ fn opposed_squares_with_an_obstacle_that_absorbs() {
     let exact = 0.75 * OPPOSITE;
     assert_factor(&factors, 0, 1, exact, 1e-3);
     assert_factor(&factors, 1, 0, exact, 1e-3);
-    // The lower square sees the back of the obstacle, which has no other side; the upper one sees its front, as large as its back seen
-    // from below.
+    // The lower square sees the back of the one-sided obstacle. The upper square sees its front, which looks as large
+    // from above as the back does from below.
     assert_eq!(factors.factor(0, 2), 0.0);
     let (below, above) = (factors.share(0, Receiver::Blocked), factors.share(1, Receiver::Group(2)));
     let sigma = (below.error * below.error + above.error * above.error).sqrt();
@@ -145,11 +145,11 @@ fn a_box_in_a_box() {
     for (i, j, exact) in [(0, 0, 0.0), (0, 1, 1.0), (1, 0, 0.25), (1, 1, 0.75)] {
         assert_factor(&factors, i, j, exact, 1e-3);
     }
-    // Since all that leaves the inner box arrives at the outer one, closure leaves nothing to chance.
+    // All light that leaves the inner box arrives at the outer one, so closure leaves no noise.
     let closed = factors.closed().unwrap();
     assert!((closed.factor(1, 0) - 0.25).abs() < 1e-9 && (closed.factor(1, 1) - 0.75).abs() < 1e-9);
     assert!(closed.share(1, Receiver::Group(0)).1 < 1e-6);
-    // All that leaves the inner box arrives at the outer one, which is soon known.
+    // For the same reason, few lines from the inner box are needed.
     assert!(factors.lines()[0] < factors.lines()[1] / 10);
 }
 
@@ -161,7 +161,7 @@ fn a_small_sphere_in_a_sphere_has_good_errors_too() {
     sir_geom::shapes::sphere(&mut b, DVec3::ZERO, 1.0, 3, Facing::Inward, |_| outer);
     let accuracy = Some(Accuracy { error: 1e-4, relative: 0.03 });
     let factors = count(&model(b), ViewFactorSettings { accuracy, lines: 10_000_000, seed: 5 });
-    // Both solids are convex and similar, so this is exact for them as it is for spheres.
+    // Both solids are convex and similar, so this is exact for them, as it is for spheres.
     assert_factor(&factors, 1, 0, 0.01, 3e-4);
     assert_factor(&factors, 0, 1, 1.0, 1e-2);
     assert!(factors.total_lines() < 300_000, "{} lines", factors.total_lines());
@@ -200,7 +200,7 @@ fn inside_of_a_cylinder() {
 
 #[test]
 fn both_sides_of_a_sheet_count() {
-    // A sheet across the middle of a cube sees, of each half, five faces and nothing else.
+    // Of each half of a cube, a sheet across its middle sees five faces and nothing else.
     let mut b = SceneBuilder::new();
     let [walls, _] = materials(&mut b, Sides::Front);
     let [sheet] = materials(&mut b, Sides::Both);
@@ -213,7 +213,8 @@ fn both_sides_of_a_sheet_count() {
     assert_factor(&factors, 0, 1, 2.0 / 6.0, 2e-3);
 }
 
-/// Root mean square of deviations in standard errors, of all factors of a cube but those that are exactly zero.
+/// Returns the root mean square of deviations in units of standard errors, over all factors of a cube that are not
+/// exactly zero.
 fn rms_z(runs: &[ViewFactors], of: impl Fn(&ViewFactors, usize, usize) -> (f64, f64)) -> f64 {
     let pairs = (0..36).map(|k| (k / 6, k % 6)).filter(|(i, j)| i != j);
     let squares = runs.iter().flat_map(|run| pairs.clone().map(|(i, j)| (i, j, of(run, i, j))));
@@ -243,7 +244,7 @@ fn errors_are_what_they_say() {
     let ratio = runs[0].error(0, 1) / more.error(0, 1);
     assert!((ratio - 2.0).abs() < 0.1, "{ratio}");
 
-    // Closed factors have smaller errors, and these are what they say, too.
+    // Closed factors have smaller errors, and these are correct, too.
     let closed: Vec<_> = runs.iter().map(|run| run.closed().unwrap()).collect();
     for (run, closed) in runs.iter().zip(&closed) {
         for i in 0..6 {

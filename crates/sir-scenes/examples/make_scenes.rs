@@ -1,6 +1,6 @@
-//! Writes the project's scenes into a folder: `cargo run -p sir-scenes --example make_scenes [FOLDER]`.
+//! Writes the project's scenes to a folder: `cargo run -p sir-scenes --example make_scenes [FOLDER]`.
 //!
-//! Without an argument it is the folder `scenes` of the repository.
+//! The default folder is `scenes` in the repository.
 
 use std::{error::Error, fs, path::PathBuf};
 

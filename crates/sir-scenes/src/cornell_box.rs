@@ -1,20 +1,20 @@
 //! The Cornell box, as measured by the Cornell University Program of Computer Graphics.
 //!
-//! All figures are from its page "Cornell Box Data" (<https://www.graphics.cornell.edu/online/box/data.html>, now at
-//! <https://bowers.cornell.edu/computer-graphics/data>), where lengths are millimeters.
+//! All data are from its page "Cornell Box Data" (<https://www.graphics.cornell.edu/online/box/data.html>, now at
+//! <https://bowers.cornell.edu/computer-graphics/data>), which gives lengths in millimeters.
 //!
 //! # Colors
 //!
-//! The published colors are spectra. A band `c` of a reflectance is here the measured reflectance averaged over
-//! the wavelengths with the weight `S(λ) c̄(λ)`, `S` being the lamp's own spectrum and `c̄` the band's color-matching
-//! function: this makes the light that a wall reflects of the direct light exact in every band, where a neutral
-//! light as the weight would make none exact.
+//! The published colors are spectra. The reflectance in a band `c` is the measured reflectance averaged over the
+//! wavelengths with the weight `S(λ) c̄(λ)`, where `S` is the spectrum of the lamp and `c̄` the color-matching function
+//! of the band. With this weight, the first reflection of direct light is exact in every band. With a neutral light as
+//! the weight, it would be exact in none.
 //!
-//! The lamp has almost no blue. Beside an equal-energy light of the same luminance its bands are as
-//! 1.39 : 0.93 : 0.25, an orange that the eye of somebody in the room would not see, since it adapts to the lamp.
-//! The scene's lamp is half adapted: each band is the geometric mean of the band and the luminance. That changes
-//! nothing but a constant factor per band, as the white balance of a photo camera does, because bands do not
-//! mix. The published emission has no unit; it is taken as radiance in W/(m² sr).
+//! The lamp has almost no blue. Relative to an equal-energy light of the same luminance, its bands are
+//! 1.39 : 0.93 : 0.25. An observer in the room would not see this orange, because the eye adapts to the lamp. The lamp
+//! of the scene is half adapted: each band is the geometric mean of the band and the luminance. Because bands do not
+//! mix, this only multiplies each band by a constant factor, like the white balance of a camera. The published emission
+//! has no unit; it is taken as radiance in W/(m² sr).
 
 use glam::DVec3;
 use sir_geom::{Built, Camera, Material, MaterialId, Rgb, SceneBuilder, SceneError, shapes};
@@ -31,7 +31,7 @@ const WHITE: [f64; 76] = [
     0.737,
 ];
 
-/// Reflectance of the green wall, likewise.
+/// Reflectance of the green wall at the same wavelengths.
 const GREEN: [f64; 76] = [
     0.092, 0.096, 0.098, 0.097, 0.098, 0.095, 0.095, 0.097, 0.095, 0.094, 0.097, 0.098, 0.096, 0.101, 0.103,
     0.104, 0.107, 0.109, 0.112, 0.115, 0.125, 0.140, 0.160, 0.187, 0.229, 0.285, 0.343, 0.390, 0.435, 0.464,
@@ -41,7 +41,7 @@ const GREEN: [f64; 76] = [
     0.159,
 ];
 
-/// Reflectance of the red wall, likewise.
+/// Reflectance of the red wall at the same wavelengths.
 const RED: [f64; 76] = [
     0.040, 0.046, 0.048, 0.053, 0.049, 0.050, 0.053, 0.055, 0.057, 0.056, 0.059, 0.057, 0.061, 0.061, 0.060,
     0.062, 0.062, 0.062, 0.061, 0.062, 0.060, 0.059, 0.057, 0.058, 0.058, 0.058, 0.056, 0.055, 0.056, 0.059,
@@ -51,21 +51,22 @@ const RED: [f64; 76] = [
     0.642,
 ];
 
-/// Emission of the lamp at 400, 500, 600 and 700 nm; straight lines between them.
+/// Emission of the lamp at 400, 500, 600 and 700 nm, interpolated linearly between them.
 const LAMP: [f64; 4] = [0.0, 8.0, 15.6, 18.4];
 
-/// Reflectance of the lamp: flat, and only roughly known. It is the value that the common renditions of the data use.
+/// Reflectance of the lamp: constant over the spectrum and only roughly known. Common renderings of the data use this
+/// value.
 const LAMP_REFLECTANCE: f64 = 0.78;
 
-/// Corners of the opening for the lamp \[mm\], which lies in the plane of the ceiling.
+/// Corners of the lamp opening \[mm\], in the plane of the ceiling.
 const OPENING: [[f64; 3]; 4] =
     [[343.0, 548.8, 227.0], [343.0, 548.8, 332.0], [213.0, 548.8, 332.0], [213.0, 548.8, 227.0]];
 
-/// Corners of the ceiling \[mm\], in the order of those of the opening.
+/// Corners of the ceiling \[mm\], in the same order as those of the opening.
 const CEILING: [[f64; 3]; 4] =
     [[556.0, 548.8, 0.0], [556.0, 548.8, 559.2], [0.0, 548.8, 559.2], [0.0, 548.8, 0.0]];
 
-/// Walls with an even color \[mm\]: floor, back, right and left as seen by the camera.
+/// Paint and corners \[mm\] of floor, back wall, right wall and left wall, as seen by the camera.
 const WALLS: [(Paint, [[f64; 3]; 4]); 4] = [
     (Paint::White, [[552.8, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 559.2], [549.6, 0.0, 559.2]]),
     (Paint::White, [[549.6, 0.0, 559.2], [0.0, 0.0, 559.2], [0.0, 548.8, 559.2], [556.0, 548.8, 559.2]]),
@@ -73,7 +74,7 @@ const WALLS: [(Paint, [[f64; 3]; 4]); 4] = [
     (Paint::Red, [[552.8, 0.0, 0.0], [549.6, 0.0, 559.2], [556.0, 548.8, 559.2], [556.0, 548.8, 0.0]]),
 ];
 
-/// Tops of the two blocks \[mm\]; their sides reach down to the floor.
+/// Corners of the tops of the two blocks \[mm\]. The sides of the blocks reach down to the floor.
 const BLOCKS: [[[f64; 3]; 4]; 2] = [
     [[130.0, 165.0, 65.0], [82.0, 165.0, 225.0], [240.0, 165.0, 272.0], [290.0, 165.0, 114.0]],
     [[423.0, 330.0, 247.0], [265.0, 330.0, 296.0], [314.0, 330.0, 456.0], [472.0, 330.0, 406.0]],
@@ -86,15 +87,15 @@ enum Paint {
     Red,
 }
 
-/// The Cornell box with its two blocks, in meters, open at the front (`z = 0`), with the camera of the published
-/// pictures. The red wall is on the left of the picture.
+/// Returns the Cornell box with its two blocks, in meters, open at the front (`z = 0`), with the camera of the
+/// published pictures. The red wall is on the left of the picture.
 ///
-/// The ceiling has an opening in which the lamp lies flush, so that no surface covers another. Materials are `white`,
-/// `green`, `red` and `lamp`. See the source of this module for where the colors come from.
+/// The lamp lies flush in an opening of the ceiling, so that no surface covers another. The materials are `white`,
+/// `green`, `red` and `lamp`. The source of this module explains the origin of the colors.
 ///
 /// # Errors
 ///
-/// None that can occur with the numbers of the data; the signature is that of every scene.
+/// None that can occur with these data; the signature is the same for all scenes.
 pub fn cornell_box() -> Result<Built, SceneError> {
     let mut b = SceneBuilder::new();
     let [white, green, red] = [("white", WHITE), ("green", GREEN), ("red", RED)]
@@ -132,7 +133,7 @@ fn add_quad(builder: &mut SceneBuilder, corners: [[f64; 3]; 4], material: Materi
     shapes::quad(builder, corners.map(|p| DVec3::from_array(p) / 1000.0), material);
 }
 
-/// Position (278, 273, −800) mm, direction +z, focal length 0.035, film 0.025 by 0.025.
+/// Adds the published camera: position (278, 273, −800) mm, direction +z, focal length 0.035, film 0.025 by 0.025.
 fn add_camera(builder: &mut SceneBuilder) {
     let eye = DVec3::new(0.278, 0.273, -0.8);
     let vertical_fov = 2.0 * (0.5 * 0.025 / 0.035f64).atan();
@@ -143,7 +144,7 @@ fn add_camera(builder: &mut SceneBuilder) {
     }
 }
 
-/// The lamp's emission at the wavelengths of the reflectances.
+/// Returns the emission of the lamp at the wavelengths of the reflectances.
 fn lamp() -> impl Iterator<Item = f64> {
     wavelengths().map(|nm| {
         let t = (nm - 400.0) / 100.0;
@@ -152,13 +153,13 @@ fn lamp() -> impl Iterator<Item = f64> {
     })
 }
 
-/// A measured reflectance under the lamp, per band.
+/// Returns a measured reflectance per band, weighted with the spectrum of the lamp.
 fn reflectance(spectrum: &[f64; 76]) -> Rgb {
     let reflected = integrate(lamp().zip(spectrum).map(|(s, r)| s * r));
     round_to(reflected / integrate(lamp()), 1e4).clamp(Rgb::ZERO, Rgb::ONE)
 }
 
-/// Radiance of the lamp, half adapted to its own color.
+/// Returns the radiance of the lamp \[W/(m² sr)\], half adapted to its own color.
 fn lamp_radiance() -> Rgb {
     let equal_energy = || wavelengths().map(|_| 1.0);
     let bands = integrate(lamp()) / integrate(equal_energy());
@@ -204,7 +205,7 @@ mod tests {
         for t in scene.triangle_ids() {
             let [a, b, c] = scene.corners(t);
             let centroid = (a + b + c) / 3.0;
-            // The ten triangles each of the short and of the tall block come last.
+            // The ten triangles of the short block and the ten of the tall block come last.
             let inside = match t.index() {
                 0..18 => middle,
                 18..28 => DVec3::new(0.186, 0.08, 0.169),

@@ -1,13 +1,13 @@
-//! Scenes with a known answer.
+//! Scenes with analytic solutions.
 
 use glam::DVec3;
 use sir_geom::{Built, Camera, Material, Rgb, SceneBuilder, SceneError, shapes, shapes::Facing};
 
-/// A closed cube with corners at 0 and `edge` \[m\] whose faces all emit `exitance` \[W/m²\] and reflect
-/// `reflectance`.
+/// Returns a white furnace: a closed cube with corners at 0 and `edge` \[m\] whose faces all have the exitance
+/// `exitance` \[W/m²\] and the reflectance `reflectance`.
 ///
-/// Every point of it sees the same light from everywhere, so that the radiosity is [`furnace_answer`] everywhere,
-/// whatever the form factors: a solver that finds another value loses or invents light.
+/// Every point receives the same radiance from all directions. The radiosity is therefore [`furnace_answer`]
+/// everywhere, for any form factors. A solver that finds another value loses or creates light.
 ///
 /// # Errors
 ///
@@ -20,7 +20,8 @@ pub fn furnace(edge: f64, reflectance: Rgb, exitance: Rgb) -> Result<Built, Scen
     b.build()
 }
 
-/// Radiosity \[W/m²\] of every point of a [`furnace`]: the geometric series `M (1 + ρ + ρ² + …) = M / (1 − ρ)`.
+/// Returns the radiosity \[W/m²\] of every point of a [`furnace`]: the geometric series
+/// `M (1 + ρ + ρ² + …) = M / (1 − ρ)`.
 #[must_use]
 pub fn furnace_answer(reflectance: Rgb, exitance: Rgb) -> Rgb {
     exitance / (Rgb::ONE - reflectance)
@@ -29,20 +30,20 @@ pub fn furnace_answer(reflectance: Rgb, exitance: Rgb) -> Rgb {
 /// One of the two surfaces of [`concentric_spheres`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereShell {
-    /// Radius of the sphere that the vertices lie on \[m\].
+    /// Radius of the sphere on which the vertices lie \[m\].
     pub radius: f64,
     /// Diffuse reflectance.
     pub reflectance: Rgb,
-    /// Emitted exitance \[W/m²\].
+    /// Exitance \[W/m²\].
     pub exitance: Rgb,
 }
 
-/// A sphere that faces outward inside a larger one that faces inward, both of `20 · 4^level` triangles.
+/// Returns a sphere that faces outward, inside a larger sphere that faces inward. Both have `20 · 4^level` triangles.
 ///
-/// The two polyhedra are scaled copies of each other, so that their areas are in the ratio of the squared radii
-/// exactly. Of smooth spheres every point of either has the radiosity of [`concentric_spheres_answer`]. Of the
-/// polyhedra the mean values are the same but for second-order terms; single points differ from the mean by the
-/// distance of a facet from the sphere, about 0.15 % at level 4.
+/// The two polyhedra are scaled copies of each other, so that the ratio of their areas is exactly the ratio of the
+/// squared radii. On smooth spheres, every point has the radiosity given by [`concentric_spheres_answer`]. On the
+/// polyhedra, the mean radiosities are the same except for second-order terms. Single points differ from the mean by
+/// the distance of a facet from the sphere, about 0.15 % at level 4.
 ///
 /// # Errors
 ///
@@ -60,10 +61,10 @@ pub fn concentric_spheres(inner: SphereShell, outer: SphereShell, level: u32) ->
     b.build()
 }
 
-/// Radiosities \[W/m²\] of the inner and the outer of two smooth concentric spheres.
+/// Returns the radiosities \[W/m²\] of the inner and the outer of two smooth concentric spheres.
 ///
-/// All light of the inner sphere reaches the outer one; by reciprocity (`A₁ F₁₂ = A₂ F₂₁`) a share
-/// `f = (r₁/r₂)²` of the outer one's light reaches the inner one, and the rest the outer one itself:
+/// All light of the inner sphere reaches the outer one. By reciprocity (`A₁ F₁₂ = A₂ F₂₁`), a share `f = (r₁/r₂)²` of
+/// the outer sphere's light reaches the inner one, and the rest returns to the outer one:
 ///
 /// `B₁ = M₁ + ρ₁ B₂`, `B₂ = M₂ + ρ₂ (f B₁ + (1 − f) B₂)`.
 #[must_use]
@@ -75,7 +76,7 @@ pub fn concentric_spheres_answer(inner: SphereShell, outer: SphereShell) -> (Rgb
     (inner.exitance + inner.reflectance * b2, b2)
 }
 
-/// Adds a camera with a vertical opening of 60°; the points are distinct and the view is not vertical.
+/// Adds a camera with a vertical field of view of 60°. The points must be distinct and the view not vertical.
 fn add_camera(builder: &mut SceneBuilder, name: &str, eye: DVec3, target: DVec3) {
     if let Some(mut camera) = Camera::looking_at(eye, target, DVec3::Y, std::f64::consts::FRAC_PI_3) {
         camera.name = name.to_owned();

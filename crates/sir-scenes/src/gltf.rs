@@ -1,7 +1,7 @@
-//! Writing a scene as glTF 2.0 (Khronos Group, <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>).
+//! Writer of scenes in glTF 2.0 (Khronos Group, <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>).
 //!
-//! One mesh holds all triangles: a primitive per material in the order of the materials, triangles in the order of
-//! the scene. All primitives share one list of positions. Equal scenes give equal bytes.
+//! One mesh holds all triangles. It has one primitive per material, in the order of the materials, with the triangles
+//! in the order of the scene. All primitives share one list of positions. Equal scenes give equal bytes.
 
 use std::{fs, path::Path};
 
@@ -22,20 +22,21 @@ const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
 /// `target` of a buffer view of indices.
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-/// Nearest distance that a viewer must show \[m\]; a radiosity picture has no such limit.
+/// Distance of the near clipping plane for viewers \[m\]; a radiosity picture needs none.
 const NEAR: f64 = 0.01;
 
-/// Stores a scene: as text with the geometry embedded in it if `path` ends in `.gltf`, in binary form if it ends in
-/// `.glb`.
+/// Writes a scene to a glTF file: as text with embedded geometry if `path` ends in `.gltf`, in binary form if it ends
+/// in `.glb`.
 ///
 /// Positions, reflectances and emissions become 32-bit floats. A material's exitance `M` is stored as the radiance
-/// `M / π` with the extension `KHR_materials_emissive_strength`. Materials without a triangle are stored too, so
-/// that material numbers stay what they are; the vertical opening of a camera must be below π. A surface that reflects on
-/// both sides but emits on one cannot be told from one that emits on both.
+/// `M / π` with the extension `KHR_materials_emissive_strength`. Materials without triangles are stored too, so that
+/// material indices do not change. The vertical field of view of a camera must be below π. The file cannot distinguish
+/// a surface that reflects on both sides but emits on one from a surface that emits on both.
 ///
 /// # Errors
 ///
-/// If a coordinate exceeds 32-bit floats, the extension of the name is unknown or the file cannot be written.
+/// If a coordinate exceeds the range of 32-bit floats, the file name extension is unknown, or the file cannot be
+/// written.
 pub fn write_gltf(scene: &Scene, path: &Path) -> Result<(), Error> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let bytes = match extension {
@@ -46,7 +47,7 @@ pub fn write_gltf(scene: &Scene, path: &Path) -> Result<(), Error> {
     fs::write(path, bytes).map_err(|source| Error::Write { path: path.to_owned(), source })
 }
 
-/// The content of a `.gltf` file.
+/// Returns the content of a `.gltf` file.
 fn text(scene: &Scene) -> Result<Vec<u8>, Error> {
     let geometry = Geometry::of(scene)?;
     let uri = format!("data:application/octet-stream;base64,{}", BASE64_STANDARD.encode(&geometry.bytes));
@@ -55,7 +56,7 @@ fn text(scene: &Scene) -> Result<Vec<u8>, Error> {
     Ok(format!("{root:#}\n").into_bytes())
 }
 
-/// The content of a `.glb` file: a header, a chunk of text and a chunk of numbers, both padded to four bytes.
+/// Returns the content of a `.glb` file: a header, a JSON chunk and a binary chunk, both padded to four bytes.
 fn binary(scene: &Scene) -> Result<Vec<u8>, Error> {
     let geometry = Geometry::of(scene)?;
     let mut text = document(scene, &geometry).to_string().into_bytes();
@@ -75,7 +76,7 @@ fn binary(scene: &Scene) -> Result<Vec<u8>, Error> {
     Ok(file)
 }
 
-/// Positions and indices as bytes, and what describes them.
+/// Positions and indices as bytes, and the glTF objects that describe them.
 struct Geometry {
     bytes: Vec<u8>,
     views: Vec<Value>,
@@ -132,10 +133,10 @@ impl Geometry {
         Ok(())
     }
 
-    /// Adds the corners of one primitive and returns the number of their accessor.
+    /// Adds the vertex indices of one primitive and returns the index of their accessor.
     fn add_indices(&mut self, indices: &[u32], vertices: usize) -> usize {
         let start = self.bytes.len();
-        // The largest number of a type restarts a primitive, so that it is not an index.
+        // The largest value of an index type is the primitive restart value, which is not a valid index.
         let component = if vertices <= usize::from(u16::MAX) {
             self.bytes.extend(indices.iter().flat_map(|&i| (i as u16).to_le_bytes()));
             UNSIGNED_SHORT
@@ -165,7 +166,7 @@ impl Geometry {
     }
 }
 
-/// The whole description but the `uri` of the buffer.
+/// Returns the whole JSON document except the `uri` of the buffer.
 fn document(scene: &Scene, geometry: &Geometry) -> Value {
     let mut nodes = vec![json!({ "mesh": 0, "name": "scene" })];
     nodes.extend(scene.cameras().iter().enumerate().map(|(i, c)| camera_node(c, i)));
@@ -189,7 +190,8 @@ fn document(scene: &Scene, geometry: &Geometry) -> Value {
     root
 }
 
-/// What the emitted radiance is divided by so that it becomes a color: its largest band, but not less than one.
+/// Returns the emissive strength: the largest band of the emitted radiance, but at least one. Divided by it, the
+/// radiance becomes a color.
 fn strength(material: &Material) -> f32 {
     (material.exitance.max_element() / std::f64::consts::PI).max(1.0) as f32
 }
@@ -243,7 +245,7 @@ fn camera(camera: &Camera) -> Value {
     }
 }
 
-/// The place of a camera, which in its own frame looks along −z with +y up.
+/// Returns the node that places a camera. In its own frame, a camera looks along −z with +y up.
 fn camera_node(camera: &Camera, index: usize) -> Value {
     let right = camera.forward.cross(camera.up).normalize();
     let up = right.cross(camera.forward).normalize();
@@ -256,7 +258,7 @@ fn camera_node(camera: &Camera, index: usize) -> Value {
     })
 }
 
-/// The double that prints with the fewest digits that still give this number: 0.1 instead of 0.10000000149011612.
+/// Returns the double with the shortest decimal form that rounds to this float: 0.1 instead of 0.10000000149011612.
 fn short(x: f32) -> f64 {
     x.to_string().parse().unwrap_or(f64::from(x))
 }

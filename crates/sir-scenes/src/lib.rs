@@ -1,18 +1,17 @@
 //! The project's own scenes, and a writer that stores any [`Scene`](sir_geom::Scene) as glTF.
 //!
-//! Every scene is a function of a few numbers, so that its exact dimensions can be read in one place and its file
-//! can be made again, byte for byte, by `cargo run -p sir-scenes --example make_scenes`.
+//! Each scene is a function of a few numbers. Its exact dimensions therefore stand in one place, and
+//! `cargo run -p sir-scenes --example make_scenes` reproduces its file byte for byte.
 //!
-//! * [`furnace`] and [`concentric_spheres`] have a known answer: they tell whether a solver is right.
-//! * [`cornell_box`] was measured in reality: it is the common yardstick of the field.
-//! * [`reading_room`] is a furnished interior lit mostly by light that has been reflected: it is there to be looked
-//!   at.
-//! * [`airplane_cabin`] has many small things, and light that is hidden almost everywhere: it is there to be looked at,
-//!   and to be computed by many processors.
-//! * [`museum_stairs`] is a large hall full of sculpture, likewise to be looked at.
+//! * [`furnace`] and [`concentric_spheres`] have analytic solutions and test the correctness of a solver.
+//! * [`cornell_box`] reproduces a measured box, the standard test scene of the field.
+//! * [`reading_room`] is a furnished interior lit mostly by reflected light, made for pictures.
+//! * [`airplane_cabin`] has many small objects, and almost all of its lamps are hidden. It is made for pictures and for
+//!   runs on many processors.
+//! * [`museum_stairs`] is a large hall full of sculpture, also made for pictures.
 //!
-//! All lengths are meters, `y` is up, and no scene has light that can leave it, but for the Cornell box, which is open
-//! at the front.
+//! All lengths are in meters, and `y` points up. All scenes are closed, so that no light escapes, except the Cornell
+//! box, which is open at the front.
 
 mod airplane_cabin;
 mod cornell_box;

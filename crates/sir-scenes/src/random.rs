@@ -1,6 +1,6 @@
-//! A small generator of numbers, so that furniture is not all alike, but the same in every build.
+//! A small random number generator, so that furniture varies but is identical in every build.
 
-/// Sixty-four bits of state, stepped and mixed as in SplitMix64 (Steele, Lea, Flood 2014).
+/// SplitMix64 generator (Steele, Lea, Flood 2014) with 64 bits of state.
 pub(crate) struct Random(u64);
 
 impl Random {
@@ -16,17 +16,17 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number in [0, 1).
+    /// Returns a uniform number in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A number in [low, high).
+    /// Returns a uniform number in [low, high).
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    /// A whole number in [0, n).
+    /// Returns a uniform integer in [0, n).
     pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.unit() * n as f64) as usize
     }

@@ -1,27 +1,28 @@
-//! From spectra to linear Rec. 709 RGB.
+//! Conversion of spectra to linear Rec. 709 RGB.
 
 use sir_geom::Rgb;
 
-/// Wavelengths of all integrals \[nm\]: those at which the Cornell box was measured.
+/// Returns the wavelengths of all integrals \[nm\]: those at which the Cornell box was measured.
 pub(crate) fn wavelengths() -> impl Iterator<Item = f64> {
     (0..76).map(|i| f64::from(400 + 4 * i))
 }
 
-/// `∫ spectrum · r̄, ḡ, b̄ dλ`, up to the width of a step, for a spectrum given at [`wavelengths`].
+/// Returns `∫ spectrum · r̄, ḡ, b̄ dλ` divided by the wavelength step, for a spectrum given at [`wavelengths`].
 pub(crate) fn integrate(spectrum: impl Iterator<Item = f64>) -> Rgb {
     wavelengths().zip(spectrum).map(|(nm, value)| value * color_matching(nm)).sum()
 }
 
-/// `∫ spectrum · ȳ dλ`, in the same unit as [`integrate`].
+/// Returns `∫ spectrum · ȳ dλ`, in the same unit as [`integrate`].
 pub(crate) fn luminance(spectrum: impl Iterator<Item = f64>) -> f64 {
     wavelengths().zip(spectrum).map(|(nm, value)| value * observer(nm)[1]).sum()
 }
 
-/// Response of the three bands to a wavelength \[nm\]. Bands have negative lobes, where a pure spectral color lies
-/// outside what three primaries can make.
+/// Returns the color-matching functions of the three bands at a wavelength \[nm\].
+///
+/// They have negative lobes where a spectral color lies outside the gamut of the three primaries.
 fn color_matching(nm: f64) -> Rgb {
     let [x, y, z] = observer(nm);
-    // XYZ to linear Rec. 709 with the white D65 (IEC 61966-2-1 primaries, four digits).
+    // XYZ to linear Rec. 709 with white point D65 (IEC 61966-2-1 primaries, four digits).
     Rgb::new(
         3.2406 * x - 1.5372 * y - 0.4986 * z,
         -0.9689 * x + 1.8758 * y + 0.0415 * z,
@@ -29,8 +30,10 @@ fn color_matching(nm: f64) -> Rgb {
     )
 }
 
-/// The CIE 1931 standard observer `x̄, ȳ, z̄` as the sums of piecewise Gaussian lobes fitted by Wyman, Sloan and Shirley,
-/// Journal of Computer Graphics Techniques 2 (2), 2013, table 1.
+/// Returns the CIE 1931 standard observer `x̄, ȳ, z̄` at a wavelength \[nm\].
+///
+/// It is approximated by sums of piecewise Gaussian lobes (Wyman, Sloan and Shirley, Journal of Computer Graphics
+/// Techniques 2 (2), 2013, table 1).
 fn observer(nm: f64) -> [f64; 3] {
     let lobe = |height: f64, center: f64, below: f64, above: f64| {
         let t = (nm - center) * if nm < center { below } else { above };
@@ -45,7 +48,7 @@ fn observer(nm: f64) -> [f64; 3] {
     ]
 }
 
-/// Rounds to a multiple of `1 / per_unit`, so that the last bits of `exp` do not depend on the machine.
+/// Rounds to a multiple of `1 / per_unit`, so that the result does not depend on the last bits of the machine's `exp`.
 pub(crate) fn round_to(value: Rgb, per_unit: f64) -> Rgb {
     (value * per_unit).round() / per_unit
 }
@@ -57,7 +60,7 @@ mod tests {
     #[test]
     fn observer_is_normalized_and_peaks_where_the_eye_does() {
         let [x, y, z] = [0, 1, 2].map(|i| 4.0 * wavelengths().map(|nm| observer(nm)[i]).sum::<f64>());
-        // The tables of the standard sum to 106.9 for each of the three.
+        // In the tables of the standard, each of the three functions sums to 106.9.
         for sum in [x, y, z] {
             assert!((sum - 106.9).abs() < 1.5, "{sum}");
         }

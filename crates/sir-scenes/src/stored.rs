@@ -1,35 +1,35 @@
-//! The scenes that the repository holds as files.
+//! Scenes that are stored as files in the repository.
 
 use sir_geom::{Rgb, Scene, SceneError};
 
 use crate::exact::{SphereShell, concentric_spheres, furnace};
 use crate::{airplane_cabin, cornell_box, museum_stairs, reading_room};
 
-/// Reflectance of the stored furnace: the radiosity is 2, 5 and 10 W/m².
+/// Reflectance of the stored furnace, whose radiosity is 2, 5 and 10 W/m².
 pub const FURNACE_REFLECTANCE: Rgb = Rgb::new(0.5, 0.8, 0.9);
 /// Exitance of the stored furnace \[W/m²\].
 pub const FURNACE_EXITANCE: Rgb = Rgb::ONE;
-/// The inner one of the stored concentric spheres.
+/// Inner sphere of the stored concentric spheres.
 pub const INNER_SPHERE: SphereShell =
     SphereShell { radius: 1.0, reflectance: Rgb::splat(0.5), exitance: Rgb::splat(100.0) };
-/// The outer one of the stored concentric spheres.
+/// Outer sphere of the stored concentric spheres.
 pub const OUTER_SPHERE: SphereShell =
     SphereShell { radius: 2.0, reflectance: Rgb::splat(0.8), exitance: Rgb::ZERO };
 
-/// A scene and the file that it is stored in.
+/// Scene with the path of its file.
 #[derive(Clone, Debug)]
 pub struct Stored {
-    /// Path below the folder `scenes`, with `/` between its parts.
+    /// Path relative to the folder `scenes`, with `/` as separator.
     pub path: &'static str,
-    /// The scene.
+    /// Scene.
     pub scene: Scene,
 }
 
-/// All stored scenes, made anew.
+/// Builds all stored scenes.
 ///
 /// # Errors
 ///
-/// None that can occur with the numbers above.
+/// None that can occur with the parameters above.
 pub fn stored() -> Result<Vec<Stored>, SceneError> {
     Ok(vec![
         Stored { path: "cornell-box/cornell-box.gltf", scene: cornell_box()?.scene },

@@ -1,4 +1,4 @@
-//! The rooms are closed, and made of solids that do not touch.
+//! The scenes are closed, and their solids do not touch.
 
 use std::collections::BTreeMap;
 
@@ -38,14 +38,14 @@ fn every_edge_joins_two_triangles_that_run_along_it_in_opposite_directions() {
     }
 }
 
-/// A line from outside enters a room through a back, then meets the front and the back of each solid in turn, and
-/// leaves through a front. Solids that overlap, or face the wrong way, break the turn.
+/// A line from outside enters a room through a back, then hits the front and the back of each solid alternately, and
+/// leaves through a front. Solids that overlap or face the wrong way break the alternation.
 #[test]
 fn lines_meet_backs_and_fronts_in_turn() {
     for (name, scene) in closed_scenes().unwrap() {
         let bounds = scene.bounding_box();
         let mut state = 1u64;
-        let mut met = 0;
+        let mut hit_count = 0;
         for _ in 0..1500 {
             let [p, q] = [0, 1].map(|_| bounds.min + bounds.size() * in_unit_cube(&mut state));
             let beyond = 2.0 * bounds.size().length() / p.distance(q) * (q - p);
@@ -58,15 +58,16 @@ fn lines_meet_backs_and_fronts_in_turn() {
             hits.sort_by(|a, b| a.0.total_cmp(&b.0));
             assert!(hits.len().is_multiple_of(2), "{name}: {hits:?}");
             for (i, h) in hits.iter().enumerate() {
-                assert_eq!(h.1, i % 2 == 1, "{name}: hit {i} at {} out of turn: {hits:?}", h.2);
+                assert_eq!(h.1, i % 2 == 1, "{name}: hit {i} at {} on the wrong side: {hits:?}", h.2);
             }
-            met += hits.len();
+            hit_count += hits.len();
         }
-        assert!(met > 400, "{name}: only {met} hits");
+        assert!(hit_count > 400, "{name}: only {hit_count} hits");
     }
 }
 
-/// Where the line between two points crosses a triangle (0 to 1), and whether it meets its front.
+/// Returns the parameter (0 to 1) at which the segment from `from` to `to` crosses a triangle, and true if it hits the
+/// front. `None` if it misses.
 fn hit([a, b, c]: [DVec3; 3], from: DVec3, to: DVec3) -> Option<(f64, bool)> {
     let volume = |p: DVec3, q: DVec3| (to - from).dot((p - from).cross(q - from));
     let (u, v, w) = (volume(b, c), volume(c, a), volume(a, b));

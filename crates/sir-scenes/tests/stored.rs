@@ -1,11 +1,11 @@
-//! The files under `scenes/` are what the generator makes, and reading them gives the scenes back.
+//! The files in `scenes/` are the generator's output, and loading them gives the same scenes.
 
 use std::{fs, path::PathBuf};
 
 use sir_geom::{LoadOptions, Projection, TriangleId, load};
 use sir_scenes::{Stored, stored, write_gltf};
 
-/// Relative precision of the 32-bit floats of glTF.
+/// Relative precision of glTF's 32-bit floats.
 const SINGLE: f64 = f32::EPSILON as f64;
 
 fn committed(stored: &Stored) -> PathBuf {
@@ -20,7 +20,7 @@ fn files_are_what_the_generator_makes() {
         write_gltf(&stored.scene, &path).unwrap();
         assert!(
             fs::read(&path).unwrap() == fs::read(committed(&stored)).unwrap(),
-            "{} is not what the generator makes; run `cargo run -p sir-scenes --example make_scenes`",
+            "{} differs from the generator's output; run `cargo run -p sir-scenes --example make_scenes`",
             stored.path
         );
     }
@@ -44,7 +44,7 @@ fn files_are_read_as_the_scenes_that_they_store() {
             );
         }
 
-        // A file lists triangles by material.
+        // A file groups triangles by material.
         let mut order: Vec<TriangleId> = made.triangle_ids().collect();
         order.sort_by_key(|t| made.triangle(*t).material);
         assert_eq!(read.triangles().len(), order.len(), "{name}");
@@ -77,7 +77,7 @@ fn files_are_read_as_the_scenes_that_they_store() {
     }
 }
 
-/// What the rounding of positions is for: no coordinate changes on its way through the file.
+/// Because positions are rounded, storing and loading changes no coordinate.
 #[test]
 fn reading_room_comes_back_unchanged() {
     let all = stored().unwrap();

@@ -1,4 +1,4 @@
-//! Measures how much faster a small pipeline runs on two threads than on one, and checks that both give the same result.
+//! Measures the speed-up of a small pipeline on two threads, and checks that one and two threads give the same result.
 //!
 //!     cargo run --release -p sir-study --example two_threads
 

@@ -1,4 +1,4 @@
-//! Why a study fails.
+//! The error type of the studies.
 
 use sir_pipeline::ErrorKind;
 use sir_view::ViewError;
@@ -7,10 +7,10 @@ use thiserror::Error;
 use crate::experiment::error::ExperimentError;
 use crate::scaling::error::ScalingError;
 
-/// Why a study fails.
+/// Failure of a study.
 #[derive(Debug, Error)]
 pub enum StudyError {
-    /// A pipeline is wrong, or its scene cannot be read.
+    /// A pipeline is invalid, or its scene cannot be read.
     #[error(transparent)]
     Pipeline(#[from] sir_pipeline::Error),
     /// A result cannot be read, compared or written.

@@ -1,4 +1,4 @@
-//! Measuring speed-ups, with runs that are made up.
+//! Measurement of speed-ups, with synthetic reports of runs.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -13,7 +13,7 @@ use sir_pipeline::{ErrorKind, NoProgress};
 use sir_study::StudyError;
 use sir_study::scaling::{Plan, ScalingError, Study, Workers, csv, json, markdown, measure, text, write};
 
-/// A stage whose lines take some time, and some more the work around them.
+/// Returns a stage with these times for tracing lines, sequential work and communication \[s\].
 fn stage(name: &str, tracing: f64, sequential: f64, communication: f64) -> StageReport {
     let balance = BalanceReport {
         emitted: [3.0; 3],
@@ -44,8 +44,8 @@ fn stage(name: &str, tracing: f64, sequential: f64, communication: f64) -> Stage
     StageReport { lines: Some(lines), light: Some(light), ..StageReport::of(name, time) }
 }
 
-/// A run that obeys Amdahl's law: 20 s of lines, which the workers share, and 2 s of everything else; ranks
-/// also talk.
+/// Returns the report of a run that obeys Amdahl's law: 20 s of lines, shared by the workers, and 2 s of everything
+/// else. Ranks add time for communication.
 fn report(workers: Workers) -> Report {
     let p = workers.count() as f64;
     let talk = 0.25 * (workers.ranks.get() - 1) as f64;
@@ -83,7 +83,7 @@ fn plan(ranks: &[usize], threads: &[usize], repeats: usize) -> Plan {
     Plan::new(&numbers(ranks), &numbers(threads), NonZeroUsize::new(repeats).unwrap())
 }
 
-/// Measures runs to which something is done; `change` also gets their number, from 0.
+/// Measures runs whose reports `change` modifies; it also gets the number of the run, from 0.
 fn study(plan: &Plan, change: impl Fn(usize, &mut Report)) -> Result<Study, StudyError> {
     let mut count = 0;
     measure("room", 2, plan, &NoProgress, &mut |workers| {
@@ -188,9 +188,9 @@ fn results_that_differ_are_an_error() {
     assert_eq!(error.kind(), ErrorKind::Failed);
     assert_eq!(
         sir_pipeline::chain(&error),
-        "2 ranks × 1 thread (repeat 2) gave another result than 1 rank × 1 thread (repeat 1): `Multipath` has \
-         tally_hash other instead of hash of Multipath; a result must not depend on who computes it: this is \
-         a bug of SIR, please report it with the pipeline"
+        "2 ranks × 1 thread (repeat 2) gave a different result from 1 rank × 1 thread (repeat 1): `Multipath` has \
+         tally_hash other instead of hash of Multipath; results must not depend on the workers: this is a bug \
+         of SIR, please report it with the pipeline"
     );
     let error = last_differs(|report| report.stages[1].lines.as_mut().unwrap().balance.unshot[0] = 0.5);
     assert!(
@@ -199,7 +199,7 @@ fn results_that_differ_are_an_error() {
         sir_pipeline::chain(&error)
     );
     let error = last_differs(|report| report.stages[1].lines.as_mut().unwrap().crossings = 1);
-    assert!(sir_pipeline::chain(&error).contains("other counts"), "{}", sir_pipeline::chain(&error));
+    assert!(sir_pipeline::chain(&error).contains("different counts"), "{}", sir_pipeline::chain(&error));
     let error = last_differs(|report| report.stages[1].lines = None);
     assert!(matches!(error, StudyError::Scaling(ScalingError::DifferentResults { .. })));
     let error = last_differs(|report| report.pipeline.text = "edited".into());

@@ -1,6 +1,6 @@
-//! Which of some lines meet a box: `cargo run -p sir-types --example box_and_line`.
+//! Tests which lines meet a box: `cargo run -p sir-types --example box_and_line`.
 
-#![allow(clippy::print_stdout, reason = "an example shows its result")]
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
 
 use glam::DVec3;
 use sir_types::{BoundingBox, Line};

@@ -14,7 +14,7 @@ pub struct BoundingBox {
 }
 
 impl BoundingBox {
-    /// The smallest box around all points; `None` if there are none.
+    /// Returns the smallest box around all points; `None` if there are no points.
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         let mut points = points.into_iter();
         let first = points.next()?;
@@ -24,42 +24,42 @@ impl BoundingBox {
         )
     }
 
-    /// Center of the box.
+    /// Returns the center of the box.
     #[must_use]
     pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// Edge lengths of the box.
+    /// Returns the edge lengths of the box.
     #[must_use]
     pub fn size(&self) -> DVec3 {
         self.max - self.min
     }
 
-    /// Areas of the faces across each axis, one of each pair.
+    /// Returns the areas of the faces across each axis, one of each pair.
     #[must_use]
     pub fn face_areas(&self) -> DVec3 {
         let size = self.size();
         DVec3::new(size.y * size.z, size.z * size.x, size.x * size.y)
     }
 
-    /// Whether a point lies in the box or on it.
+    /// Returns true if a point lies in the box or on its surface.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
         self.min.cmple(point).all() && point.cmple(self.max).all()
     }
 
-    /// What two boxes have in common; `None` if that is nothing.
+    /// Returns the intersection of two boxes; `None` if it is empty.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Option<Self> {
         let both = Self { min: self.min.max(other.min), max: self.max.min(other.max) };
         both.min.cmple(both.max).all().then_some(both)
     }
 
-    /// Whether a line, in both directions from its origin, meets the box.
+    /// Returns true if a line, infinite in both directions, meets the box.
     ///
-    /// Seen along the line, the box is a hexagon whose edges are those of the box: the line must be on the inner side of each pair.
-    /// Nothing is divided, so that lines along a face and flat boxes are no special cases.
+    /// Seen along the line, the box is a hexagon of box edges. The line must be on the inner side of each pair of
+    /// opposite edges. There is no division, so lines along a face and flat boxes are not special cases.
     #[inline]
     #[must_use]
     pub fn meets(&self, line: &Line) -> bool {
@@ -82,8 +82,8 @@ pub struct BoundingSphere {
 }
 
 impl BoundingSphere {
-    /// A sphere around all points that is at most a few per cent larger than the smallest one (Ritter 1990),
-    /// or the sphere about the center of their box where that is smaller; `None` if there are no points.
+    /// Returns a sphere around all points that is at most a few percent larger than the smallest one (Ritter 1990), or
+    /// the sphere about the center of their bounding box if that is smaller; `None` if there are no points.
     #[must_use]
     pub fn of(points: &[DVec3]) -> Option<Self> {
         let first = *points.first()?;
@@ -109,12 +109,12 @@ impl BoundingSphere {
         let center = BoundingBox::of(points.iter().copied())?.center();
         let boxed = Self { center, radius: around(center) };
         let mut best = if boxed.radius < ritter.radius { boxed } else { ritter };
-        // Room for rounding: every point is strictly inside.
+        // Margin for rounding: every point is strictly inside.
         best.radius *= 1.0 + 1e-9;
         Some(best)
     }
 
-    /// Surface area `4πR²`.
+    /// Returns the surface area `4πR²`.
     #[must_use]
     pub fn surface_area(&self) -> f64 {
         4.0 * std::f64::consts::PI * self.radius * self.radius
@@ -134,7 +134,8 @@ mod tests {
         assert!(corners.iter().all(|c| c.distance(s.center) < s.radius));
     }
 
-    /// The nearest point of a segment to a box is sought step by step, which is sure but where a line only just meets or misses.
+    /// Compares with a search for a point in the box in steps along the line, which is certain unless the line only
+    /// just meets or misses the box.
     #[test]
     fn lines_meet_a_box_where_one_of_their_points_is_in_it() {
         let bounds = BoundingBox { min: DVec3::new(-1.0, 0.0, 2.0), max: DVec3::new(1.0, 0.5, 3.0) };

@@ -2,7 +2,7 @@
 
 /// Declares an index type: a `u32` that cannot be mixed up with indices of other things.
 ///
-/// The type gets `new` (from a `usize`), `index` (to a `usize`), ordering, hashing and a plain-number `Display`.
+/// The type has `new` (from a `usize`), `index` (to a `usize`), ordering, hashing and a plain-number `Display`.
 #[macro_export]
 macro_rules! typed_index {
     ($(#[$meta:meta])* $name:ident) => {
@@ -12,15 +12,15 @@ macro_rules! typed_index {
         pub struct $name(pub u32);
 
         impl $name {
-            /// The index `i`, which must be below 2³².
+            /// Creates the index `i`, which must be below 2³².
             #[inline]
             #[must_use]
             pub fn new(i: usize) -> Self {
-                debug_assert!(u32::try_from(i).is_ok(), "index {i} does not fit 32 bits");
+                debug_assert!(u32::try_from(i).is_ok(), "index {i} does not fit in 32 bits");
                 Self(i as u32)
             }
 
-            /// The index as a position in a slice.
+            /// Returns the index as a position in a slice.
             #[inline]
             #[must_use]
             pub fn index(self) -> usize {

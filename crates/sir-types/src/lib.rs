@@ -2,9 +2,9 @@
 //!
 //! # Design
 //!
-//! A triangle tracer needs neither a scene nor a file reader, and a sampler of lines needs no triangles. What they do have in
-//! common stands here, below all other crates, so that each can be used alone. The types are plain values in double
-//! precision; none of them allocates, fails or knows where it comes from.
+//! A triangle tracer needs neither a scene nor a file reader, and a sampler of lines needs no triangles. The types that
+//! they share are in this crate, below all others, so that each crate can be used alone. The types are plain values in
+//! double precision; none of them allocates, fails or refers to its origin.
 //!
 //! # Example
 //!

@@ -12,7 +12,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// The point at signed distance `t` from the origin.
+    /// Returns the point at signed distance `t` from the origin.
     #[must_use]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.direction
@@ -29,7 +29,8 @@ pub struct Barycentric {
 }
 
 impl Barycentric {
-    /// The coordinates of a point in the plane of the triangle with the given corners; of any other, those of its projection.
+    /// Returns the coordinates of a point in the plane of the triangle with the given corners; for any other point,
+    /// those of its projection onto the plane.
     #[must_use]
     pub fn of(point: DVec3, [a, b, c]: [DVec3; 3]) -> Self {
         let normal = (b - a).cross(c - a);
@@ -38,7 +39,7 @@ impl Barycentric {
         Self { v: to.cross(c - a).dot(normal) * scale, w: (b - a).cross(to).dot(normal) * scale }
     }
 
-    /// The point with these coordinates in the triangle with the given corners.
+    /// Returns the point with these coordinates in the triangle with the given corners.
     #[must_use]
     pub fn point(self, [a, b, c]: [DVec3; 3]) -> DVec3 {
         (1.0 - self.v - self.w) * a + self.v * b + self.w * c

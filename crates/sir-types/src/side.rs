@@ -5,12 +5,12 @@
 pub enum Side {
     /// The side from which the corners run counterclockwise.
     Front,
-    /// The other one.
+    /// The other side.
     Back,
 }
 
 impl Side {
-    /// The opposite side.
+    /// Returns the opposite side.
     #[inline]
     #[must_use]
     pub fn flip(self) -> Self {

@@ -1,11 +1,11 @@
-//! One case whose answer is known: `cargo run --release -p sir-validate --example one_case -- RE-08`.
+//! Validates one case: `cargo run --release -p sir-validate --example one_case -- RE-08`.
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
 use std::num::NonZeroUsize;
 
 use sir_validate::{Effort, Reference, Settings, Watcher, validate};
 
-/// Names each case as it begins.
+/// Prints each case as it begins.
 struct Names;
 
 impl Watcher for Names {

@@ -1,4 +1,4 @@
-//! Verdicts.
+//! Comparison of computed with exact answers, and verdicts.
 
 use serde::Serialize;
 
@@ -6,49 +6,50 @@ use crate::effort::Effort;
 use crate::estimate::Estimate;
 use crate::trial::Quantity;
 
-/// Largest deviation that passes, in standard errors of a normal variable: one of 16,000 right answers exceeds it by chance.
+/// Largest deviation that passes, in standard deviations of a normal variable. One of 16,000 correct answers exceeds it
+/// by chance.
 pub const LIMIT: f64 = 4.0;
 
-/// An answer of ours beside the exact one.
+/// Comparison of a computed with an exact answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Check {
-    /// What it is the answer to.
+    /// Name of the quantity.
     pub quantity: String,
-    /// What it has in common with answers of the same kind, which are shown in one row of a table.
+    /// Name of a group of similar quantities, which are shown in one row of a table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
-    /// The exact answer.
+    /// Exact answer.
     pub exact: f64,
-    /// The mean of our runs.
+    /// Mean of our runs.
     pub ours: f64,
-    /// Its standard error.
+    /// Standard error of the mean.
     pub sigma: f64,
-    /// The difference, as a normal variable with a standard deviation of 1 would show it: runs are few, so a little less than the difference
-    /// in standard errors. Infinite (`null` in JSON) if an exact zero was missed.
+    /// Difference, converted to standard deviations of a normal variable. It is a little less than the difference in
+    /// standard errors, because runs are few. Infinite (`null` in JSON) if an exact zero was missed.
     pub z: f64,
-    /// What others have published.
+    /// Value published by others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub published: Option<f64>,
     /// Number of runs.
     pub runs: usize,
-    /// Whether it passes.
+    /// Verdict on the answer.
     pub verdict: Verdict,
 }
 
-/// What to think of an answer.
+/// Verdict on an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Equal to the exact answer, but for noise.
+    /// Equal to the exact answer within noise.
     Passed,
-    /// The noise is too large to tell.
+    /// The noise is too large to decide.
     TooNoisy,
     /// Different from the exact answer.
     Wrong,
 }
 
 impl Verdict {
-    /// As a word for a table.
+    /// Returns a word for a table.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {

@@ -17,20 +17,23 @@ use crate::room::{add_point, flux};
 use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
 
-/// Patches and lines of a run for the averages of faces. Those are right whatever the patches, since all faces are alike.
+/// Numbers of patches and of lines per run for the averages of faces. The averages are exact for any patches, because
+/// all faces are equal.
 const AVERAGES: (u64, u64) = (2_400, 800_000);
 
-/// Cells along an edge and lines of a run for the light at points. Cells are a tenth of a meter in the middle of a face and
-/// smaller towards its edges; half of the lines are global, and meet each cell some two hundred times.
+/// Numbers of cells along an edge and of lines per run for the light at points. Cells measure a tenth of a meter in the
+/// middle of a face and are smaller toward its edges. Half of the lines are global, and meet each cell about two
+/// hundred times.
 const POINTS: (u32, u64) = (48, 3_200_000);
 
-/// The same for points close to an edge: they see little but what few lines meet next to it, and need more runs than others.
+/// The same for points close to an edge. They see little except the small cells next to it, which few lines meet, and
+/// need more runs than others.
 const CORNERS: (u32, u64) = (32, 2_000_000);
 
-/// What is close to an edge \[m\].
+/// Largest distance of points that are close to an edge \[m\].
 const CLOSE: f64 = 0.1;
 
-/// Rays of a point.
+/// Number of rays per point.
 const RAYS: u64 = 20_000;
 
 /// Adds the point light.
@@ -39,7 +42,7 @@ fn add_light(case: &Case, builder: &mut SceneBuilder) -> Result<(), ValidateErro
     Ok(())
 }
 
-/// The cube as it is, with a reflectance for each band.
+/// Builds the cube as given, with a reflectance for each band.
 fn plain(case: &Case, reflectance: Rgb) -> Result<Scene, ValidateError> {
     let surfaces: Vec<&Surface> = case.geometry.surfaces.iter().collect();
     let mut builder = builder(&surfaces, |_| Paint { exitance: Rgb::ZERO, reflectance }, SEGMENTS);
@@ -47,7 +50,7 @@ fn plain(case: &Case, reflectance: Rgb) -> Result<Scene, ValidateError> {
     Ok(builder.build()?.scene)
 }
 
-/// The cube with faces of `cells` times `cells` rectangles, the smaller the closer to an edge.
+/// Builds the cube with faces of `cells` × `cells` rectangles, which are smaller closer to an edge.
 fn graded(case: &Case, reflectance: Rgb, cells: u32) -> Result<Scene, ValidateError> {
     let mut builder = SceneBuilder::new();
     let material = builder.add_material(Material::diffuse("", reflectance));
@@ -73,7 +76,7 @@ fn graded(case: &Case, reflectance: Rgb, cells: u32) -> Result<Scene, ValidateEr
     Ok(builder.build()?.scene)
 }
 
-/// Averages of faces and values at points, three reflectances at a time.
+/// Creates the trials for averages of faces and values at points, each with up to three reflectances, one per band.
 pub(crate) fn cube(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     let mut trials: Vec<Trial<'_>> = case.face_averages.chunks(3).map(|some| averages(case, some)).collect();
     let mut points = Vec::new();
@@ -89,7 +92,7 @@ pub(crate) fn cube(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     Ok(trials)
 }
 
-/// Reflectances of the bands.
+/// Returns reflectances as bands.
 fn bands(reflectances: impl Iterator<Item = f64>) -> Rgb {
     let mut bands = Rgb::ZERO;
     reflectances.enumerate().for_each(|(band, reflectance)| bands[band] = reflectance);
@@ -128,7 +131,8 @@ fn averages<'a>(case: &'a Case, some: &'a [FaceAverage]) -> Trial<'a> {
     Trial { quantities, lines, prepare: Box::new(prepare) }
 }
 
-/// The light at points, which are the same for all reflectances: those that are close to two edges, or the others.
+/// Creates the trial for the light at points, which are the same for all reflectances: the points close to two edges,
+/// or the others.
 fn at_points<'a>(
     case: &'a Case,
     some: &[(f64, &'a [Point])],

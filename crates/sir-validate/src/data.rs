@@ -1,4 +1,4 @@
-//! The files of exact answers. Conventions are those of `data/README.md`; fields that nothing here needs are passed over.
+//! Files of exact answers. Their conventions are in `data/README.md`; unused fields are ignored.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use serde_json::Value;
 
 use crate::error::ValidateError;
 
-/// The file names, in the order of [`Reference::parse`].
+/// File names, in the order of [`Reference::parse`].
 pub const FILES: [&str; 3] = ["view-factors.json", "radiosity-exact.json", "cie171.json"];
 
-/// All cases whose answers are known.
+/// All cases with exact answers.
 #[derive(Clone, Debug)]
 pub struct Reference {
     pub(crate) cases: Vec<Case>,
@@ -24,28 +24,28 @@ pub(crate) struct Case {
     pub(crate) title: String,
     #[serde(default)]
     pub(crate) geometry: Geometry,
-    /// What is given: its layout depends on the case.
+    /// Given quantities; their layout depends on the case.
     #[serde(default)]
     inputs: Value,
-    /// The answers: their layout depends on the case.
+    /// Answers; their layout depends on the case.
     #[serde(default)]
     values: Value,
     #[serde(default)]
     pub(crate) points: Vec<Point>,
-    /// CIE 5.8 only.
+    /// Averages of faces; CIE 5.8 only.
     #[serde(default)]
     pub(crate) face_averages: Vec<FaceAverage>,
-    /// CIE 5.8 only: by reflectance, written `rho=0.5`.
+    /// Values at points by reflectance, written `rho=0.5`; CIE 5.8 only.
     #[serde(default)]
     pub(crate) point_values: BTreeMap<String, Vec<Point>>,
 }
 
-/// The surfaces of a case.
+/// Surfaces and sources of a case.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub(crate) struct Geometry {
     #[serde(default)]
     pub(crate) surfaces: Vec<Surface>,
-    /// RE-01 only: several rooms by name.
+    /// Rooms by name; RE-01 only.
     #[serde(default)]
     pub(crate) enclosures: BTreeMap<String, Vec<Surface>>,
     pub(crate) source: Option<PointSource>,
@@ -64,13 +64,13 @@ pub(crate) struct Surface {
     pub(crate) shape: Shape,
 }
 
-/// What a surface looks like; lengths in meters.
+/// Shape of a surface; lengths in meters.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Shape {
-    /// Corners counterclockwise seen from the active side.
+    /// Polygon, with corners counterclockwise seen from the active side.
     Polygon { vertices: Vec<[f64; 3]> },
-    /// Active on the side to which the normal points.
+    /// Disc, active on the side to which the normal points.
     Disc {
         #[serde(rename = "centre")]
         center: [f64; 3],
@@ -85,14 +85,14 @@ pub(crate) enum Shape {
         inner_radius: f64,
         outer_radius: f64,
     },
-    /// All of a sphere.
+    /// Whole sphere.
     Sphere {
         #[serde(rename = "centre")]
         center: [f64; 3],
         radius: f64,
         active_side: ActiveSide,
     },
-    /// The part of a sphere between two angles from the axis.
+    /// Part of a sphere between two angles from the axis.
     SphericalZone {
         #[serde(rename = "centre")]
         center: [f64; 3],
@@ -101,7 +101,7 @@ pub(crate) enum Shape {
         polar_angle_deg: [f64; 2],
         active_side: ActiveSide,
     },
-    /// The curved surface of a cylinder.
+    /// Curved surface of a cylinder.
     Cylinder {
         #[serde(rename = "base_centre")]
         base_center: [f64; 3],
@@ -112,7 +112,7 @@ pub(crate) enum Shape {
     },
 }
 
-/// The side of a curved surface that takes part.
+/// Active side of a curved surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum ActiveSide {
@@ -120,15 +120,15 @@ pub(crate) enum ActiveSide {
     Outside,
 }
 
-/// A punctual source.
+/// A point light.
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct PointSource {
     pub(crate) position: [f64; 3],
-    /// Of a source that does not send the same in all directions.
+    /// Axis of a source that is not isotropic.
     pub(crate) axis: Option<[f64; 3]>,
 }
 
-/// A point on a surface with what arrives there.
+/// A point on a surface, with the light that arrives there.
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct Point {
     pub(crate) name: String,
@@ -139,7 +139,7 @@ pub(crate) struct Point {
     pub(crate) cie_published: Option<f64>,
 }
 
-/// The mean illuminance \[lx\] of a face in CIE 5.8.
+/// Mean illuminance \[lx\] of a face in CIE 5.8.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(crate) struct FaceAverage {
     pub(crate) reflectance: f64,
@@ -149,11 +149,11 @@ pub(crate) struct FaceAverage {
 }
 
 impl Reference {
-    /// The answers that the program was built with.
+    /// Returns the answers that are built into the program.
     ///
     /// # Errors
     ///
-    /// None, unless the program was built with broken files.
+    /// Only if the program was built with invalid files.
     pub fn built_in() -> Result<Self, ValidateError> {
         Self::parse([
             include_str!("../data/view-factors.json"),
@@ -166,7 +166,7 @@ impl Reference {
     ///
     /// # Errors
     ///
-    /// If one of them is not what it should be.
+    /// If one of them is not a file of exact answers.
     pub fn parse(texts: [&str; 3]) -> Result<Self, ValidateError> {
         #[derive(Deserialize)]
         struct File {
@@ -181,19 +181,19 @@ impl Reference {
         Ok(Self { cases })
     }
 
-    /// The names of all cases.
+    /// Returns the IDs of all cases.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
         self.cases.iter().map(|case| case.id.as_str())
     }
 }
 
 impl Case {
-    /// What is given.
+    /// Reads the given quantities.
     pub(crate) fn inputs<T: DeserializeOwned>(&self) -> Result<T, ValidateError> {
         self.read("inputs", &self.inputs)
     }
 
-    /// The answers.
+    /// Reads the answers.
     pub(crate) fn values<T: DeserializeOwned>(&self) -> Result<T, ValidateError> {
         self.read("values", &self.values)
     }
@@ -202,7 +202,7 @@ impl Case {
         T::deserialize(value).map_err(|source| ValidateError::Layout { case: self.id.clone(), what, source })
     }
 
-    /// Something that a case of its kind must have.
+    /// Returns a part that a case of its kind must have, or an error if it is missing.
     pub(crate) fn need<'a, T>(
         &self,
         what: &'static str,

@@ -1,8 +1,8 @@
-//! How precise answers have to be, and what that takes.
+//! Required precision of the answers, and the work that it takes.
 
 use serde::Serialize;
 
-/// How precise answers have to be.
+/// Required precision of the answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Effort {
@@ -13,7 +13,7 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// The largest standard error, relative to the exact answer.
+    /// Returns the largest permitted standard error, relative to the exact answer.
     #[must_use]
     pub fn precision(self) -> f64 {
         match self {
@@ -22,7 +22,7 @@ impl Effort {
         }
     }
 
-    /// Lines of a run that has this many in full.
+    /// Returns the number of lines of a run that has `full` lines at full effort.
     pub(crate) fn lines(self, full: u64) -> u64 {
         match self {
             Self::Quick => full / 20,
@@ -30,7 +30,8 @@ impl Effort {
         }
     }
 
-    /// Parts of a circle that has this many in full. Each facet needs some lines, so there are fewer where lines are few.
+    /// Returns the number of parts of a circle that has `full` parts at full effort. Each facet needs some lines, so
+    /// fewer lines require fewer parts.
     pub(crate) fn segments(self, full: u32) -> u32 {
         match self {
             Self::Quick => full / 4,

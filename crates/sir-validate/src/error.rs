@@ -1,66 +1,66 @@
-//! Errors.
+//! Errors of a validation.
 
 use sir_geom::SceneError;
 use sir_parallel::RunError;
 use sir_radiosity::ModelError;
 use thiserror::Error;
 
-/// Why a validation cannot be done. (That an answer is wrong is no error, but a verdict.)
+/// Error of a validation. (A wrong answer is not an error, but a verdict.)
 #[derive(Debug, Error)]
 pub enum ValidateError {
-    /// A file of exact answers cannot be understood.
+    /// A file of exact answers cannot be parsed.
     #[error("{name} is not a file of exact answers; compare it with the one in crates/sir-validate/data")]
     File {
-        /// Its name.
+        /// Name of the file.
         name: &'static str,
-        /// What is wrong, and where.
+        /// Problem and its position.
         source: serde_json::Error,
     },
-    /// A part of a case has another layout than cases of its kind.
+    /// A part of a case does not have the layout of cases of its kind.
     #[error("`{what}` of case {case} has an unknown layout")]
     Layout {
-        /// The case.
+        /// ID of the case.
         case: String,
         /// `inputs` or `values`.
         what: &'static str,
-        /// What is wrong.
+        /// Problem.
         source: serde_json::Error,
     },
     /// A part of a case is missing.
     #[error("case {case} has no {what}")]
     Missing {
-        /// The case.
+        /// ID of the case.
         case: String,
-        /// What is missing.
+        /// Missing part.
         what: &'static str,
     },
-    /// Someone asked for a case that is not there.
+    /// A selected case does not exist.
     #[error("there is no case {asked}; the cases are {known}")]
     NoCase {
-        /// What was asked for.
+        /// Selected ID.
         asked: String,
-        /// Names of all cases.
+        /// IDs of all cases.
         known: String,
     },
     /// The surfaces of a case do not make a scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// They cannot be cut into patches, or not be traced.
+    /// The surfaces cannot be cut into patches, or not be traced.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The light cannot be computed, or someone wanted to stop.
+    /// The solver failed or was interrupted.
     #[error(transparent)]
     Run(#[from] RunError),
 }
 
 impl ValidateError {
-    /// Whether someone wanted to stop.
+    /// Returns true if the run was interrupted.
     #[must_use]
     pub fn is_interrupt(&self) -> bool {
         matches!(self, Self::Run(RunError::Interrupted { .. }))
     }
 
-    /// Whether what was asked for makes no sense: a case that is not there, or a file that is none of exact answers.
+    /// Returns true if the request was invalid: an unknown case, or a file that is not one of exact answers.
     #[must_use]
     pub fn is_usage(&self) -> bool {
         match self {

@@ -1,20 +1,20 @@
-//! Numbers from independent runs, and how far they are from what they should be.
+//! Means of independent runs, and their deviations from exact answers.
 
-/// Relative precision of the exact answers: their last digits. No difference below it says anything.
-const DIGITS: f64 = 1e-9;
+/// Relative precision of the exact answers, given by their last digits. Smaller differences are not significant.
+const EXACT_PRECISION: f64 = 1e-9;
 
-/// The mean of independent runs.
+/// Mean of independent runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Estimate {
     pub(crate) mean: f64,
-    /// Standard error of the mean, from how far the runs are apart.
+    /// Standard error of the mean, from the spread of the runs.
     pub(crate) sigma: f64,
     /// Number of runs.
     pub(crate) runs: usize,
 }
 
 impl Estimate {
-    /// Of at least two runs.
+    /// Returns the estimate of at least two runs.
     pub(crate) fn of(samples: &[f64]) -> Self {
         let n = samples.len() as f64;
         let mean = samples.iter().sum::<f64>() / n;
@@ -22,17 +22,18 @@ impl Estimate {
         Self { mean, sigma: (variance / n).sqrt(), runs: samples.len() }
     }
 
-    /// How far the mean is from the exact value: what a normal variable, in its standard deviations, exceeds as seldom. An exact zero
-    /// has to be met exactly.
+    /// Returns the deviation of the mean from the exact value as a standard normal deviate: the number of standard
+    /// deviations that a normal variable exceeds with the same probability. An exact zero must be met exactly.
     ///
-    /// The standard error of a few runs is uncertain itself, so the difference in standard errors is Student's t. Wallace (1959),
-    /// *Bounds on normal approximations to Student's and the chi-square distributions*, gives the normal deviate to 0.2 % from 16 runs on.
+    /// The standard error of a few runs is itself uncertain, so the difference in standard errors is Student's t.
+    /// Wallace (1959), *Bounds on normal approximations to Student's and the chi-square distributions*, gives the
+    /// normal deviate to 0.2 % from 16 runs on.
     pub(crate) fn z(self, exact: f64) -> f64 {
         let off = self.mean - exact;
         if off == 0.0 {
             return 0.0;
         }
-        let t = off / self.sigma.max(0.25 * DIGITS * exact.abs());
+        let t = off / self.sigma.max(0.25 * EXACT_PRECISION * exact.abs());
         let freedom = self.runs as f64 - 1.0;
         let z = (freedom * (t * t / freedom).ln_1p()).sqrt();
         z.copysign(t) * (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0)

@@ -1,4 +1,4 @@
-//! The cases of `view-factors.json`.
+//! Cases of `view-factors.json`.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +13,10 @@ use crate::light::{Paint, scene};
 use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
 
-/// Lines of a run, from all surfaces together.
+/// Number of lines per run, from all surfaces together.
 const LINES: u64 = 1_000_000;
 
-/// View factors between the surfaces of a case, counted by local lines.
+/// Creates the trial for view factors between the surfaces of a case, which local lines estimate.
 pub(crate) fn factors(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     let surfaces: Vec<&Surface> = case.geometry.surfaces.iter().collect();
     let values: BTreeMap<String, f64> = case.values()?;
@@ -30,7 +30,7 @@ pub(crate) fn factors(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
         let scene = scene(&surfaces, |_| Paint::gray(0.0, 0.0), effort.segments(SEGMENTS))?;
         let model = Model::new(scene, Subdivision::PerTriangle)?;
-        // Every surface has a material of its own, and a triangle: the numbers of groups are those of surfaces.
+        // Every surface has a material of its own and at least one triangle, so groups have the numbers of surfaces.
         let grouping = Grouping::by_material(&model.scene);
         let pairs = pairs.clone();
         Ok(Box::new(move |lines, seed, executor| {
@@ -43,7 +43,7 @@ pub(crate) fn factors(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     Ok(vec![Trial { quantities, lines: LINES, prepare: Box::new(prepare) }])
 }
 
-/// The surfaces between which a factor is: `F12` or `F_base_side`.
+/// Returns the names of the two surfaces of a factor: `F12` or `F_base_side`.
 fn names(factor: &str) -> Option<(&str, &str)> {
     let names = factor.strip_prefix('F')?;
     match names.strip_prefix('_') {

@@ -1,4 +1,4 @@
-//! CIE 171, 5.4: where the flux of a source in a closed black room arrives.
+//! CIE 171, 5.4: distribution of the flux of a source in a closed black room.
 
 use std::collections::BTreeMap;
 
@@ -13,13 +13,13 @@ use crate::light::{means, per_face};
 use crate::room::{add_point, black, flux, open_to_sky};
 use crate::trial::{Quantity, Sample, Trial};
 
-/// Lines of a run.
+/// Number of lines per run.
 const LINES: u64 = 500_000;
 
-/// What arrives at the floor, the ceiling, each wall, and altogether.
+/// Flux that arrives at the floor, the ceiling, each wall, and in total.
 type Answers = BTreeMap<String, f64>;
 
-/// 5.4a: a point light.
+/// Creates the trial of 5.4a: a point light.
 pub(crate) fn of_point(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     let source = case.need("source", case.geometry.source.as_ref())?;
     let surfaces: Vec<&Surface> = case.geometry.surfaces.iter().collect();
@@ -32,8 +32,8 @@ pub(crate) fn of_point(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     Ok(vec![trial(case, None, case.values()?, flux, build)])
 }
 
-/// 5.4b: a uniform sky through an opening as large as the roof, and a lamp in place of a small one (of a hundred lines from the sky
-/// only three pass through that).
+/// Creates the trials of 5.4b: a uniform sky through an opening as large as the roof, and a lamp in place of a small
+/// opening (through which only three of a hundred lines from the sky would pass).
 pub(crate) fn of_openings(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     let values: BTreeMap<String, Answers> = case.values()?;
     let mut trials = Vec::new();
@@ -52,7 +52,7 @@ pub(crate) fn of_openings(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> 
                 Ok(black(&surfaces, |surface| if surface.name == opening.name { 1.0 } else { 0.0 }))
             }
         };
-        // Through each square meter comes a flux of 1.
+        // The flux through each square meter is 1.
         let flux = if is_roof { 16.0 } else { 1.0 };
         let shares = answers.iter().map(|(name, share)| (name.clone(), share * flux)).collect();
         trials.push(trial(case, Some(&opening.name), shares, flux, build));
@@ -60,7 +60,7 @@ pub(crate) fn of_openings(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> 
     Ok(trials)
 }
 
-/// A first shot, and how much of it each surface received. Quantities have the unit of `flux`.
+/// Creates a trial of a first shot and the power that each surface receives. Quantities have the unit of `flux`.
 fn trial<'a>(
     case: &'a Case,
     prefix: Option<&str>,

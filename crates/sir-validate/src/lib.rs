@@ -1,18 +1,21 @@
-//! Cases of diffuse light transport whose answers are known, and how far SIR's are from them.
+//! Validation of SIR with cases of diffuse light transport that have exact answers.
 //!
 //! # Design
 //!
-//! A [`Reference`] is a list of cases with exact answers (`data/`). [`validate`] makes a scene of each, lights it several times with
-//! independent random numbers, and compares the mean with the exact answer in standard errors of the mean. The noise is judged by how far the
-//! runs are apart, not by what a single run says about itself: what patches of a surface receive is correlated, and the
-//! solver's own error estimates are among the things that could be wrong. Runs are added until the standard error is small enough to mean
-//! something ([`Effort::precision`]); an answer passes if it is within four of them ([`LIMIT`]).
+//! A [`Reference`] is a list of cases with exact answers (`data/`). [`validate`] builds a scene of each case, runs the
+//! solver several times with independent random numbers, and compares the mean with the exact answer in standard errors
+//! of the mean. The standard error comes from the spread of the runs, not from the error that a single run states: what
+//! patches of a surface receive is correlated, and the solver's own error estimates are among the things that could be
+//! wrong. Runs are added until the standard error is small enough to be meaningful ([`Effort::precision`]). An answer
+//! passes if it is within four standard errors ([`LIMIT`]).
 //!
-//! * `shape`: triangles for the shapes of the reference; `light`: scenes, and the mean light of their surfaces.
-//! * A module for each kind of case makes *trials* of it: quantities, and a function that estimates them with a seed.
-//! * `repeat` repeats them, `estimate` and [`Check`] judge, `runner` counts lines, `report` makes tables.
+//! * `shape` makes triangles for the shapes of the reference. `light` makes scenes, and computes the mean light of
+//!   their surfaces.
+//! * A module for each kind of case makes its *trials*: quantities, and a function that estimates them with a seed.
+//! * `repeat` repeats trials, `estimate` and [`Check`] compare them with exact answers, `runner` counts lines, and
+//!   `report` makes tables.
 //!
-//! A report is a function of reference, effort, seed and chosen cases; threads make it faster, not different.
+//! A report is a function of reference, effort, seed and selected cases; it does not depend on the number of threads.
 //!
 //! # Example
 //!

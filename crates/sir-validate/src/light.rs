@@ -1,4 +1,4 @@
-//! Scenes of named surfaces, and what falls on each of them.
+//! Scenes of named surfaces, and the mean light of each surface.
 
 use sir_geom::{Material, MaterialId, Rgb, Scene, SceneBuilder, Side};
 use sir_lines::Domain;
@@ -10,7 +10,7 @@ use crate::data::Surface;
 use crate::error::ValidateError;
 use crate::shape;
 
-/// What a surface emits (exitance `M`) and reflects, per band.
+/// Exitance `M` and reflectance of a surface, per band.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Paint {
     pub(crate) exitance: Rgb,
@@ -18,13 +18,13 @@ pub(crate) struct Paint {
 }
 
 impl Paint {
-    /// The same in all bands.
+    /// Returns a paint with the same values in all bands.
     pub(crate) fn gray(exitance: f64, reflectance: f64) -> Self {
         Self { exitance: Rgb::splat(exitance), reflectance: Rgb::splat(reflectance) }
     }
 }
 
-/// A scene of these surfaces. The material of the surface of number `i` is that of number `i`.
+/// Builds a scene of these surfaces. Surface `i` has material `i`.
 pub(crate) fn scene(
     surfaces: &[&Surface],
     paint: impl Fn(usize) -> Paint,
@@ -33,7 +33,7 @@ pub(crate) fn scene(
     Ok(builder(surfaces, paint, segments).build()?.scene)
 }
 
-/// The same, before it is built.
+/// Returns the builder of the same scene.
 pub(crate) fn builder(surfaces: &[&Surface], paint: impl Fn(usize) -> Paint, segments: u32) -> SceneBuilder {
     let mut builder = SceneBuilder::new();
     for (i, surface) in surfaces.iter().enumerate() {
@@ -45,20 +45,21 @@ pub(crate) fn builder(surfaces: &[&Surface], paint: impl Fn(usize) -> Paint, seg
     builder
 }
 
-/// A scene with one patch for each flat polygon.
+/// Returns a model with one patch per flat polygon.
 pub(crate) fn per_face(scene: Scene) -> Result<Model, ValidateError> {
     Ok(Model::new(scene, Subdivision::PerFace)?)
 }
 
-/// The light of a scene.
+/// Light of a scene.
 pub(crate) struct Light {
-    /// What comes straight from the sources.
+    /// Light directly from the sources.
     pub(crate) direct: Solution,
-    /// All of it.
+    /// All light.
     pub(crate) all: Solution,
 }
 
-/// Lights a scene: a first and a second shot with 40 and 10 % of the lines, and the rest through the convex hull.
+/// Computes the light of a scene: a first and a second shot with 40 and 10 % of the lines, and batches through the
+/// convex hull with the rest.
 pub(crate) fn solve(
     model: &Model,
     lines: u64,
@@ -75,10 +76,10 @@ pub(crate) fn solve(
     Ok(Light { direct, all })
 }
 
-/// What falls on a surface and what leaves it.
+/// Mean light of the front of a surface.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Mean {
-    /// Irradiance `E`, the mean over the area of the front.
+    /// Irradiance `E`, averaged over the area.
     pub(crate) irradiance: Rgb,
     /// Radiosity `B`, likewise.
     pub(crate) radiosity: Rgb,
@@ -86,7 +87,7 @@ pub(crate) struct Mean {
     pub(crate) area: f64,
 }
 
-/// The mean light of the front of every material.
+/// Returns the mean light of the front of every material.
 pub(crate) fn means(model: &Model, solution: &Solution) -> Vec<Mean> {
     let mut means = vec![Mean::default(); model.scene.materials().len()];
     model.mesh.for_each_side(|triangle, _, side, id| {

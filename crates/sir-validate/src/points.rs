@@ -1,4 +1,4 @@
-//! Cases of CIE 171 that ask for the light at points: 5.2, 5.3, 5.6, 5.7, 5.9.
+//! Cases of CIE 171 about the light at points: 5.2, 5.3, 5.6, 5.7, 5.9.
 
 use glam::DVec3;
 use sir_geom::{Rgb, Scene};
@@ -12,13 +12,13 @@ use crate::error::ValidateError;
 use crate::room::{add_point, black, exitance, flux, open_to_sky};
 use crate::trial::{Quantity, Sample, Trial};
 
-/// Rays over the hemisphere of a point where only emitting surfaces shine, which are aimed at besides.
+/// Number of rays over the hemisphere of a point if only surfaces emit, at which further rays are aimed.
 const RAYS: u64 = 2_000;
 
-/// Rays where the sky shines through an opening that they have to find by chance.
+/// Number of rays per point if the light comes from the sky through an opening, which rays find only by chance.
 const RAYS_TO_SKY: u64 = 200_000;
 
-/// Sensors at points.
+/// Returns sensors at points.
 pub(crate) fn sensors<'p>(
     case: &Case,
     points: impl IntoIterator<Item = &'p Point>,
@@ -29,7 +29,7 @@ pub(crate) fn sensors<'p>(
     points.map(|point| Ok(*case.need("normal of a point", sensor(point).as_ref())?)).collect()
 }
 
-/// The irradiance at sensors, by so many rays at each.
+/// Returns the irradiance at each sensor, measured with `rays` rays.
 pub(crate) fn irradiances(
     model: &Model,
     solution: &Solution,
@@ -44,19 +44,19 @@ pub(crate) fn irradiances(
     Ok(measured.iter().map(|measurement| measurement.irradiance).collect())
 }
 
-/// What lights the scene of a case, what of it is built, and in which unit its answers are.
-pub(crate) enum Setting {
+/// Light source of a case, the surfaces that are built, and the unit of the answers.
+pub(crate) enum Lighting {
     /// A point light.
     PointLight,
-    /// A lamp with the name `source`.
+    /// A lamp, the surface `source`.
     Lamp,
-    /// A surface `S2` that sends out an exitance of 1, seen without measuring planes; answers in percent.
+    /// A surface `S2` with an exitance of 1; measuring planes are not built. Answers are in percent.
     Reflector,
-    /// A uniform sky that lights the open ground with 1, through an opening; answers in percent.
+    /// A uniform sky, seen through an opening, that gives the open ground an irradiance of 1. Answers are in percent.
     Sky,
 }
 
-impl Setting {
+impl Lighting {
     fn scene(&self, case: &Case) -> Result<Scene, ValidateError> {
         let surfaces: Vec<&Surface> = case.geometry.surfaces.iter().collect();
         let builder = match self {
@@ -70,7 +70,7 @@ impl Setting {
                 black(&surfaces, |surface| if surface.name == "source" { exitance } else { 0.0 })
             }
             Self::Reflector => {
-                // Measuring planes "do not block"; the points are where they would be.
+                // Measuring planes "do not block"; the points lie where the planes would be.
                 let built = |surface: &&&Surface| !surface.role.starts_with("measuring plane");
                 let surfaces: Vec<&Surface> = surfaces.iter().filter(built).copied().collect();
                 black(&surfaces, |surface| if surface.name == "S2" { 1.0 } else { 0.0 })
@@ -84,8 +84,9 @@ impl Setting {
         Ok(builder.build()?.scene)
     }
 
-    /// Where a sensor has to be to look from a point of the scene. Sensors look from a little above their position, for them not to be
-    /// below the surface that they lie on. Where that is left out, they need not, and some points see just nothing.
+    /// Returns the sensor to use for a point. Sensors look from a little above their position, so as not to be below
+    /// the surface that they lie on. Where this surface is not built, the offset is undone: it is not needed, and some
+    /// points see nothing from exactly their position.
     fn place(&self, sensor: Sensor, scene: &Scene) -> Sensor {
         let lift = SENSOR_OFFSET * scene.bounding_sphere().radius;
         let lowered = Sensor::new(sensor.position() - lift * sensor.direction(), sensor.direction());
@@ -95,7 +96,7 @@ impl Setting {
         }
     }
 
-    /// What irradiances are multiplied with.
+    /// Returns the factor from irradiance to the unit of the answers.
     fn unit(&self) -> f64 {
         match self {
             Self::PointLight | Self::Lamp => 1.0,
@@ -104,20 +105,20 @@ impl Setting {
     }
 }
 
-/// The light at the points of a case, measured from there.
-pub(crate) fn points(case: &Case, setting: Setting) -> Result<Vec<Trial<'_>>, ValidateError> {
+/// Creates the trial for the light at the points of a case.
+pub(crate) fn points(case: &Case, lighting: Lighting) -> Result<Vec<Trial<'_>>, ValidateError> {
     let quantity =
         |p: &Point| Quantity { published: p.cie_published, ..Quantity::new(p.name.clone(), p.exact) };
     let quantities: Vec<Quantity> = case.points.iter().map(quantity).collect();
     let sensors = sensors(case, &case.points)?;
     let count = sensors.len() as u64;
-    let rays = if matches!(setting, Setting::Sky) { RAYS_TO_SKY } else { RAYS };
+    let rays = if matches!(lighting, Lighting::Sky) { RAYS_TO_SKY } else { RAYS };
     let prepare = move |_: Effort| -> Result<Sample<'_>, ValidateError> {
-        let model = Model::new(setting.scene(case)?, Subdivision::PerTriangle)?;
-        let place = |&sensor: &Sensor| setting.place(sensor, &model.scene);
-        let (sensors, unit): (Vec<_>, _) = (sensors.iter().map(place).collect(), setting.unit());
+        let model = Model::new(lighting.scene(case)?, Subdivision::PerTriangle)?;
+        let place = |&sensor: &Sensor| lighting.place(sensor, &model.scene);
+        let (sensors, unit): (Vec<_>, _) = (sensors.iter().map(place).collect(), lighting.unit());
         Ok(Box::new(move |lines, seed, executor| {
-            // All surfaces are black: what they receive is seen by nobody.
+            // All surfaces are black, so the light that they receive is not needed.
             let solution = Solution::dark(model.mesh.side_count());
             let found = irradiances(&model, &solution, &sensors, lines / count, seed, executor)?;
             Ok(found.iter().map(|irradiance| irradiance.x * unit).collect())

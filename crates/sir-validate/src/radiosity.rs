@@ -1,4 +1,4 @@
-//! The cases of `radiosity-exact.json`: mean irradiance and radiosity of every surface.
+//! Cases of `radiosity-exact.json`: mean irradiance and radiosity of every surface.
 
 use std::collections::BTreeMap;
 
@@ -12,18 +12,20 @@ use crate::light::{Paint, means, per_face, scene, solve};
 use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
 
-/// Lines of a run in a room of flat walls.
+/// Number of lines per run in a room of flat walls.
 const FLAT_LINES: u64 = 400_000;
 
-/// Parts of a circle of a whole sphere, and lines of a run. Where one sphere sees more of itself than the other, the solver only guesses where what
-/// is unshot at the end would go: lines have to be many, so that it is next to nothing, and facets few.
+/// Numbers of parts of a circle and of lines per run, for whole spheres. Where one sphere sees more of itself than the
+/// other, the solver's extrapolation of the unshot power is only an approximation. Lines must therefore be many, so
+/// that little power remains unshot, and facets few.
 const SPHERES: (u32, u64) = (48, 600_000);
 
-/// The same for zones of a sphere: all see all alike, so the guess is right, and facets may be many.
+/// The same for zones of a sphere. All zones see all zones equally, so the extrapolation is exact, and facets may be
+/// many.
 const ZONES: (u32, u64) = (SEGMENTS, 1_000_000);
 
-/// How finely the surfaces of a case are cut, and the lines of a run.
-fn effort(surfaces: &[&Surface]) -> (u32, u64) {
+/// Returns the numbers of parts of a circle and of lines per run for the surfaces of a case.
+fn resolution(surfaces: &[&Surface]) -> (u32, u64) {
     let has = |is: fn(&Shape) -> bool| surfaces.iter().any(|surface| is(&surface.shape));
     if has(|shape| matches!(shape, Shape::SphericalZone { .. })) {
         ZONES
@@ -34,7 +36,7 @@ fn effort(surfaces: &[&Surface]) -> (u32, u64) {
     }
 }
 
-/// What a surface emits and reflects.
+/// Exitance and reflectance of a surface.
 #[derive(Clone, Copy, Debug, Deserialize)]
 struct Light {
     #[serde(rename = "M")]
@@ -43,7 +45,7 @@ struct Light {
     reflectance: f64,
 }
 
-/// `inputs` of a case, by the names of surfaces.
+/// `inputs` of a case, by surface name.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Inputs {
@@ -83,7 +85,7 @@ enum Values {
         #[serde(rename = "E")]
         e: BTreeMap<String, f64>,
     },
-    /// Named `B1`, `B zone 1`, or `E` where it is the same everywhere.
+    /// Values named `B1`, `B zone 1`, or `E` if it is the same everywhere.
     Flat(BTreeMap<String, f64>),
 }
 
@@ -102,7 +104,7 @@ impl Values {
     }
 }
 
-/// RE-03 to RE-09: surfaces that emit and reflect differently.
+/// Creates the trial of RE-03 to RE-09: surfaces with different exitance and reflectance.
 pub(crate) fn surfaces(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     let (inputs, values): (Inputs, Values) = (case.inputs()?, case.values()?);
     let surfaces: Vec<&Surface> = case.geometry.surfaces.iter().collect();
@@ -117,7 +119,7 @@ pub(crate) fn surfaces(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
         quantities.push(Quantity::new(format!("E {}", surface.name), e));
     }
     quantities.push(Quantity::new("absorbed / emitted", 1.0));
-    let (segments, lines) = effort(&surfaces);
+    let (segments, lines) = resolution(&surfaces);
     let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
         let model = per_face(scene(&surfaces, |i| paints[i], effort.segments(segments))?)?;
         Ok(Box::new(move |lines, seed, executor| {
@@ -135,7 +137,8 @@ pub(crate) fn surfaces(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     Ok(vec![Trial { quantities, lines, prepare: Box::new(prepare) }])
 }
 
-/// RE-01: rooms whose surfaces all emit and reflect alike. A run has three reflectances, one per band.
+/// Creates the trials of RE-01: rooms whose surfaces all have the same exitance and reflectance. A run has three
+/// reflectances, one per band.
 pub(crate) fn enclosures(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
     #[derive(Deserialize)]
     struct Answer {
@@ -191,7 +194,7 @@ mod tests {
     use crate::estimate::Estimate;
     use sir_parallel::Executor;
 
-    /// By how much the irradiance of the first zone of RE-06 is off, relatively, if circles are cut into so many parts.
+    /// Returns the relative error of the irradiance of the first zone of RE-06 with circles cut into `segments` parts.
     fn facets(segments: u32) -> Estimate {
         let reference = Reference::built_in().unwrap();
         let case = reference.cases.iter().find(|case| case.id == "RE-06").unwrap();
@@ -211,7 +214,8 @@ mod tests {
         Estimate::of(&(0..16).map(run).collect::<Vec<_>>())
     }
 
-    /// What facets change falls with the square of their size, and is below a fifth of the largest standard error in full and in quick runs.
+    /// The effect of facets falls with the square of their size, and is below a fifth of the largest standard error in
+    /// full and in quick runs.
     #[test]
     fn facets_change_little() {
         let (coarse, fine) = (facets(12), facets(24));

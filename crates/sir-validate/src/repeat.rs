@@ -1,4 +1,4 @@
-//! Runs of the solver, repeated until their mean is precise enough.
+//! Repetition of solver runs until their mean is precise enough.
 
 use crate::check::Check;
 use crate::effort::Effort;
@@ -7,13 +7,13 @@ use crate::estimate::Estimate;
 use crate::runner::Runner;
 use crate::trial::Trial;
 
-/// Runs of which a first estimate of the noise is made.
+/// Number of runs for the first estimate of the noise.
 const FIRST_RUNS: usize = 16;
 
-/// Most runs: if the noise is still too large, the verdict says so.
-const MOST_RUNS: usize = 256;
+/// Largest number of runs. If the noise is still too large, the verdict says so.
+const MAX_RUNS: usize = 256;
 
-/// Lines of the runs that are made in any case.
+/// Returns the number of lines of the runs that are always made.
 pub(crate) fn least_lines(trial: &Trial<'_>, effort: Effort) -> u64 {
     effort.lines(trial.lines) * FIRST_RUNS as u64
 }
@@ -33,7 +33,7 @@ pub(crate) fn repeat(
         samples.iter_mut().zip(values).for_each(|(all, value)| all.push(value));
         made += 1;
         if made == planned {
-            planned = runs_needed(trial, &samples, effort).clamp(made, MOST_RUNS);
+            planned = runs_needed(trial, &samples, effort).clamp(made, MAX_RUNS);
             runner.expect(lines * (planned - made) as u64);
         }
     }
@@ -41,7 +41,7 @@ pub(crate) fn repeat(
     Ok(checks.map(|(quantity, samples)| Check::new(quantity, Estimate::of(samples), effort)).collect())
 }
 
-/// How many runs it takes, as far as can be told from those that were made.
+/// Estimates the number of runs needed from the runs made so far.
 fn runs_needed(trial: &Trial<'_>, samples: &[Vec<f64>], effort: Effort) -> usize {
     let worst = trial
         .quantities
@@ -52,6 +52,6 @@ fn runs_needed(trial: &Trial<'_>, samples: &[Vec<f64>], effort: Effort) -> usize
         .fold(0.0, f64::max);
     let made = samples.first().map_or(0, Vec::len);
     let ratio = worst / effort.precision();
-    // A tenth more than needed: the estimate is uncertain, and a second look costs more runs than that.
+    // A tenth more than estimated: the estimate is uncertain, and another extension would cost more runs than that.
     if ratio <= 1.0 { made } else { (made as f64 * ratio * ratio * 1.1).ceil() as usize }
 }

@@ -1,55 +1,55 @@
-//! The report, and its text.
+//! The report and its text.
 
 use serde::Serialize;
 
 use crate::check::{Check, LIMIT, Verdict};
 use crate::effort::Effort;
 
-/// What became of a case.
+/// Outcome of a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outcome {
-    /// Its name.
+    /// ID of the case.
     pub case: String,
-    /// What it is about.
+    /// Title of the case.
     pub title: String,
-    /// Why it was not run, if it was not.
+    /// Reason why the case was not run; `None` if it was run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub skipped: Option<String>,
-    /// The answers.
+    /// Comparisons with exact answers.
     pub checks: Vec<Check>,
 }
 
-/// The outcome of all cases that were asked for.
+/// Outcomes of all selected cases.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// How precise answers had to be.
+    /// Required precision of the answers.
     pub effort: Effort,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// The cases in the order of the reference.
+    /// Cases, in the order of the reference.
     pub cases: Vec<Outcome>,
 }
 
 impl Report {
-    /// All answers.
+    /// Returns the comparisons of all answers.
     pub fn checks(&self) -> impl Iterator<Item = &Check> {
         self.cases.iter().flat_map(|case| &case.checks)
     }
 
-    /// Number of answers with this verdict.
+    /// Returns the number of answers with this verdict.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
         self.checks().filter(|check| check.verdict == verdict).count()
     }
 
-    /// Whether all answers are right and precise enough.
+    /// Returns true if all answers are correct and precise enough.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.checks().all(|check| check.verdict == Verdict::Passed)
     }
 }
 
-/// The rows of a table: answers that stand alone, and of each group the one that is farthest off.
+/// Returns the rows of a table: answers without a group, and the worst answer of each group.
 fn rows(checks: &[Check]) -> Vec<(String, &Check)> {
     let mut rows: Vec<(String, &Check)> = Vec::new();
     let mut shown: Vec<&str> = Vec::new();
@@ -62,20 +62,20 @@ fn rows(checks: &[Check]) -> Vec<(String, &Check)> {
             continue;
         }
         shown.push(group);
-        let alike = || checks.iter().filter(|other| other.group.as_ref() == Some(group));
-        let worst = alike().max_by(|a, b| {
+        let of_group = || checks.iter().filter(|other| other.group.as_ref() == Some(group));
+        let worst = of_group().max_by(|a, b| {
             let failed = |check: &Check| check.verdict != Verdict::Passed;
             failed(a).cmp(&failed(b)).then(a.z.abs().total_cmp(&b.z.abs()))
         });
         if let Some(worst) = worst {
-            rows.push((format!("{group}: {}, worst of {}", worst.quantity, alike().count()), worst));
+            rows.push((format!("{group}: {}, worst of {}", worst.quantity, of_group().count()), worst));
         }
     }
     rows
 }
 
 impl Outcome {
-    /// Whether it was run, and what came out.
+    /// Returns a word: `skipped`, `ok`, or the first verdict that is not a pass.
     #[must_use]
     pub fn word(&self) -> &'static str {
         if self.skipped.is_some() {
@@ -87,7 +87,7 @@ impl Outcome {
 }
 
 impl Report {
-    /// How many answers passed, and how many cases were not run, in a sentence.
+    /// Returns a sentence with the number of answers per verdict, and the cases that were not run.
     #[must_use]
     pub fn summary(&self) -> String {
         let skipped: Vec<&str> =
@@ -109,7 +109,7 @@ impl Report {
         text + "."
     }
 
-    /// The report for people, in Markdown; columns are aligned, so that it can be read as it is.
+    /// Returns the report in Markdown. Columns are aligned, so that it is also readable as plain text.
     #[must_use]
     pub fn markdown(&self) -> String {
         let (option, precision) = match self.effort {
@@ -117,8 +117,9 @@ impl Report {
             Effort::Full => ("", "0.1"),
         };
         let mut text = format!(
-            "# Exact answers and ours\n\n`sir validate{option} --seed {}`. *ours* is the mean of independent runs, *σ* its standard error (at most {precision} % \
-             of the exact answer), *z* the difference as a normal variable of deviation 1 would show it; at most {LIMIT} passes.\n\n{}\n",
+            "# Exact answers and ours\n\n`sir validate{option} --seed {}`. *ours* is the mean of independent runs, \
+             *σ* its standard error (at most {precision} % of the exact answer), *z* the difference as a standard \
+             normal deviate; an answer passes if its size is at most {LIMIT}.\n\n{}\n",
             self.seed,
             self.summary()
         );
@@ -132,10 +133,10 @@ impl Report {
         text
     }
 
-    /// All numbers, for programs.
+    /// Returns all numbers as JSON.
     #[must_use]
     pub fn json(&self) -> String {
-        // A tree of plain structs; numbers that are not finite become `null`.
+        // Plain structs always serialize; numbers that are not finite become `null`.
         serde_json::to_string_pretty(self).map(|json| json + "\n").unwrap_or_default()
     }
 }
@@ -164,7 +165,7 @@ fn table(checks: &[Check]) -> String {
     aligned(&grid)
 }
 
-/// Six digits, which is more than any noise leaves.
+/// Formats a number with six digits, which is more than noise leaves significant.
 fn number(x: f64) -> String {
     let before = if x == 0.0 { 1 } else { x.abs().log10().floor() as i32 + 1 };
     let text = format!("{:.*}", (6 - before).clamp(0, 9) as usize, x);
@@ -179,7 +180,7 @@ fn percent(sigma: f64, exact: f64) -> String {
     }
 }
 
-/// A Markdown table; the first and the last column are words.
+/// Formats a Markdown table, whose first and last columns are words.
 fn aligned(grid: &[Vec<String>]) -> String {
     let columns = grid.first().map_or(0, Vec::len);
     let width = |column: usize| grid.iter().map(|row| row[column].chars().count()).max().unwrap_or(0).max(3);

@@ -1,4 +1,4 @@
-//! Black rooms of CIE 171: their walls, their roof with a hole, and what lights them.
+//! Black rooms of CIE 171: walls, a roof with an opening, and light sources.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use crate::error::ValidateError;
 use crate::light::{Paint, builder};
 use crate::shape::SEGMENTS;
 
-/// A scene of these surfaces, black, of which some emit an exitance.
+/// Returns the builder of a scene of these surfaces, all black, with the given exitances.
 pub(crate) fn black(surfaces: &[&Surface], exitance: impl Fn(&Surface) -> f64) -> SceneBuilder {
     builder(surfaces, |i| Paint::gray(exitance(surfaces[i]), 0.0), SEGMENTS)
 }
@@ -26,7 +26,7 @@ pub(crate) fn add_point(builder: &mut SceneBuilder, source: &PointSource, flux: 
     builder.add_light(Light { name: String::new(), kind });
 }
 
-/// Sets a uniform sky that gives the open ground the irradiance 1, and makes the roof of a room black but for an opening.
+/// Sets a uniform sky that gives the open ground the irradiance 1, and adds a black roof with an opening to a room.
 pub(crate) fn open_to_sky(
     builder: &mut SceneBuilder,
     case: &Case,
@@ -37,7 +37,7 @@ pub(crate) fn open_to_sky(
     let floor = case.geometry.surfaces.iter().find(|surface| surface.name == "floor");
     let (floor, hole) = (corners(case, case.need("floor", floor)?)?, corners(case, opening)?);
     let middle = hole.iter().sum::<DVec3>() / hole.len() as f64;
-    // The corner of the roof next to each corner of the hole: above the corner of the floor in the same direction.
+    // Corner of the roof next to each corner of the hole: above the floor corner in the same direction.
     let edge = |inner: &DVec3| {
         let along = |corner: &DVec3| (*corner - middle).truncate().dot((*inner - middle).truncate());
         let nearest = floor.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
@@ -47,7 +47,7 @@ pub(crate) fn open_to_sky(
     for (i, inner) in hole.iter().enumerate() {
         let next = &hole[(i + 1) % hole.len()];
         let strip = [edge(inner), edge(next), *next, *inner];
-        // A hole as large as the roof leaves strips without an area.
+        // A hole as large as the roof leaves strips of zero area.
         if (strip[1] - strip[3]).cross(strip[2] - strip[0]).length() > 1e-9 {
             let strip = strip.map(|corner| builder.add_vertex(corner));
             builder.add_polygon(&strip, roof);
@@ -64,7 +64,7 @@ fn corners(case: &Case, surface: &Surface) -> Result<Vec<DVec3>, ValidateError> 
     Ok(case.need("flat floor and opening", vertices)?.iter().map(|&v| DVec3::from_array(v)).collect())
 }
 
-/// The flux of a point light in lumens, from `inputs`.
+/// Returns the flux of a point light in lumens, from `inputs`.
 pub(crate) fn flux(case: &Case) -> Result<f64, ValidateError> {
     #[derive(serde::Deserialize)]
     struct Inputs {
@@ -73,7 +73,7 @@ pub(crate) fn flux(case: &Case) -> Result<f64, ValidateError> {
     Ok(case.inputs::<Inputs>()?.luminous_flux_lm)
 }
 
-/// The exitance of a lamp of this luminance.
+/// Returns the exitance `M = πL` of a lamp, from its luminance in `inputs`.
 pub(crate) fn exitance(case: &Case) -> Result<f64, ValidateError> {
     #[derive(serde::Deserialize)]
     struct Inputs {

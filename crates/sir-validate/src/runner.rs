@@ -1,4 +1,4 @@
-//! Who makes the runs: a executor, and someone who watches it.
+//! Execution of runs, with progress reports to a watcher.
 
 use std::num::NonZeroUsize;
 
@@ -8,11 +8,11 @@ use crate::trial::Sample;
 
 /// Watches a validation, and may stop it.
 pub trait Watcher {
-    /// A case begins.
+    /// Called when a case begins.
     fn begin(&mut self, case: &str, title: &str);
-    /// Called a few times a second with the number of lines traced so far and in all, as far as can be told.
+    /// Called a few times a second with the number of lines traced so far and the expected total.
     fn progress(&mut self, done: u64, total: u64);
-    /// Asked a few times a second: whether to give up.
+    /// Called a few times a second; returns true to stop the validation.
     fn should_stop(&self) -> bool;
 }
 
@@ -29,38 +29,39 @@ impl<'w> Runner<'w> {
         Self { watcher, threads, done: 0, total: 0 }
     }
 
-    /// Announces lines.
+    /// Adds lines to the expected total.
     pub(crate) fn expect(&mut self, lines: u64) {
         self.total += lines;
     }
 
     /// Makes a run.
     pub(crate) fn run(&mut self, sample: &Sample<'_>, lines: u64, seed: u64) -> Result<Vec<f64>, RunError> {
-        let tick = Tick {
+        let observer = RunObserver {
             watcher: &mut *self.watcher,
             before: self.done,
             stage: 0,
             limit: self.done + lines,
             total: self.total,
         };
-        let values = sample(lines, seed, &mut Executor::new(self.threads).watched_by(tick))?;
+        let values = sample(lines, seed, &mut Executor::new(self.threads).watched_by(observer))?;
         self.done += lines;
         Ok(values)
     }
 }
 
-/// Tells the watcher about the stages of a run.
-struct Tick<'w> {
+/// Reports the stages of a run to the watcher.
+struct RunObserver<'w> {
     watcher: &'w mut dyn Watcher,
-    /// Lines before this stage, and of it.
+    /// Lines traced before this stage.
     before: u64,
+    /// Lines traced in this stage.
     stage: u64,
-    /// Lines when the run is done.
+    /// Lines traced when the run is done.
     limit: u64,
     total: u64,
 }
 
-impl Observer for Tick<'_> {
+impl Observer for RunObserver<'_> {
     fn progress(&mut self, done: u64, _total: u64) {
         if done < self.stage {
             self.before += self.stage;

@@ -1,12 +1,12 @@
-//! From the shapes of the reference to triangles.
+//! Triangulation of the shapes of the reference.
 //!
-//! Curved shapes are surfaces of revolution: a profile, turned about an axis in steps. The corners of the polygon that stands for
-//! a circle lie a little outside, so that both have the same area; arcs of a profile are cut as finely.
+//! Curved shapes are surfaces of revolution: a profile, rotated about an axis in steps. A polygon approximates a
+//! circle; its corners lie a little outside, so that both have the same area. Arcs of a profile are cut as finely.
 //!
-//! What this changes in an answer falls with the square of the size of the facets, and is measured on large ones
-//! (`radiosity::tests`). A convex body sends all its light to one around it, and gets it back in proportion to the areas, whatever the facets:
-//! concentric spheres may be coarse. Facets of one sphere see a little too much across their edges and nothing of themselves,
-//! which matters where zones that emit differently meet.
+//! The effect on an answer falls with the square of the size of the facets, and is measured with large facets
+//! (`radiosity::tests`). A convex body sends all its light to a body around it, and gets light back in proportion to
+//! the areas, for any facets, so concentric spheres may be coarse. Facets of one sphere see a little too much across
+//! their edges and nothing of themselves, which matters where zones with different exitances meet.
 
 use std::f64::consts::PI;
 
@@ -15,11 +15,11 @@ use sir_geom::{MaterialId, SceneBuilder};
 
 use crate::data::{ActiveSide, Shape};
 
-/// Parts of a circle where nothing speaks for fewer: a degree and a quarter each.
+/// Default number of parts of a circle: 1.25° each.
 pub(crate) const SEGMENTS: u32 = 288;
 
-/// A point of a profile: how far along the axis, and how far from it \[m\].
-type Station = (f64, f64);
+/// A point of a profile: position along the axis and distance from it \[m\].
+type ProfilePoint = (f64, f64);
 
 /// Adds a shape to a scene; its front is the active side. Circles are cut into `segments` parts.
 pub(crate) fn add(builder: &mut SceneBuilder, shape: &Shape, material: MaterialId, segments: u32) {
@@ -51,33 +51,35 @@ pub(crate) fn add(builder: &mut SceneBuilder, shape: &Shape, material: MaterialI
     }
 }
 
-/// Stations on an arc about the origin between two angles from the axis \[degrees\], in the direction of the axis.
-fn arc(radius: f64, [from, to]: [f64; 2], segments: u32) -> Vec<Station> {
+/// Returns points on an arc about the origin between two angles from the axis \[degrees\], in the direction of the
+/// axis.
+fn arc(radius: f64, [from, to]: [f64; 2], segments: u32) -> Vec<ProfilePoint> {
     let parts = ((to - from) / 360.0 * f64::from(segments)).ceil().max(1.0) as u32;
     let at = |i: u32| {
         let degrees = from + (to - from) * f64::from(i) / f64::from(parts);
         let (sin, cos) = degrees.to_radians().sin_cos();
-        // Not the sine of π in floating point: a pole is one point.
+        // Exactly 0 at a pole, not the rounded sine of π, so that a pole is one point.
         let at_pole = degrees <= 0.0 || degrees >= 180.0;
         (radius * cos, if at_pole { 0.0 } else { radius * sin })
     };
     (0..=parts).rev().map(at).collect()
 }
 
-/// A profile in the direction of the axis makes an outside, one against it an inside.
-fn facing(side: ActiveSide, mut profile: Vec<Station>) -> Vec<Station> {
+/// Orients a profile: one in the direction of the axis makes an outside, one against it an inside.
+fn facing(side: ActiveSide, mut profile: Vec<ProfilePoint>) -> Vec<ProfilePoint> {
     if side == ActiveSide::Inside {
         profile.reverse();
     }
     profile
 }
 
-/// Turns a profile about an axis. Fronts are to the right of the profile, the axis being to its left if it goes along with it.
+/// Rotates a profile about an axis. Fronts are to the right of the profile; the axis is to the left of a profile that
+/// runs in its direction.
 fn revolve(
     builder: &mut SceneBuilder,
     center: [f64; 3],
     axis: [f64; 3],
-    profile: &[Station],
+    profile: &[ProfilePoint],
     material: MaterialId,
     segments: u32,
 ) {
@@ -86,7 +88,7 @@ fn revolve(
     let step = 2.0 * PI / f64::from(segments);
     // A regular polygon of circumradius ρ has the area ½ n ρ² sin(2π/n).
     let outside = (step / step.sin()).sqrt();
-    let at = |(height, radius): Station, segment: u32| {
+    let at = |(height, radius): ProfilePoint, segment: u32| {
         let (sin, cos) = (step * f64::from(segment % segments)).sin_cos();
         center + axis * height + (x * cos + y * sin) * (radius * outside)
     };

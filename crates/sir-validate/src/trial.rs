@@ -1,36 +1,37 @@
-//! What is to be computed, and how: quantities, and a function that estimates them.
+//! Trials: quantities, and a function that estimates them.
 
 use sir_parallel::{Executor, RunError};
 
 use crate::effort::Effort;
 use crate::error::ValidateError;
 
-/// A number whose exact value is known.
+/// A quantity with a known exact value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Quantity {
     pub(crate) name: String,
-    /// Quantities that are alike, such as all faces of a cube, are shown in one row of a table.
+    /// Group of similar quantities, such as all faces of a cube, which are shown in one row of a table.
     pub(crate) group: Option<String>,
     pub(crate) exact: f64,
-    /// What others have published.
+    /// Value published by others.
     pub(crate) published: Option<f64>,
 }
 
 impl Quantity {
-    /// A number that stands alone.
+    /// Creates a quantity without a group.
     pub(crate) fn new(name: impl Into<String>, exact: f64) -> Self {
         Self { name: name.into(), group: None, exact, published: None }
     }
 }
 
-/// Gives one estimate of each quantity, from about this many lines with this seed.
+/// Function of the number of lines, the seed and the executor that returns one estimate of each quantity, from about
+/// this many lines.
 pub(crate) type Sample<'a> = Box<dyn Fn(u64, u64, &mut Executor<'_>) -> Result<Vec<f64>, RunError> + 'a>;
 
-/// Some numbers that the same runs give.
+/// Quantities that the same runs estimate.
 pub(crate) struct Trial<'a> {
     pub(crate) quantities: Vec<Quantity>,
-    /// Lines of a run, if there is time enough.
+    /// Number of lines per run at full effort.
     pub(crate) lines: u64,
-    /// Makes the scene and says how to light it.
+    /// Builds the scene and returns the function that makes a run.
     pub(crate) prepare: Box<dyn Fn(Effort) -> Result<Sample<'a>, ValidateError> + 'a>,
 }

@@ -1,4 +1,4 @@
-//! Running the cases.
+//! Execution of the selected cases.
 
 use std::num::NonZeroUsize;
 
@@ -10,24 +10,25 @@ use crate::repeat::{least_lines, repeat};
 use crate::report::{Outcome, Report};
 use crate::runner::{Runner, Watcher};
 
-/// What to run, and how.
+/// Settings of a validation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// How precisely.
+    /// Required precision of the answers.
     pub effort: Effort,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// How many threads trace lines; the answers do not depend on it.
+    /// Number of threads that trace lines; answers do not depend on it.
     pub threads: NonZeroUsize,
-    /// Names of cases, or their beginnings, in any case of letters; all if there are none.
+    /// IDs of cases, or prefixes of IDs, ignoring case; all cases if empty.
     pub cases: Vec<String>,
 }
 
-/// Runs all cases that are asked for.
+/// Runs all selected cases.
 ///
 /// # Errors
 ///
-/// If there is no such case, the reference is broken, or the watcher wants to stop. Wrong answers are no error.
+/// If a selected case does not exist, the reference is invalid, or the watcher stops the run. Wrong answers are not
+/// errors.
 pub fn validate(
     reference: &Reference,
     settings: &Settings,
@@ -35,11 +36,11 @@ pub fn validate(
 ) -> Result<Report, ValidateError> {
     let mut plans = Vec::new();
     for (number, case) in (0..).zip(&reference.cases) {
-        if asked_for(case, settings) {
+        if is_selected(case, settings) {
             plans.push((number, case, plan(case)?));
         }
     }
-    all_found(reference, settings)?;
+    check_selection(reference, settings)?;
     let effort = settings.effort;
     let mut runner = Runner::new(watcher, settings.threads);
     for trial in plans.iter().flat_map(|(_, _, plan)| plan.trials()) {
@@ -52,7 +53,7 @@ pub fn validate(
         }
         let mut checks = Vec::new();
         for (part, trial) in (0..).zip(plan.trials()) {
-            // No two runs have random numbers in common.
+            // No two runs share random numbers.
             let stream: u64 = (number << 32) | (part << 16);
             checks.extend(repeat(trial, effort, settings.seed.wrapping_add(stream), &mut runner)?);
         }
@@ -62,18 +63,18 @@ pub fn validate(
     Ok(Report { effort, seed: settings.seed, cases })
 }
 
-/// Whether someone asked for a case: by its name or the beginning of it.
-fn asked_for(case: &Case, settings: &Settings) -> bool {
-    settings.cases.is_empty() || settings.cases.iter().any(|asked| names(asked, &case.id))
+/// Returns true if a case is selected by its ID or a prefix of it.
+fn is_selected(case: &Case, settings: &Settings) -> bool {
+    settings.cases.is_empty() || settings.cases.iter().any(|asked| is_prefix(asked, &case.id))
 }
 
-fn names(asked: &str, id: &str) -> bool {
+fn is_prefix(asked: &str, id: &str) -> bool {
     id.to_ascii_lowercase().starts_with(&asked.to_ascii_lowercase())
 }
 
-fn all_found(reference: &Reference, settings: &Settings) -> Result<(), ValidateError> {
+fn check_selection(reference: &Reference, settings: &Settings) -> Result<(), ValidateError> {
     for asked in &settings.cases {
-        if asked.is_empty() || !reference.ids().any(|id| names(asked, id)) {
+        if asked.is_empty() || !reference.ids().any(|id| is_prefix(asked, id)) {
             let known = reference.ids().collect::<Vec<_>>().join(", ");
             return Err(ValidateError::NoCase { asked: asked.clone(), known });
         }

@@ -1,4 +1,4 @@
-//! All cases in a quick run, and what happens if an answer is wrong.
+//! A quick run of all cases, and the detection of wrong answers.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -6,10 +6,10 @@ use std::num::NonZeroUsize;
 
 use sir_validate::{Effort, Reference, Report, Settings, Verdict, Watcher, validate};
 
-/// Watches, and stops after some looks.
-struct Patience(u32);
+/// Watcher that stops after a number of progress reports.
+struct StopAfter(u32);
 
-impl Watcher for Patience {
+impl Watcher for StopAfter {
     fn begin(&mut self, _case: &str, _title: &str) {}
     fn progress(&mut self, done: u64, total: u64) {
         assert!(done <= total);
@@ -27,10 +27,10 @@ fn settings(cases: &[&str], threads: usize) -> Settings {
 }
 
 fn run(reference: &Reference, cases: &[&str], threads: usize) -> Report {
-    validate(reference, &settings(cases, threads), &mut Patience(u32::MAX)).unwrap()
+    validate(reference, &settings(cases, threads), &mut StopAfter(u32::MAX)).unwrap()
 }
 
-/// The built-in answers with one of them changed.
+/// Returns the built-in answers with one of them changed.
 fn changed(from: &str, to: &str) -> Reference {
     let texts = [
         include_str!("../data/view-factors.json"),
@@ -50,8 +50,8 @@ fn all_cases_are_right() {
         report.cases.iter().filter(|c| c.skipped.is_some()).map(|c| c.case.as_str()).collect();
     assert_eq!(skipped, ["RE-02"]);
     assert!(report.cases.iter().all(|case| case.skipped.is_some() == case.checks.is_empty()));
-    // Answers that agree better than chance would have it are as suspicious as wrong ones. Those of a case are correlated, so this says
-    // only that the noise is about what it is said to be.
+    // Answers that agree better than chance allows are as suspicious as wrong ones. The answers of a case are
+    // correlated, so this checks only that the noise has about its stated size.
     let noisy: Vec<f64> = report.checks().filter(|c| c.sigma > 1e-6 * c.exact).map(|c| c.z).collect();
     let square = noisy.iter().map(|z| z * z).sum::<f64>() / noisy.len() as f64;
     assert!(noisy.len() > 500 && (0.5..1.6).contains(&square), "{square}");
@@ -63,7 +63,7 @@ fn wrong_answers_are_found() {
         ("VF-13", "\"F34\": 0.119405947891134", "\"F34\": 0.117"),
         ("RE-08", "\"ceiling\": 36.3491652215577", "\"ceiling\": 37.5"),
         ("CIE-5.3", "\"exact\": 32.6768980144", "\"exact\": 34.0"),
-        // Exact without noise: no difference is too small.
+        // The answer has no noise, so even the smallest difference is found.
         ("CIE-5.2", "\"exact\": 105.186267348", "\"exact\": 105.186268"),
     ] {
         let report = run(&changed(from, to), &[case], 2);
@@ -87,7 +87,7 @@ fn cases_are_chosen_by_their_names() {
     let ids: Vec<String> = run(&reference, &["cie-5.6"], 1).cases.into_iter().map(|c| c.case).collect();
     assert_eq!(ids, ["CIE-5.6a", "CIE-5.6b"]);
     for unknown in ["XX-01", ""] {
-        let error = validate(&reference, &settings(&["RE-02", unknown], 1), &mut Patience(9)).unwrap_err();
+        let error = validate(&reference, &settings(&["RE-02", unknown], 1), &mut StopAfter(9)).unwrap_err();
         assert!(error.is_usage() && error.to_string().contains("VF-01, "), "{error}");
     }
 }
@@ -95,6 +95,6 @@ fn cases_are_chosen_by_their_names() {
 #[test]
 fn it_can_be_stopped() {
     let error =
-        validate(&Reference::built_in().unwrap(), &settings(&["VF"], 1), &mut Patience(1)).unwrap_err();
+        validate(&Reference::built_in().unwrap(), &settings(&["VF"], 1), &mut StopAfter(1)).unwrap_err();
     assert!(error.is_interrupt(), "{error}");
 }

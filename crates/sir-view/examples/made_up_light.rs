@@ -1,4 +1,4 @@
-//! Pictures and files of a light that no solver made: a room under an even sky of irradiance that fades with depth.
+//! Pictures and files of made-up light, without a solver: a room with an irradiance that fades with depth.
 //!
 //!     cargo run --release -p sir-view --example made_up_light -- FOLDER
 
@@ -12,7 +12,8 @@ use sir_radiosity::build_accel;
 use sir_view::{DisplayMesh, Exposure, PictureSettings, Table, render, write_exr, write_glb, write_png};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let folder = PathBuf::from(std::env::args().nth(1).ok_or("say which folder the files shall go to")?);
+    let folder =
+        PathBuf::from(std::env::args().nth(1).ok_or("no output folder; pass it as the first argument")?);
     let mut builder = SceneBuilder::new();
     let white = builder.add_material(Material::diffuse("white", Rgb::splat(0.75)));
     let red = builder.add_material(Material::diffuse("red", Rgb::new(0.6, 0.1, 0.08)));
@@ -23,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = builder.build()?.scene;
     let mesh = PatchMesh::new(&scene, Subdivision::MaxEdge(0.3))?;
 
-    // A solver would give these, one value for each side.
+    // A solver would compute these: one value for each side.
     let mut irradiance = Vec::with_capacity(mesh.side_count());
     mesh.for_each_side(|triangle, patch, _, _| {
         let corners = mesh.patch_corners(triangle, patch).map(|c| c.point(scene.corners(triangle)));

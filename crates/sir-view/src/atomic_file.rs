@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Atomic writing of files.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 
 use crate::error::ViewError;
 
-/// Writes a file by way of a temporary one beside it, which takes the file's name only when it is complete and
-/// on disk. Nobody ever sees half a file, and an older file of that name stays until the new one is there.
+/// Writes a file atomically: writes a temporary file in the same folder and renames it when it is complete and on disk.
+///
+/// No reader ever sees a partial file, and an older file of that name stays until the new one replaces it.
 ///
 /// # Errors
 ///
-/// If the file cannot be written, or `write` fails; the temporary file is then removed.
+/// If the file cannot be written, or `write` fails. The temporary file is then removed.
 pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -20,7 +21,7 @@ pub fn write_atomically(
     let temporary = temporary_name(path).map_err(ViewError::writing(path))?;
     let result = fill(&temporary, write).and_then(|()| fs::rename(&temporary, path));
     result.map_err(|error| {
-        // The first error says more than a second one about the clean-up would.
+        // An error of the clean-up is ignored, because the first error is more informative.
         let _ = fs::remove_file(&temporary);
         ViewError::writing(path)(error)
     })
@@ -33,8 +34,8 @@ fn fill(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>)
     file.get_ref().sync_all()
 }
 
-/// A hidden name in the same folder, hence on the same file system; it has the process number in it, so that two
-/// processes do not write to one file.
+/// Returns a hidden name in the same folder, hence on the same file system. The name contains the process ID, so that
+/// two processes do not write to the same file.
 fn temporary_name(path: &Path) -> io::Result<PathBuf> {
     let name = path
         .file_name()

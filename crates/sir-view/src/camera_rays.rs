@@ -1,13 +1,13 @@
-//! The rays of a camera.
+//! Rays of a camera.
 
 use glam::DVec3;
 use sir_geom::{Camera, Line, Projection};
 
-/// The rays of a camera.
+/// Generator of the rays of a camera.
 pub(crate) struct CameraRays {
     eye: DVec3,
     forward: DVec3,
-    /// From the middle of the picture to its right and upper edge, at distance one from the eye; for a parallel
+    /// Vectors from the middle of the picture to its right and upper edge, at distance one from the eye; for a parallel
     /// projection, in scene units.
     right: DVec3,
     up: DVec3,
@@ -15,7 +15,7 @@ pub(crate) struct CameraRays {
 }
 
 impl CameraRays {
-    /// `aspect` is width over height.
+    /// Creates the generator; `aspect` is width over height.
     pub(crate) fn new(camera: &Camera, aspect: f64) -> Self {
         let (right, up) = camera_axes(camera);
         let (half, is_parallel) = match camera.projection {
@@ -31,7 +31,7 @@ impl CameraRays {
         }
     }
 
-    /// The ray through a point of the picture: `(0, 0)` is the upper left corner, `(1, 1)` the lower right.
+    /// Returns the ray through a point of the picture: `(0, 0)` is the upper left corner, `(1, 1)` the lower right.
     pub(crate) fn ray(&self, right: f64, down: f64) -> Line {
         let shift = (2.0 * right - 1.0) * self.right + (1.0 - 2.0 * down) * self.up;
         if self.is_parallel {
@@ -41,16 +41,17 @@ impl CameraRays {
         }
     }
 
-    /// How far apart two rays are at a distance along them, if one is at the upper edge of the picture and one at the lower.
+    /// Returns the distance between the rays at the upper and the lower edge of the picture, at a distance `t` along
+    /// them.
     pub(crate) fn spacing(&self, t: f64) -> f64 {
         2.0 * self.up.length() * if self.is_parallel { 1.0 } else { t }
     }
 }
 
-/// Unit vectors to the right and upwards in the picture of a camera.
+/// Returns the unit vectors to the right and upward in the picture of a camera.
 pub(crate) fn camera_axes(camera: &Camera) -> (DVec3, DVec3) {
     let right = camera.forward.cross(camera.up);
-    // A camera whose `up` is its `forward` may be turned about its axis at will.
+    // If `up` is parallel to `forward`, the rotation about the axis is arbitrary.
     let right = right.try_normalize().unwrap_or_else(|| camera.forward.any_orthonormal_vector());
     (right, right.cross(camera.forward))
 }

@@ -1,4 +1,4 @@
-//! How bright a picture is made.
+//! Exposure: the factor from radiance to screen values.
 
 use sir_geom::{Rgb, luminance};
 
@@ -6,30 +6,30 @@ use crate::display::DisplayMesh;
 use crate::picture::Picture;
 use crate::tone::rgb;
 
-/// How bright a picture is made.
+/// Exposure of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Exposure {
-    /// So that the typical brightness of what is seen, lamps apart, becomes a middle gray.
+    /// Maps the typical luminance of what is seen, without lamps, to middle gray.
     #[default]
     Auto,
-    /// Radiance \[W/(m² sr)\] times this factor is the linear value on the screen, as long as that is below one
-    /// half; brighter values are compressed, see [`tone_map`](crate::tone_map).
+    /// Multiplies radiance \[W/(m² sr)\] by this factor to obtain the linear screen value. Values above one half are
+    /// compressed, see [`tone_map`](crate::tone_map).
     Factor(f64),
 }
 
-/// The linear value that the typical radiance gets: a little more than the photographer's gray card (0.18),
-/// because walls are brighter than that.
-const MIDDLE: f64 = 0.26;
+/// Linear screen value of the typical radiance. It is a little above the photographer's gray card (0.18), because walls
+/// are brighter than that.
+const MIDDLE_GRAY: f64 = 0.26;
 
-/// How much a pixel that shows only sky counts beside one that shows a surface.
+/// Weight of a pixel that shows only sky, relative to one that shows a surface.
 const SKY_WEIGHT: f64 = 1e-4;
 
 impl Exposure {
-    /// The factor for a picture.
+    /// Returns the factor for a picture.
     ///
-    /// Automatically, it comes from the logarithmic mean of the luminance (as in Reinhard et al. 2002, section 3.1) of
-    /// the pixels that are neither black nor more than ten times as bright as the median, which leaves out lamps. Sky hardly
-    /// counts, unless there is nothing else.
+    /// `Auto` takes the logarithmic mean of the luminance (as in Reinhard et al. 2002, section 3.1) over the pixels
+    /// that are neither black nor more than ten times as bright as the median, which excludes lamps. Sky has almost no
+    /// weight, unless there is nothing else.
     #[must_use]
     pub fn factor_for_picture(self, picture: &Picture) -> f64 {
         let weighed = picture.radiance.iter().zip(&picture.surface);
@@ -38,8 +38,10 @@ impl Exposure {
         })
     }
 
-    /// The factor for a mesh: likewise, of the radiance of all triangles, each weighed by the light that falls on it. So the outer sides
-    /// of a room and what is hidden in its furniture do not count, and lamps not much.
+    /// Returns the factor for a mesh.
+    ///
+    /// `Auto` takes the same mean over the radiance of all triangles, each weighted by the light that falls on it. The
+    /// outer sides of a room and surfaces hidden in its furniture therefore do not count, and lamps count little.
     #[must_use]
     pub fn factor_for_mesh(self, display: &DisplayMesh<'_>) -> f64 {
         self.factor(|| {
@@ -60,12 +62,12 @@ impl Exposure {
     fn factor(self, samples: impl FnOnce() -> Vec<(f64, f64)>) -> f64 {
         match self {
             Self::Factor(factor) => factor,
-            Self::Auto => typical(samples()).map_or(1.0, |typical| MIDDLE / typical),
+            Self::Auto => typical(samples()).map_or(1.0, |typical| MIDDLE_GRAY / typical),
         }
     }
 }
 
-/// The logarithmic mean of weighted values, zeros and those above ten times the median left out.
+/// Returns the logarithmic mean of pairs (value, weight), without zeros and values above ten times the median.
 fn typical(mut samples: Vec<(f64, f64)>) -> Option<f64> {
     samples.retain(|&(value, weight)| value.is_finite() && value > 0.0 && weight > 0.0);
     samples.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -95,7 +97,7 @@ mod tests {
             Picture { width: 100, height: 1, shown: radiance.clone(), radiance, surface: vec![1.0; 100] }
         };
         let plain = Exposure::Auto.factor_for_picture(&picture(0, 0));
-        assert!((plain * 2.0 / MIDDLE - 1.0).abs() < 1e-12);
+        assert!((plain * 2.0 / MIDDLE_GRAY - 1.0).abs() < 1e-12);
         let with = Exposure::Auto.factor_for_picture(&picture(20, 30));
         assert!((with / plain - 1.0).abs() < 1e-12);
         assert_eq!(Exposure::Auto.factor_for_picture(&picture(0, 100)), 1.0);

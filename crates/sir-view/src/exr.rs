@@ -1,4 +1,4 @@
-//! Pictures for measuring.
+//! OpenEXR pictures, for measurement.
 
 use std::io;
 use std::path::Path;
@@ -21,11 +21,11 @@ const REC_709: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.3290),
 };
 
-/// Writes a picture as OpenEXR: linear radiance \[W/(m² sr)\] in the 32-bit float channels `R`, `G`, `B`, without
-/// loss.
+/// Writes a picture as OpenEXR: linear radiance \[W/(m² sr)\] in the 32-bit float channels `R`, `G`, `B`, with lossless
+/// compression.
 ///
-/// `more` holds further pictures of the same size, each with a name: their channels are called `name.R`, `name.G`,
-/// `name.B`, which is the common way to put layers into one part.
+/// `more` holds further pictures of the same size, each with a name. Their channels are `name.R`, `name.G` and
+/// `name.B`, the usual way to store layers in one part.
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
 //! The lit scene as one GLB file, for viewers and modeling programs.
 //!
-//! glTF 2.0 (Khronos 2021). The light is in the vertex colors, and `KHR_materials_unlit` tells viewers to show them
-//! as they are. The unclamped radiosity is in the attribute `_RADIOSITY`.
+//! The format is glTF 2.0 (Khronos 2021). The light is in the vertex colors, and `KHR_materials_unlit` tells viewers to
+//! show them unchanged. The attribute `_RADIOSITY` holds the unclamped radiosity.
 
 use std::io::Write;
 use std::path::Path;
@@ -22,14 +22,16 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
 
-/// Writes the display mesh as GLB: one primitive for each material, under its name, with the attributes
+/// Writes the display mesh and the given cameras as GLB, with one primitive per material, under its name.
 ///
-/// * `COLOR_0`: linear Rec. 709 in `[0, 1]`, exposure and tone curve applied;
-/// * `_RADIOSITY`: radiosity `B` \[W/m²\] in three linear bands, as computed;
+/// The vertices have two attributes:
 ///
-/// and the given cameras. Textures are in the colors of the vertices, each the mean over about a patch; surfaces with gaps are whole,
-/// but for patches that are all gap. `up` is the direction that becomes the file's +y, as glTF wants it: the node that holds
-/// everything turns it there, while the positions in the file are those of the scene.
+/// * `COLOR_0`: linear Rec. 709 in `[0, 1]`, after exposure and tone mapping;
+/// * `_RADIOSITY`: radiosity `B` \[W/m²\] in three linear bands, as computed.
+///
+/// Textures are baked into the vertex colors, each the mean over about one patch. Surfaces with gaps are written
+/// without the gaps, except that patches that are all gap are left out. `up` is the scene direction that becomes +y, as
+/// glTF requires: the root node rotates everything, and the positions in the file are those of the scene.
 ///
 /// # Errors
 ///
@@ -50,7 +52,7 @@ pub fn write_glb(
     file.write(path, &json)
 }
 
-/// The point of a triangle that lies at, or nearly at, a position on it.
+/// Returns the barycentric coordinates of a position on a triangle, clamped to the triangle.
 fn nearest_point([a, b, c]: [DVec3; 3], position: DVec3) -> Barycentric {
     let normal = (b - a).cross(c - a);
     let v = (position - a).cross(c - a).dot(normal) / normal.length_squared();
@@ -75,12 +77,12 @@ impl Contents {
         let scene = display.scene;
         let mut order: Vec<TriangleId> = scene.triangle_ids().collect();
         order.sort_by_key(|&t| scene.triangle(t).material);
-        // For whom vertices were last written, and their numbers: for all triangles of a material, or for one with a texture,
-        // since its neighbor may have another color where they meet.
+        // Last owner of each vertex, and the number under which it was written. The owner is a material, or a single
+        // triangle if it is textured, because its neighbor may have another color at a shared vertex.
         let mut numbers = vec![None; display.vertices().len()];
         for of_material in order.chunk_by(|&s, &t| scene.triangle(s).material == scene.triangle(t).material) {
             let material = scene.material(of_material[0]);
-            let mark = self.materials.len() as u32;
+            let material_index = self.materials.len() as u32;
             let (mut positions, mut colors, mut radiosities) = (Vec::new(), Vec::new(), Vec::new());
             let mut indices: Vec<u32> = Vec::new();
             for piece in of_material.iter().flat_map(|&t| display.pieces_of(t)) {
@@ -90,7 +92,7 @@ impl Contents {
                     continue;
                 }
                 let is_varied = display.mesh.is_varied(t);
-                let owner = (mark, is_varied.then_some(t));
+                let owner = (material_index, is_varied.then_some(t));
                 let width = display.mesh.patch_area(t).sqrt();
                 for &v in piece.triangles.iter().flatten() {
                     let number = match numbers[v as usize] {
@@ -125,7 +127,7 @@ impl Contents {
                     "_RADIOSITY": self.add_vectors(&radiosities, false),
                 },
                 "indices": self.add_indices(&indices),
-                "material": mark,
+                "material": material_index,
             });
             self.primitives.push(primitive);
             let mut json = json!({
@@ -208,7 +210,7 @@ impl Contents {
     }
 
     fn json(&self, up: DVec3) -> Value {
-        // Node 0 holds the mesh and turns everything, the nodes after it are the cameras.
+        // Node 0 holds the mesh and rotates everything; the nodes after it are the cameras.
         let mut root = json!({ "name": "SIR", "mesh": 0 });
         let turn = DQuat::from_rotation_arc(up.normalize_or(DVec3::Y), DVec3::Y);
         if turn != DQuat::IDENTITY {

@@ -2,31 +2,31 @@
 //!
 //! # Design
 //!
-//! A solution is one irradiance for every side of every patch, and that is all this crate asks for: a scene, its
-//! patches, and a slice of numbers, whoever computed them. It knows no solver, no threads of others and no
-//! command line.
+//! The input is a scene, its patches, and one irradiance per side of every patch, as a slice of numbers from any
+//! source. The crate depends on no solver, no external thread pool and no command line.
 //!
-//! Three kinds of output come from it:
+//! There are three kinds of output:
 //!
-//! * **To look at.** [`DisplayMesh`] turns constant patches into a smooth mesh, once, and pictures ([`render`],
-//!   [`write_png`], [`write_exr`]) and the model for viewers ([`write_glb`]) both show that mesh. What makes such a
-//!   mesh look wrong is well known (Cohen and Wallace 1993, chapter 8), and each cause has its remedy here. Cracks:
-//!   all vertices on a common edge are shared. Colors that run: irradiance is interpolated, and reflectance is
-//!   applied afterwards. Light that creeps around corners or through walls: which surfaces continue each other
-//!   is decided around each edge, and not by looking at normals alone. Bands: dithering.
-//! * **To measure.** EXR files and the attribute `_RADIOSITY` of GLB files are linear and not clamped, and a
-//!   [`Table`] holds the solution itself, patch by patch and not interpolated, with its standard error.
-//! * **To compare.** [`compare`] says how far two tables are apart, in units of the mean and of their own errors.
+//! * **For viewing.** [`DisplayMesh`] turns patches of constant irradiance into a smooth mesh, once. Pictures
+//!   ([`render`], [`write_png`], [`write_exr`]) and the model for viewers ([`write_glb`]) both show this mesh. The
+//!   artifacts of such meshes are well known (Cohen and Wallace 1993, chapter 8), and each has its remedy here.
+//!   Cracks: triangles share all vertices on a common edge. Blurred material borders: irradiance is interpolated,
+//!   and reflectance is applied afterwards. Light leaks around corners or through walls: the continuity of surfaces
+//!   is determined around each edge, and not from normals alone. Banding: dithering.
+//! * **For measurement.** EXR files and the attribute `_RADIOSITY` of GLB files are linear and not clamped. A
+//!   [`Table`] holds the solution itself, per patch and not interpolated, with its standard error.
+//! * **For comparison.** [`compare`] states the difference of two tables, relative to the mean and to their standard
+//!   errors.
 //!
-//! Pictures are drawn by tracing the *scene's* triangles and interpolating in the patch that is hit, so they need
-//! no second acceleration structure, and a million patches cost no more than one.
+//! Pictures are drawn by tracing rays against the *scene's* triangles and interpolating in the patch that is hit. They
+//! need no second acceleration structure, and a million patches cost no more than one.
 //!
-//! Every file appears whole or not at all ([`write_atomically`]).
+//! All files are written atomically ([`write_atomically`]).
 //!
 //! # Limits
 //!
-//! A patch that is half under a cupboard has one irradiance, the mean of light and dark, so the shadow of a contact
-//! is as wide as a patch. Meshing along the borders of shadows would be the remedy; smaller patches are.
+//! A patch that lies half under a cupboard has one irradiance, the mean of light and dark, so a contact shadow is as
+//! wide as a patch. The crate does not mesh along shadow borders (discontinuity meshing); use smaller patches.
 //!
 //! # Example
 //!
@@ -43,7 +43,7 @@
 //! let scene = builder.build()?.scene;
 //! let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01))?;
 //!
-//! // In place of a solver: the same light everywhere.
+//! // Uniform irradiance, instead of the result of a solver.
 //! let irradiance = vec![Rgb::splat(2.0); mesh.side_count()];
 //!
 //! let display = DisplayMesh::new(&scene, &mesh, &irradiance);

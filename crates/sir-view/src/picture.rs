@@ -11,29 +11,30 @@ pub struct Picture {
     pub height: u32,
     /// Radiance `L` \[W/(m² sr)\] in linear Rec. 709 bands, row by row from the top left.
     pub radiance: Vec<[f32; 3]>,
-    /// The same for a screen: a mean of the rays of a pixel in which those much brighter than what is typical for
-    /// the scene count less. It differs from `radiance` only where lamps are partly seen: a pixel a tenth of which
-    /// is lamp would be as white as the lamp, and the edge a staircase.
+    /// The same for the screen: a mean over the rays of a pixel in which rays much brighter than is typical of the
+    /// scene have less weight. It differs from `radiance` only in pixels that partly show a lamp. Without the weights,
+    /// a pixel a tenth of which is lamp would be as white as the lamp, and the edge would be jagged.
     pub shown: Vec<[f32; 3]>,
-    /// Share of the rays of each pixel that met a surface: what the others saw is sky.
+    /// Share of the rays of each pixel that met a surface; the others saw the sky.
     pub surface: Vec<f32>,
 }
 
-/// Size and effort of a picture.
+/// Size and sampling of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PictureSettings {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Rays per pixel in each direction: a pixel is the mean of `grid²` rays, one in each cell of a square grid.
+    /// Rays per pixel in each direction: a pixel is the mean of a stratified sample of `grid²` rays, one in each cell
+    /// of a square grid.
     pub grid: u32,
-    /// Threads to use; the picture is the same for any number.
+    /// Number of threads; the picture does not depend on it.
     pub threads: usize,
 }
 
 impl PictureSettings {
-    /// The largest width and height that every file format can hold.
+    /// Largest width and height that every file format can hold.
     const MAX: u32 = 65_535;
 
     pub(crate) fn check(&self) -> Result<(), ViewError> {

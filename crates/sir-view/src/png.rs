@@ -1,4 +1,4 @@
-//! Pictures for the screen.
+//! PNG pictures, for the screen.
 
 use std::io;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::exposure::Exposure;
 use crate::picture::Picture;
 use crate::tone::{rgb, srgb, tone_map};
 
-/// Writes a picture as PNG: 8-bit sRGB after exposure and tone curve.
+/// Writes a picture as PNG: 8-bit sRGB after exposure and tone mapping.
 ///
 /// # Errors
 ///
@@ -37,8 +37,8 @@ fn encode(picture: &Picture, factor: f64) -> Vec<u8> {
     bytes
 }
 
-/// A threshold in `[0, 1)` that varies from pixel to pixel, so that the mean of a slow gradient is right though
-/// its levels are whole numbers, and walls show no bands: interleaved gradient noise (Jimenez 2014).
+/// Returns the dither threshold in `[0, 1)` of a pixel: interleaved gradient noise (Jimenez 2014). It preserves the
+/// mean of a slow gradient despite integer levels, so that walls show no banding.
 fn threshold(x: u32, y: u32) -> f64 {
     let ramp = 0.067_110_56 * f64::from(x) + 0.005_837_15 * f64::from(y);
     (52.982_918_9 * ramp.fract()).fract()
@@ -62,7 +62,7 @@ mod tests {
         let mean = |band: usize| read.pixels().take(2048).map(|p| f64::from(p.0[band])).sum::<f64>() / 2048.0;
         assert_eq!(mean(1), 0.0);
         for (band, linear) in [(0, 0.1), (2, 0.1004)] {
-            // Dithering keeps the mean to a small part of a level.
+            // Dithering preserves the mean to a small fraction of a level.
             assert!((mean(band) - 255.0 * srgb(linear)).abs() < 0.02, "{}", mean(band));
         }
     }

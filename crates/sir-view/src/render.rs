@@ -1,4 +1,4 @@
-//! Pictures drawn by rays from the camera.
+//! Rendering of pictures by rays from the camera.
 
 use std::thread;
 
@@ -12,18 +12,19 @@ use crate::error::ViewError;
 use crate::exposure::Exposure;
 use crate::picture::{Picture, PictureSettings};
 
-/// Draws what a camera sees.
+/// Renders what a camera sees.
 ///
-/// Backs of one-sided surfaces are transparent to the camera, though they are opaque to light: one looks into a
-/// closed room from outside as if the walls in front were cut away. Where a ray meets nothing it sees the sky of the scene, or black.
-/// Surfaces with gaps are seen through without noise: each shows its share of what those before it let through. Textures are
-/// shown as fine as pixels are. A picture of errors adds up those of all that is seen.
+/// Backs of one-sided surfaces are transparent to the camera, although they are opaque to light: a closed room seen
+/// from outside looks as if the walls in front were cut away. A ray that meets nothing sees the sky of the scene, or
+/// black. Surfaces with gaps are composited front to back, without noise: each contributes its opacity times what the
+/// surfaces before it let through. Textures are filtered to the size of a pixel. A picture of errors adds up the errors
+/// of everything that is seen.
 ///
-/// The camera's vertical field of view is kept whatever the shape of the picture.
+/// The camera's vertical field of view is kept for any aspect ratio of the picture.
 ///
 /// # Errors
 ///
-/// If the picture is empty or larger than 65,535 pixels in one direction.
+/// If the picture is empty, or larger than 65,535 pixels in one direction.
 pub fn render(
     display: &DisplayMesh<'_>,
     accel: &Accel,
@@ -39,17 +40,17 @@ pub fn render(
         knee: 1.0 / Exposure::Auto.factor_for_mesh(display),
     };
     let mut pixels = vec![Pixel::default(); width as usize * height as usize];
-    // Rows are dealt out in turn, since some parts of a picture take longer than others.
+    // Rows are assigned to threads in turn, because some parts of a picture take longer than others.
     let count = threads.clamp(1, height as usize);
-    let mut hands: Vec<Vec<_>> = (0..count).map(|_| Vec::new()).collect();
+    let mut rows_of_threads: Vec<Vec<_>> = (0..count).map(|_| Vec::new()).collect();
     for (y, row) in (0..).zip(pixels.chunks_exact_mut(width as usize)) {
-        hands[y as usize % count].push((y, row));
+        rows_of_threads[y as usize % count].push((y, row));
     }
     thread::scope(|scope| {
-        for hand in hands {
+        for rows in rows_of_threads {
             scope.spawn(|| {
                 let mut tracer = accel.tracer();
-                for (y, row) in hand {
+                for (y, row) in rows {
                     for (x, pixel) in (0..).zip(row) {
                         *pixel = shader.pixel(&mut tracer, x, y);
                     }
@@ -74,7 +75,7 @@ struct Shader<'a> {
     display: &'a DisplayMesh<'a>,
     rays: CameraRays,
     settings: PictureSettings,
-    /// Radiance above which a ray counts less for the screen.
+    /// Luminance above which a ray has less weight in `Pixel::shown` \[W/(m² sr)\].
     knee: f64,
 }
 
@@ -84,7 +85,7 @@ impl Shader<'_> {
         let index = u64::from(y) * u64::from(width) + u64::from(x);
         let mut stream = Streams::new(0, Purpose::PICTURE).line(index);
         let grid = grid.max(1);
-        let (mut sum, mut weighted, mut weights, mut met) = (Rgb::ZERO, Rgb::ZERO, 0.0, 0.0);
+        let (mut sum, mut weighted, mut weights, mut covered) = (Rgb::ZERO, Rgb::ZERO, 0.0, 0.0);
         let rays: Vec<Line> = (0..grid * grid)
             .map(|cell| {
                 let within = |k: u32, random: f64| (f64::from(k) + random) / f64::from(grid);
@@ -93,11 +94,11 @@ impl Shader<'_> {
                 self.rays.ray(right, down)
             })
             .collect();
-        self.see(tracer, &rays, |ray, Seen { radiance, stopped }| {
-            met += stopped;
+        self.trace(tracer, &rays, |ray, RaySample { radiance, coverage }| {
+            covered += coverage;
             let sky = self.display.scene.sky().filter(|_| self.display.emits);
             let sky = || sky.map_or(Rgb::ZERO, |sky| sky.radiance(ray.direction));
-            let radiance = if stopped < 1.0 { radiance + (1.0 - stopped) * sky() } else { radiance };
+            let radiance = if coverage < 1.0 { radiance + (1.0 - coverage) * sky() } else { radiance };
             sum += radiance;
             let weight = 1.0 / (1.0 + luminance(radiance) / self.knee);
             weighted += weight * radiance;
@@ -106,31 +107,31 @@ impl Shader<'_> {
         Pixel {
             radiance: (sum / f64::from(grid * grid)).as_vec3().to_array(),
             shown: (weighted / weights).as_vec3().to_array(),
-            surface: (met / f64::from(grid * grid)) as f32,
+            surface: (covered / f64::from(grid * grid)) as f32,
         }
     }
 }
 
-/// What a ray sees of surfaces.
+/// Surfaces seen along a ray.
 #[derive(Clone, Copy)]
-struct Seen {
+struct RaySample {
     /// Radiance \[W/(m² sr)\].
     radiance: Rgb,
-    /// The share of the ray that ends at one of them.
-    stopped: f64,
+    /// Share of the ray that ends at one of the surfaces.
+    coverage: f64,
 }
 
-/// As many surfaces with gaps are seen through one another.
-const LAYERS: usize = 64;
+/// Largest number of surfaces with gaps that are composited along a ray.
+const MAX_LAYERS: usize = 64;
 
 impl Shader<'_> {
-    /// Looks along rays, in order.
-    fn see(&self, tracer: &mut Tracer<'_>, rays: &[Line], mut visit: impl FnMut(&Line, Seen)) {
+    /// Traces rays, in order, and calls `visit` with each of them and the surfaces that it sees.
+    fn trace(&self, tracer: &mut Tracer<'_>, rays: &[Line], mut visit: impl FnMut(&Line, RaySample)) {
         if tracer.accel().has_transparency() {
             let mut next = 0;
             tracer.all_crossings_each(rays, |crossings| {
                 for (range, ray) in crossings.lines().zip(&rays[next..]) {
-                    visit(ray, self.through(ray, &crossings.hits()[range]));
+                    visit(ray, self.composite(ray, &crossings.hits()[range]));
                     next += 1;
                 }
             });
@@ -144,41 +145,45 @@ impl Shader<'_> {
             let radiance = hit.map(|hit| self.radiance(ray, &hit));
             visit(
                 ray,
-                Seen { radiance: radiance.unwrap_or(Rgb::ZERO), stopped: f64::from(u8::from(hit.is_some())) },
+                RaySample {
+                    radiance: radiance.unwrap_or(Rgb::ZERO),
+                    coverage: f64::from(u8::from(hit.is_some())),
+                },
             );
         }
     }
 
-    /// Looks through the gaps of surfaces: each shows its share of what the ones before it let through.
-    fn through(&self, ray: &Line, crossings: &[Hit]) -> Seen {
+    /// Composites surfaces with gaps front to back: each contributes its opacity times what those before it let
+    /// through.
+    fn composite(&self, ray: &Line, crossings: &[Hit]) -> RaySample {
         let scene = self.display.scene;
         let visible = |hit: &&Hit| hit.t >= 0.0 && scene.is_active(hit.triangle, hit.side);
         let opacity = |hit: &Hit| scene.opacity_at(hit.triangle, hit.point);
         let layers = crossings.iter().filter(visible).map(|hit| (hit, opacity(hit)));
-        let (mut radiance, mut left) = (Rgb::ZERO, 1.0);
-        for (hit, opacity) in layers.filter(|layer| layer.1 > 0.0).take(LAYERS) {
-            radiance += left * opacity * self.radiance(ray, hit);
-            left *= 1.0 - opacity;
-            if left == 0.0 {
+        let (mut radiance, mut transmittance) = (Rgb::ZERO, 1.0);
+        for (hit, opacity) in layers.filter(|layer| layer.1 > 0.0).take(MAX_LAYERS) {
+            radiance += transmittance * opacity * self.radiance(ray, hit);
+            transmittance *= 1.0 - opacity;
+            if transmittance == 0.0 {
                 break;
             }
         }
-        Seen { radiance, stopped: 1.0 - left }
+        RaySample { radiance, coverage: 1.0 - transmittance }
     }
 
-    /// Radiance `B/π` of a side that a ray meets.
+    /// Returns the radiance `B/π` of a side that a ray meets \[W/(m² sr)\].
     fn radiance(&self, ray: &Line, hit: &Hit) -> Rgb {
         let Self { display, rays, settings, .. } = self;
         let Hit { t, triangle, point, side } = *hit;
         let Some(e) = display.irradiance_at(triangle, point, side) else { return Rgb::ZERO };
         let slant = display.scene.normal(triangle).dot(ray.direction).abs().max(1e-3);
-        // The root of the area that the ray stands for.
+        // Square root of the surface area that the ray covers.
         let width = rays.spacing(t) / f64::from(settings.height * settings.grid.max(1)) / slant.sqrt();
         display.radiosity_at(triangle, point, side, e, width) / std::f64::consts::PI
     }
 }
 
-/// The first side along a ray that is not the back of a one-sided surface, given its first hit.
+/// Returns the first hit of a ray that is not on the back of a one-sided surface, given its first hit.
 fn first_visible(scene: &Scene, tracer: &mut Tracer<'_>, ray: &Line, first: Option<Hit>) -> Option<Hit> {
     let is_visible = |hit: &Hit| scene.is_active(hit.triangle, hit.side);
     let first = first?;

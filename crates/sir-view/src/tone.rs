@@ -1,19 +1,19 @@
-//! From radiance to what a screen can show.
+//! Tone mapping: from radiance to screen values.
 
 use sir_geom::Rgb;
 
-/// Where compression begins.
+/// Value at which compression begins.
 const SHOULDER: f64 = 0.5;
 
-/// How fast compressed colors fade to white.
-const FADING: f64 = 0.1;
+/// Rate at which compressed colors fade to white.
+const DESATURATION: f64 = 0.1;
 
-/// Maps linear colors, exposure applied, to linear colors in `[0, 1]`.
+/// Maps linear colors, after exposure, to linear colors in `[0, 1]`.
 ///
-/// The curve acts on the largest band `x` and scales the others with it, so colors keep their hue: it is `x` up
-/// to `s = ½`, and above that `1 − (1 − s)²/(x + 1 − 2s)`, which goes on smoothly and reaches 1 at infinity. Colors
-/// that are compressed much fade to white. The form is that of the Khronos PBR neutral tone mapper (2024), with an
-/// earlier shoulder, so that walls near lamps keep their shading, and without its offset for gloss.
+/// The curve acts on the largest band `x` and scales the other bands with it, so colors keep their hue. It is `x` up to
+/// `s = ½`, and above that `1 − (1 − s)²/(x + 1 − 2s)`, which continues smoothly and approaches 1 at infinity. Strongly
+/// compressed colors fade to white. The form is that of the Khronos PBR neutral tone mapper (2024), with an earlier
+/// shoulder, so that walls near lamps keep their shading, and without its offset for gloss.
 #[must_use]
 pub fn tone_map(color: Rgb) -> Rgb {
     let color = color.max(Rgb::ZERO);
@@ -25,11 +25,11 @@ pub fn tone_map(color: Rgb) -> Rgb {
         return Rgb::ONE;
     }
     let compressed = 1.0 - (1.0 - SHOULDER) * (1.0 - SHOULDER) / (peak + 1.0 - 2.0 * SHOULDER);
-    let kept = 1.0 / (1.0 + FADING * (peak - compressed));
+    let kept = 1.0 / (1.0 + DESATURATION * (peak - compressed));
     Rgb::splat(compressed).lerp(color * (compressed / peak), kept)
 }
 
-/// The sRGB code value in `[0, 1]` of a linear value (IEC 61966-2-1).
+/// Returns the sRGB code value in `[0, 1]` of a linear value (IEC 61966-2-1).
 #[must_use]
 pub fn srgb(linear: f64) -> f64 {
     let x = linear.clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! Where to look from when nobody says.
+//! Default camera and up direction, for scenes that specify none.
 
 use std::collections::BTreeMap;
 
@@ -12,35 +12,34 @@ use crate::display::DisplayMesh;
 /// Vertical field of view \[rad\]: about 65°, wide enough for rooms.
 const FIELD: f64 = 1.13;
 
-/// Width over height of the probing pictures.
+/// Width over height of the probe pictures.
 const ASPECT: f64 = 4.0 / 3.0;
 
-/// Rays of a probing picture across and down.
+/// Rays of a probe picture across and down.
 const RAYS: (u32, u32) = (20, 15);
 
-/// Places of the eye between two opposite walls, as shares of the distance.
+/// Eye positions between two opposite walls, as fractions of their distance.
 const ACROSS: [f64; 5] = [0.07, 0.28, 0.5, 0.72, 0.93];
 
-/// Heights of the eye as shares of that of the scene.
+/// Eye heights, as fractions of the height of the scene.
 const HEIGHTS: [f64; 2] = [0.4, 0.6];
 
-/// Directions of view around the vertical.
+/// Number of view directions around the vertical.
 const TURNS: u32 = 8;
 
-/// A view that shows much of the inside of a scene, for when neither the user nor the file gives one.
+/// Returns a view that shows much of the inside of a scene, for use when neither the user nor the file specifies one.
 ///
-/// Some hundred views are tried, from places inside the box around the scene and from all sides outside of it, each with some
-/// hundred rays. The best one sees lit surfaces far and near, much of all there is,
-/// of many materials and triangles, with little of the
-/// picture empty, dark, taken by backs of surfaces or by something right before the eye. `up` is the direction
-/// that is up in the scene; see [`guess_up`].
+/// A few hundred views are tried, from places inside the bounding box of the scene and from all sides outside of it,
+/// each with a few hundred rays. The best view sees lit surfaces near and far, a large part of the total surface area,
+/// and many materials and triangles. Little of its picture is empty, dark, or covered by backs of surfaces or by
+/// something right before the eye. `up` is the up direction of the scene; see [`guess_up`].
 #[must_use]
 pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3) -> Camera {
-    let judge = Judge::new(display);
+    let scorer = ViewScorer::new(display);
     let mut tracer = accel.tracer();
     let mut best: Option<(f64, Camera)> = None;
     for camera in candidates(display.scene, up) {
-        let score = judge.score(&mut tracer, &camera);
+        let score = scorer.score(&mut tracer, &camera);
         if best.as_ref().is_none_or(|(most, _)| score > *most) {
             best = Some((score, camera));
         }
@@ -58,9 +57,10 @@ pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3) -> Ca
     camera
 }
 
-/// The direction that is probably up in a scene: +y, unless most of the surfaces that face along an axis face along
-/// z, and the scene is not higher along z than along y: floors, ceilings and tables outweigh walls, and few
-/// rooms are higher than long.
+/// Returns the probable up direction of a scene.
+///
+/// This is +z if more surface area faces along z than along y, and the scene is smaller along z than along y; otherwise
+/// it is +y. The reasons are that floors, ceilings and tables outweigh walls, and that few rooms are higher than long.
 #[must_use]
 pub fn guess_up(scene: &Scene) -> DVec3 {
     let (mut along_y, mut along_z) = (0.0, 0.0);
@@ -75,7 +75,7 @@ pub fn guess_up(scene: &Scene) -> DVec3 {
 
 fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
     let up = up.normalize_or(DVec3::Y);
-    // Horizontal axes: those of the scene, if up is one of them.
+    // Horizontal axes: axes of the scene, if `up` is one of them.
     let east = if up.x.abs() < 0.9 { DVec3::X.reject_from(up) } else { DVec3::Z.reject_from(up) }.normalize();
     let north = up.cross(east);
     let (center, size) = (scene.bounding_box().center(), scene.bounding_box().size());
@@ -103,7 +103,7 @@ fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
             }
         }
     }
-    // Through an open side, from where it fills the height of the picture.
+    // Views through an open side, from the distance at which it fills the height of the picture.
     for (axis, size) in
         [(east, extent(east)), (-east, extent(east)), (north, extent(north)), (-north, extent(north))]
     {
@@ -119,17 +119,17 @@ fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
 }
 
 /// Scores views of a scene.
-struct Judge<'a> {
+struct ViewScorer<'a> {
     display: &'a DisplayMesh<'a>,
-    /// Luminance of a radiosity that counts as well lit.
+    /// Luminance of the radiosity of a well-lit surface \[W/m²\].
     bright: f64,
-    /// Size of the scene.
+    /// Diagonal of the bounding box of the scene \[m\].
     diagonal: f64,
-    /// Area of all surfaces.
+    /// Area of all surfaces \[m²\].
     area: f64,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> ViewScorer<'a> {
     fn new(display: &'a DisplayMesh<'a>) -> Self {
         let scene = display.scene;
         let (mut sum, mut area) = (0.0, 0.0);
@@ -141,7 +141,7 @@ impl<'a> Judge<'a> {
                 area += part;
             }
         }
-        // The mean of square roots is less drawn to a few bright spots than that of the values.
+        // The mean of square roots is less sensitive to a few bright spots than the mean of the values.
         let mean = if area > 0.0 { sum / area } else { 0.0 };
         Self {
             display,
@@ -192,7 +192,7 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Entropy of shares of `total`: the logarithm of how many things one sees.
+/// Returns the entropy of the shares of `total`: the logarithm of the effective number of things seen.
 fn entropy(counts: &BTreeMap<u32, f64>, total: f64) -> f64 {
     counts.values().map(|&c| -(c / total) * (c / total).ln()).sum()
 }

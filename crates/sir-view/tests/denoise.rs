@@ -1,4 +1,4 @@
-//! What pictures without noise promise: less noise, the same shadows, and nothing beyond the stated error.
+//! Properties of denoised pictures: less noise, unchanged shadows, and no change beyond the stated error.
 
 #![allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
 
@@ -26,7 +26,8 @@ fn sheet() -> (Scene, PatchMesh) {
     (scene, mesh)
 }
 
-/// Where the middle of each patch is, what irradiance there really is, what was computed, and its standard error.
+/// Returns, for each patch, the x coordinate of its middle, the true irradiance, the computed one, and its standard
+/// error.
 fn noisy(scene: &Scene, mesh: &PatchMesh, real: impl Fn(DVec3) -> f64) -> [Vec<f64>; 4] {
     let streams = Streams::new(7, Purpose::PICTURE);
     let mut all = [const { Vec::new() }; 4];
@@ -34,7 +35,7 @@ fn noisy(scene: &Scene, mesh: &PatchMesh, real: impl Fn(DVec3) -> f64) -> [Vec<f
         let c = mesh.patch_corners(t, patch).map(|b| b.point(scene.corners(t)));
         let middle = (c[0] + c[1] + c[2]) / 3.0;
         let mut stream = streams.line(id.index() as u64);
-        // Twelve uniform numbers have a sum of variance one.
+        // The sum of twelve uniform numbers has the variance one.
         let normal = (0..12).map(|_| stream.unit()).sum::<f64>() - 6.0;
         let real = real(middle);
         for (list, value) in all.iter_mut().zip([middle.x, real, real * (1.0 + NOISE * normal), real * NOISE])
@@ -49,7 +50,7 @@ fn gray(values: &[f64]) -> Vec<Rgb> {
     values.iter().map(|&x| Rgb::splat(x)).collect()
 }
 
-/// Relative root mean square deviation where `x` is not within 5 cm of the middle of the sheet.
+/// Returns the relative root mean square deviation where `x` is not within 5 cm of the middle of the sheet.
 fn deviation(x: &[f64], real: &[f64], shown: &[Rgb]) -> f64 {
     let off: Vec<f64> = x
         .iter()
@@ -94,7 +95,7 @@ fn nothing_moves_beyond_three_standard_errors_on_any_number_of_threads() {
     let display = DisplayMesh::new(&scene, &mesh, &computed);
     let shown = display.denoise(&errors, 1);
     assert_eq!(shown, display.denoise(&errors, 3));
-    // The error of a patch is its own or that of light in grains of the mean power around it, whichever is larger.
+    // The error of a patch is its own, or that of shot noise with the mean grain around it, whichever is larger.
     for ((shown, computed), error) in shown.iter().zip(&computed).zip(&errors) {
         assert!((shown.x - computed.x).abs() <= 5.0 * error.x, "{} {} {}", shown.x, computed.x, error.x);
     }
@@ -113,7 +114,7 @@ fn what_is_known_exactly_is_shown_as_it_is() {
 fn a_patch_that_no_line_has_met_takes_the_light_around_it() {
     let (scene, mesh) = sheet();
     let [_, _, computed, errors] = noisy(&scene, &mesh, |_| 2.0);
-    // Two grains in the mean: many patches have none.
+    // Two grains per patch on average: many patches have none.
     let grains = |x: f64| (2.0 + 2.0 * (x / 2.0 - 1.0) / NOISE).round().max(0.0);
     let counts: Vec<f64> = computed.iter().map(|&x| grains(x)).collect();
     let values = gray(&counts);
@@ -125,7 +126,7 @@ fn a_patch_that_no_line_has_met_takes_the_light_around_it() {
 
 #[test]
 fn what_is_too_small_to_know_shows_the_light_beyond_its_edges() {
-    // A lit floor with a tiny box on it, whose faces no line has met, and a wall that is large enough to be dark.
+    // A lit floor, a wall that is large enough to be dark, and a tiny face that no line has met.
     let mut builder = SceneBuilder::new();
     let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)).with_sides(Sides::Front));
     let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
@@ -150,7 +151,7 @@ fn what_is_too_small_to_know_shows_the_light_beyond_its_edges() {
     let (mut computed, mut errors) = (Vec::new(), Vec::new());
     mesh.for_each_side(|t, _, _, _| {
         let lit = t.0 < 2;
-        // A hundred grains a patch.
+        // A hundred grains per patch.
         computed.push(if lit { Rgb::ONE } else { Rgb::ZERO });
         errors.push(if lit { Rgb::splat(0.1) } else { Rgb::ZERO });
     });
@@ -165,7 +166,7 @@ fn what_is_too_small_to_know_shows_the_light_beyond_its_edges() {
     });
 }
 
-/// Of a grain of colored light, a band may be nothing; it may be less than nothing where more was sent than there was.
+/// A band may be zero with colored light, and negative where more power was sent than there was.
 #[test]
 fn bands_without_light_do_no_harm() {
     let (scene, mesh) = sheet();

@@ -1,4 +1,4 @@
-//! What the display mesh promises: no T-junctions, no lost area, no bleeding, smooth where it should be.
+//! Properties of the display mesh: no T-junctions, no lost area, no light leaks, smooth where it should be.
 
 #![allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
 
@@ -22,7 +22,7 @@ fn scene_with(sides: Sides, build: impl FnOnce(&mut SceneBuilder, MaterialId)) -
     builder.build().unwrap().scene
 }
 
-/// One irradiance for each side, from its triangle and the middle of its patch.
+/// Returns one irradiance per side, from its triangle and the middle of its patch.
 fn field(scene: &Scene, mesh: &PatchMesh, value: impl Fn(TriangleId, Side, DVec3) -> f64) -> Vec<Rgb> {
     let mut irradiance = Vec::new();
     mesh.for_each_side(|t, patch, side, _| {
@@ -32,7 +32,7 @@ fn field(scene: &Scene, mesh: &PatchMesh, value: impl Fn(TriangleId, Side, DVec3
     irradiance
 }
 
-/// Rectangle from its lower left corner and two edges.
+/// Adds a rectangle, given its lower left corner and two edges.
 fn rectangle(b: &mut SceneBuilder, m: MaterialId, corner: DVec3, right: DVec3, up: DVec3) {
     shapes::quad(b, [corner, corner + right, corner + right + up, corner + up], m);
 }
@@ -53,13 +53,13 @@ fn area(display: &DisplayMesh<'_>) -> f64 {
     display.triangles().iter().map(area_of).sum()
 }
 
-/// Whether a point lies between two others, or is one of them.
+/// Returns true if a point lies between two others, or is one of them.
 fn is_between(p: DVec3, [a, b]: [DVec3; 2]) -> bool {
     p.distance(a) + p.distance(b) - a.distance(b) < 1e-9
 }
 
-/// Along the edges of the scene's triangles, no corner of a triangle lies inside an edge of another one. (Where
-/// the inside of a triangle touches something, it is covered, and nothing can crack.)
+/// Asserts that along the edges of the scene's triangles, no corner of a triangle lies inside an edge of another one.
+/// (Where the inside of a triangle touches something, it is covered, and there can be no crack.)
 fn assert_conforming(display: &DisplayMesh<'_>, scene: &Scene) {
     let edges_of = |t: TriangleId| {
         let c = scene.corners(t);
@@ -90,7 +90,7 @@ fn assert_conforming(display: &DisplayMesh<'_>, scene: &Scene) {
 
 #[test]
 fn different_divisions_meet_without_t_junctions() {
-    // Edges of 3 and of 1 along one line, and a strip whose parts do not fit either.
+    // Edges of lengths 3 and 1 along one line, and a strip whose parts fit neither.
     let scene = scene(|b, m| {
         rectangle(b, m, DVec3::ZERO, 3.0 * DVec3::X, 2.0 * DVec3::Y);
         for x in [0.0, 1.0, 2.0] {
@@ -144,7 +144,7 @@ fn a_linear_field_is_reproduced_inside() {
     }
 }
 
-/// Two squares of irradiance 0 and 1 that meet in one edge at the given angle (180° is flat).
+/// Returns the values of two squares of irradiance 0 and 1 that meet in one edge at the given angle (180° is flat).
 fn shared_values(degrees: f64) -> Vec<f32> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let scene = scene(|b, m| {
@@ -170,7 +170,7 @@ fn light_goes_around_a_bend_but_not_around_a_crease() {
 
 #[test]
 fn a_cut_beyond_a_crease_does_not_bend_the_light() {
-    // The floor is two triangles; three walls side by side cut its edge in three.
+    // The floor has two triangles; three walls side by side divide its edge into three parts.
     let scene = scene(|b, m| {
         rectangle(b, m, DVec3::ZERO, 3.0 * DVec3::X, 2.0 * DVec3::Y);
         for x in [0.0, 1.0, 2.0] {
@@ -247,7 +247,7 @@ fn a_sphere_is_smooth() {
 
 #[test]
 fn what_covers_a_surface_is_not_darkened_by_it() {
-    // Twice the same two squares; light falls on the later ones, which lie on top.
+    // The same two squares twice; light falls on the later ones, which lie on top.
     let scene = scene(|b, m| {
         for _ in 0..2 {
             rectangle(b, m, DVec3::ZERO, DVec3::X, DVec3::Y);
@@ -285,7 +285,7 @@ fn faces_as_patches_are_covered_by_their_triangles() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Boxes whose corners are small whole numbers touch and overlap in every way.
+    /// Boxes whose corners are small integers touch and overlap in every way.
     #[test]
     fn any_heap_of_boxes_is_conforming(
         boxes in prop::collection::vec((prop::array::uniform3(0u8..4), prop::array::uniform3(1u8..4)), 1..4),

@@ -1,4 +1,4 @@
-//! Files, read back by other means than they were written with.
+//! Files, read back by other code than they were written with.
 
 #![allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
 

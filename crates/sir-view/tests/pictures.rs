@@ -1,4 +1,4 @@
-//! Pictures of scenes whose look is known.
+//! Pictures of scenes with known appearance.
 
 #![allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
 
@@ -11,7 +11,7 @@ use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, default_camera, 
 
 const SIZE: DVec3 = DVec3::new(4.0, 2.5, 3.0);
 
-/// A room with a box in it, all of one material.
+/// Returns a room with a box in it, all of one material.
 fn room(sides: Sides) -> Scene {
     let mut builder = SceneBuilder::new();
     let m = builder.add_material(Material::diffuse("m", Rgb::new(0.5, 0.4, 0.3)).with_sides(sides));
@@ -24,7 +24,7 @@ fn settings(threads: usize) -> PictureSettings {
     PictureSettings { width: 160, height: 120, grid: 2, threads }
 }
 
-/// Whatever a ray counts for, a mean of rays lies between them in every band.
+/// Asserts that all pixels lie between two colors in every band, as any weighted mean of rays does.
 fn assert_between(picture: &Picture, ends: [[f32; 3]; 2]) {
     for pixel in &picture.shown {
         for band in 0..3 {
@@ -34,7 +34,7 @@ fn assert_between(picture: &Picture, ends: [[f32; 3]; 2]) {
     }
 }
 
-/// A picture of the room in which the irradiance is π everywhere.
+/// Renders the room with an irradiance of π everywhere.
 fn uniform(scene: &Scene, camera: &Camera, threads: usize) -> Picture {
     let mesh = PatchMesh::new(scene, Subdivision::MaxArea(0.07)).unwrap();
     let irradiance = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
@@ -75,7 +75,7 @@ fn a_picture_of_errors_is_black_where_it_shows_the_sky() {
     assert!(error.radiance.iter().all(|pixel| *pixel == [0.0; 3]));
 }
 
-/// Surfaces that no light reaches, such as the outer sides of a room, are not what a mesh is exposed for, however large they are.
+/// Surfaces that no light reaches, such as the outer sides of a room, do not affect exposure, however large they are.
 #[test]
 fn what_is_dark_does_not_change_the_automatic_exposure_of_a_mesh() {
     let factor = |dark: f64| {
@@ -111,7 +111,7 @@ fn even_light_gives_an_even_picture_without_cracks() {
 #[test]
 fn one_looks_through_the_backs_of_walls() {
     let scene = room(Sides::Front);
-    // Narrow enough for the room to fill the picture.
+    // The field of view is narrow enough for the room to fill the picture.
     let outside = Camera::looking_at(DVec3::new(-9.0, 4.0, -8.0), 0.5 * SIZE, DVec3::Y, 0.1).unwrap();
     assert_even(&uniform(&scene, &outside, 1));
     let parallel = Camera { projection: Projection::Orthographic { height: 1.5 }, ..outside };
@@ -132,13 +132,13 @@ fn where_there_is_no_surface_one_sees_the_sky() {
         Camera::looking_at(DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, 1.0, -1.0), DVec3::Y, 1.0).unwrap();
     let picture = uniform(&scene, &camera, 2);
     let at = |x: usize, y: usize| (picture.radiance[160 * y + x], picture.surface[160 * y + x]);
-    // The middle of the uppermost row: half of the opening angle above the horizon, but for half a pixel.
+    // The middle of the top row: half of the field of view above the horizon, less half a pixel.
     let slope = (0.5f64).tan() * (1.0 - 0.5 / 60.0);
     let expected = sky.radiance(DVec3::new(0.0, slope, -1.0).normalize());
     let (found, surface) = at(80, 0);
     assert_eq!(surface, 0.0);
     assert!((Rgb::from_array(found.map(f64::from)) / expected - 1.0).abs().max_element() < 3e-3, "{found:?}");
-    // Between the edge of the floor and the horizon one sees the ground, and below the floor.
+    // The ground is seen between the edge of the floor and the horizon, and the floor below.
     assert_eq!(at(80, 61), ([0.25; 3], 0.0));
     let (floor, surface) = at(80, 119);
     assert!((floor[0] - 0.5).abs() < 1e-5 && surface == 1.0, "{floor:?}");
@@ -161,14 +161,14 @@ fn the_edge_of_a_lamp_is_soft_on_the_screen_and_exact_in_numbers() {
             let (radiance, shown) = at(x);
             assert!((radiance / expected - 1.0).abs() < 1e-5 && (shown / expected - 1.0).abs() < 1e-3);
         }
-        // The edge lies a quarter into this pixel: three columns of rays of four meet the lamp.
+        // The edge lies a quarter into this pixel: three of four columns of rays meet the lamp.
         let (radiance, shown) = at(4);
         assert!((radiance / (0.25 * 0.5 + 0.75 * lamp) - 1.0).abs() < 1e-5);
         assert!(shown > 1.0 && shown < 0.1 * lamp, "{shown}");
     }
 }
 
-/// A picture of [0, 9]² in nine by nine pixels, of upright strips from `left` to `right` under the irradiance π.
+/// Renders `[0, 9]²` with nine by nine pixels: upright strips from `left` to `right` under the irradiance π.
 fn picture_of_strips(mut builder: SceneBuilder, strips: &[(f64, f64, MaterialId)]) -> Picture {
     for &(left, right, material) in strips {
         let (corner, right) = (left * DVec3::X, right * DVec3::X);
@@ -195,7 +195,7 @@ fn edges_between_colors_are_neither_darker_nor_brighter_than_both() {
     let mut builder = SceneBuilder::new();
     let paints = [Rgb::new(0.6, 0.3, 0.1), Rgb::new(0.5, 0.6, 0.7), Rgb::splat(0.001)];
     let paints = paints.map(|p| builder.add_material(Material::diffuse("paint", p)));
-    // The third one, dark and outside of the picture, is most of the scene.
+    // The third one, dark and outside of the picture, covers most of the scene.
     let strips = [(0.0, 4.3, paints[0]), (4.3, 9.0, paints[1]), (9.0, 900.0, paints[2])];
     let picture = picture_of_strips(builder, &strips);
     assert_between(&picture, [[0.6, 0.3, 0.1], [0.5, 0.6, 0.7]]);
@@ -233,7 +233,7 @@ fn the_default_camera_stands_in_a_lit_closed_room() {
         let scene = room(sides);
         let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.5)).unwrap();
         let mut irradiance = Vec::new();
-        // Dark outside and inside of the box, as the solver would have it.
+        // Dark outside of the room and inside of the box, as computed by the solver.
         mesh.for_each_side(|_, _, side, _| {
             irradiance.push(if side == sir_geom::Side::Front { Rgb::ONE } else { Rgb::ZERO });
         });

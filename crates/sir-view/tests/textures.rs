@@ -1,4 +1,4 @@
-//! Pictures, meshes and tables of textured and see-through surfaces whose look is known.
+//! Pictures, meshes and tables of textured and partly transparent surfaces with known appearance.
 
 #![allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
 
@@ -28,7 +28,7 @@ fn map(texture: TextureId) -> TextureMap {
     TextureMap { texture, wrap: [Wrap::Repeat; 2], coordinates: 0 }
 }
 
-/// A texture with two columns and one row.
+/// Adds a texture with two columns and one row.
 fn two(b: &mut SceneBuilder, left: [u8; 4], right: [u8; 4]) -> TextureMap {
     map(b.add_texture(Texture::new(2, 1, vec![left, right]).unwrap()))
 }
@@ -36,7 +36,7 @@ fn two(b: &mut SceneBuilder, left: [u8; 4], right: [u8; 4]) -> TextureMap {
 const BLACK: [u8; 4] = [0, 0, 0, 255];
 const WHITE: [u8; 4] = [255; 4];
 
-/// What the camera sees that looks straight at the unit square, which fills the picture, under the irradiance π.
+/// Renders the unit square under the irradiance π, seen from the front so that it fills the picture.
 fn picture(scene: &Scene, subdivision: Subdivision, size: u32, grid: u32, of_errors: bool) -> Picture {
     let mesh = PatchMesh::new(scene, subdivision).unwrap();
     let irradiance = vec![Rgb::splat(PI); mesh.side_count()];
@@ -63,7 +63,7 @@ fn assert_near(found: impl IntoIterator<Item = f32>, expected: [f64; 3], toleran
     }
 }
 
-/// Two patches show the stripes of its texture, emitted and reflected.
+/// Two patches show the stripes of their textures, emitted and reflected.
 #[test]
 fn a_texture_is_seen_within_a_patch() {
     let mut b = SceneBuilder::new();
@@ -82,7 +82,7 @@ fn a_texture_is_seen_within_a_patch() {
     for (of_errors, lamp) in [(false, 6.0), (true, 0.0)] {
         let picture = picture(&scene, Subdivision::PerFace, 16, 1, of_errors);
         for row in picture.radiance.chunks(16) {
-            // Between the middles of texels colors are interpolated, and beyond them with the image's repetition: in the
+            // Colors are interpolated between the middles of texels, and beyond them with the repeated image. In the
             // middles of the stripes, columns 3 and 4, 11 and 12, they are nearly pure.
             assert_near(row[4], [lamp; 3], 0.13 * (lamp + 1.0));
             assert_near(row[12], [0.5, 0.4, 0.2], 0.13 * (lamp + 1.0));
@@ -92,7 +92,7 @@ fn a_texture_is_seen_within_a_patch() {
     }
 }
 
-/// Stripes far finer than a pixel are an even gray, not speckles.
+/// Stripes far finer than a pixel give an even gray, without speckles.
 #[test]
 fn fine_textures_are_blurred() {
     let mut b = SceneBuilder::new();
@@ -103,7 +103,7 @@ fn fine_textures_are_blurred() {
     let scene = b.build().unwrap().scene;
     for (size, grid) in [(16, 1), (8, 2)] {
         for pixel in picture(&scene, Subdivision::PerFace, size, grid, false).radiance {
-            // The value 188 of sRGB is 0.5029.
+            // The sRGB value 188 is linear 0.5029.
             assert_near(pixel, [0.4; 3], 0.003);
         }
     }
@@ -172,7 +172,8 @@ fn tables_have_the_means_of_patches() {
     assert_eq!(table.rows.iter().filter(|row| row.center.x < 0.5).count(), 4);
 }
 
-/// Half of the square is open: what is left has its own color, in a table, and the mesh is without the patches that are all gap.
+/// Half of the square is open. In a table, the other half has its own color, and the mesh lacks patches that are all
+/// gap.
 #[test]
 fn gaps_have_no_color() {
     let mut b = SceneBuilder::new();
@@ -192,7 +193,7 @@ fn gaps_have_no_color() {
     assert!(vertices.len() >= 4 && vertices.iter().all(|(position, _)| position.x <= 0.5), "{vertices:?}");
 }
 
-/// Positions and radiosities of the vertices in a GLB file.
+/// Returns positions and radiosities of the vertices in a GLB file.
 fn exported(display: &DisplayMesh<'_>) -> Vec<(DVec3, Rgb)> {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("lit.glb");
@@ -212,7 +213,7 @@ fn exported(display: &DisplayMesh<'_>) -> Vec<(DVec3, Rgb)> {
     vertices
 }
 
-/// Colors at corners that rise along x, and which do not fit together where the two triangles meet.
+/// Vertex colors increase along x and differ between the two triangles where they meet.
 #[test]
 fn vertices_of_a_mesh_have_the_color_of_their_place() {
     let mut b = SceneBuilder::new();

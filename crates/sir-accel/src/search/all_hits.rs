@@ -1,4 +1,4 @@
-//! The search for all hits of lines.
+//! Search for all hits of lines.
 
 use sir_types::{Barycentric, Line, Side, TriangleId};
 
@@ -15,7 +15,7 @@ use crate::tree::Tree;
 
 /// A line, or a part of one.
 pub(crate) trait Part {
-    /// False for whole lines, which then take no time for their ends.
+    /// True for parts of lines. Whole lines need no code for their ends.
     const HAS_ENDS: bool;
     fn line(&self) -> &Line;
     fn range(&self) -> TRange;
@@ -53,20 +53,20 @@ impl Part for (Line, TRange) {
 #[derive(Clone, Debug)]
 pub(crate) struct AllHitsScratch {
     lines: Vec<(GridLine, LineF32)>,
-    /// For parts of lines, the part of each.
+    /// Searched span of each line; unused for whole lines.
     spans: Vec<Span>,
     nodes: Queue,
     leaves: Queue,
     candidates: Candidates,
-    /// Sorted by line: distances \[steps of the grid\].
+    /// Distances of the crossings \[steps of the grid\], sorted by line.
     distances: Vec<f64>,
-    /// Place in `distances` of each crossing.
+    /// Index in `distances` of each crossing.
     places: Vec<u32>,
-    /// Where the hits of each line begin, and where the last ones end.
+    /// Start of the hits of each line in `hits`, and the end of the last ones.
     pub(crate) starts: [u32; MAX_LINES + 3],
-    /// Line by line, in order of distance; longer than needed.
+    /// Hits line by line, in order of distance; longer than needed.
     pub(crate) hits: Vec<Hit>,
-    /// True for lines with hits so close together that their distance may not order them.
+    /// True for lines with hits so close together that the contact order may apply.
     pub(crate) close: [bool; MAX_LINES],
 }
 
@@ -88,12 +88,12 @@ impl Default for AllHitsScratch {
 }
 
 impl AllHitsScratch {
-    /// The hits found, line by line, in order of distance.
+    /// Returns the hits found, line by line, in order of distance.
     pub(crate) fn hits(&self) -> &[Hit] {
         &self.hits[..self.starts[MAX_LINES] as usize]
     }
 
-    /// Drops hits: those of each line, by its number, for which `keeps` is false.
+    /// Keeps only the hits for which `keeps`, called with the number of the line and the hit, is true.
     pub(crate) fn retain(&mut self, lines: usize, mut keeps: impl FnMut(usize, &Hit) -> bool) {
         let (mut from, mut kept) = (0, 0);
         for line in 0..lines {
@@ -110,8 +110,8 @@ impl AllHitsScratch {
     }
 }
 
-/// Finds all hits of (infinite) lines, at most [`MAX_LINES`] of them; of parts of lines, all hits in the part and some that lie close
-/// to it.
+/// Search for all hits of at most [`MAX_LINES`] (infinite) lines; for parts of lines, all hits in the part and some
+/// that lie close to it.
 pub(crate) struct AllHits<'a, P> {
     pub(crate) grid: &'a Grid,
     pub(crate) tree: &'a Tree,
@@ -119,8 +119,8 @@ pub(crate) struct AllHits<'a, P> {
     pub(crate) scratch: &'a mut AllHitsScratch,
 }
 
-/// How much longer than its range the searched part of a line is, on both sides \[steps of the grid\]: hits in contact with those in the
-/// range are found, too.
+/// Length by which the searched part of a line exceeds its range on both sides \[steps of the grid\], so that hits in
+/// contact with those in the range are found, too.
 const SLACK: f64 = 2.0 * CONTACT;
 
 impl<P: Part> Kernel for AllHits<'_, P> {
@@ -132,11 +132,11 @@ impl<P: Part> Kernel for AllHits<'_, P> {
         let AllHitsScratch { lines: traced, spans, nodes, leaves, candidates, .. } = scratch;
         traced.clear();
         spans.clear();
-        let (mut waiting, mut reached) = (0, 0);
+        let (mut node_count, mut leaf_count) = (0, 0);
         let root = &tree.nodes[0];
         let leaf = backend.highest_bits(&root.children);
         for (part, number) in lines.iter().zip(0u8..) {
-            // Lines that pass far from the scene meet nothing.
+            // Lines that pass far from the scene hit nothing.
             let line = grid.line(part.line()).unwrap_or(GridLine::far());
             let boxes = LineF32::new(&line);
             traced.push((line, boxes));
@@ -148,12 +148,12 @@ impl<P: Part> Kernel for AllHits<'_, P> {
                 near = near.max(backend.splat_node(span.from));
                 far = far.min(backend.splat_node(span.to));
             }
-            let met = near.mask_le(far);
-            waiting = nodes.add(backend, waiting, &root.children, met & !leaf, number);
-            reached = leaves.add(backend, reached, &root.children, met & leaf, number);
+            let hit_boxes = near.mask_le(far);
+            node_count = nodes.add(backend, node_count, &root.children, hit_boxes & !leaf, number);
+            leaf_count = leaves.add(backend, leaf_count, &root.children, hit_boxes & leaf, number);
         }
         let mut next = 0;
-        while next < waiting {
+        while next < node_count {
             tree.prefetch(nodes.ahead(next));
             let (node, line) = (&tree.nodes[nodes.items[next] as usize], nodes.lines[next]);
             next += 1;
@@ -163,13 +163,13 @@ impl<P: Part> Kernel for AllHits<'_, P> {
                 near = near.max(backend.splat_node(from));
                 far = far.min(backend.splat_node(to));
             }
-            let met = near.mask_le(far);
+            let hit_boxes = near.mask_le(far);
             let leaf = backend.highest_bits(&node.children);
-            waiting = nodes.add(backend, waiting, &node.children, met & !leaf, line);
-            reached = leaves.add(backend, reached, &node.children, met & leaf, line);
+            node_count = nodes.add(backend, node_count, &node.children, hit_boxes & !leaf, line);
+            leaf_count = leaves.add(backend, leaf_count, &node.children, hit_boxes & leaf, line);
         }
         let mut count = 0;
-        for i in 0..reached {
+        for i in 0..leaf_count {
             tree.prefetch(leaves.ahead(i));
             let (number, line) = ((leaves.items[i] & !LEAF) as usize, leaves.lines[i]);
             let span = if P::HAS_ENDS { Some(spans[usize::from(line)]) } else { None };
@@ -182,12 +182,12 @@ impl<P: Part> Kernel for AllHits<'_, P> {
     }
 }
 
-/// Turns crossings into hits, and sorts them by line and distance.
+/// Converts crossings to hits, sorted by line and distance.
 #[inline(always)]
 fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scratch: &mut AllHitsScratch) {
     let AllHitsScratch { lines, candidates, distances, places, starts, hits, close, .. } = scratch;
-    // Counting sort by line: while hits are added, each start moves to where the next line starts. Candidates that are not crossed
-    // come behind all lines.
+    // Counting sort by line: while hits are added, each start moves to the start of the next line. Candidates that are
+    // not crossed come after all lines.
     starts.fill(0);
     candidates.found.lines[..count].iter().for_each(|&line| starts[usize::from(line) + 2] += 1);
     for line in 2..starts.len() {
@@ -219,15 +219,15 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
         let mine = backend.splat_f64(t[i]);
         let (mut rank, mut first, mut near) = (0, start, 0);
         while first < end {
-            let some = distances[first..].first_chunk().map_or(mine, |some| backend.load_f64(some));
+            let others = distances[first..].first_chunk().map_or(mine, |chunk| backend.load_f64(chunk));
             let of_line = u32::MAX >> (32 - (end - first).min(LEAF_WIDTH));
-            // Bits of this crossing and of those found before it, if they are among these.
+            // Bits of this crossing and of those found before it, if they are in this chunk.
             let this = 1u32.checked_shl(place.wrapping_sub(first).min(32) as u32).unwrap_or(0);
             let earlier = if place < first { 0 } else { this.wrapping_sub(1) };
-            // Of equal ones, the one found first comes first.
-            let (before, not_after) = (some.mask_lt(mine), some.mask_le(mine));
+            // Among equal distances, the crossing found first comes first.
+            let (before, not_after) = (others.mask_lt(mine), others.mask_le(mine));
             rank += ((before | (not_after & earlier)) & of_line).count_ones() as usize;
-            near |= not_after & mine.mask_le(some.add(backend.splat_f64(CLOSE))) & of_line & !this;
+            near |= not_after & mine.mask_le(others.add(backend.splat_f64(CLOSE))) & of_line & !this;
             first += LEAF_WIDTH;
         }
         close[line] |= near != 0;

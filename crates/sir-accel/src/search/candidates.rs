@@ -1,4 +1,4 @@
-//! Triangles that were not culled in single precision, and their exact test.
+//! Triangles left after culling in single precision, and their exact test.
 
 use sir_types::{Barycentric, Side};
 
@@ -13,7 +13,7 @@ use crate::triangle::{Crossing, Factors};
 /// Triangles that lines may cross, and the results of their tests.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Candidates {
-    /// Places of the triangles in the tree; the line becomes `NO_LINE` if it turns out that it does not cross the triangle.
+    /// Places of the triangles in the tree. The line is set to [`NO_LINE`] if it does not cross the triangle.
     pub(crate) found: Queue,
     /// True if the front of the triangle faces the origin of the line.
     fronts: Vec<bool>,
@@ -21,11 +21,11 @@ pub(crate) struct Candidates {
     pairs: Vec<Pairs>,
 }
 
-/// Stands for no line in place of its number.
+/// Line number that stands for no line.
 pub(crate) const NO_LINE: u8 = MAX_LINES as u8;
 
 impl Candidates {
-    /// Replaces the last three factors by the distance and the place of each crossing.
+    /// Replaces the last three factors by the distance and the barycentric coordinates of each crossing.
     #[inline(always)]
     pub(crate) fn locate(&mut self, len: usize) {
         let [e_ab, e_ca, all, a, ab, ac] = self.factors.each_mut().map(|list| &mut list[..len]);
@@ -41,13 +41,13 @@ impl Candidates {
         self.found.items[..len].iter().for_each(|&place| tree.prefetch_triangle(place));
     }
 
-    /// Distances of the crossings that were located \[steps of the grid\].
+    /// Returns the distances of the located crossings \[steps of the grid\].
     #[inline(always)]
     pub(crate) fn distances(&self) -> &[f64] {
         &self.factors[3]
     }
 
-    /// A crossing that was located.
+    /// Returns a located crossing.
     #[inline(always)]
     pub(crate) fn crossing(&self, i: usize, tree: &Tree) -> Crossing {
         let [.., t, v, w] = &self.factors;
@@ -59,7 +59,7 @@ impl Candidates {
         }
     }
 
-    /// Tests lines and triangles, eight pairs at a time.
+    /// Tests pairs of a line and a triangle, eight at a time.
     #[inline(always)]
     pub(crate) fn test<B: SimdBackend>(
         &mut self,
@@ -68,7 +68,8 @@ impl Candidates {
         tree: &Tree,
         lines: &[(GridLine, LineF32)],
     ) {
-        // First all are laid out, lane by lane: vectors that were just written number by number are slow to read.
+        // Lay out all pairs first, lane by lane: reading a vector right after its lanes were written one by one is
+        // slow.
         let blocks = len.div_ceil(LEAF_WIDTH);
         if self.pairs.len() < blocks {
             self.pairs.resize(blocks, Pairs::NONE);
@@ -92,11 +93,11 @@ impl Candidates {
                     factor.store(to);
                 }
             }
-            let (met, front) = (test.back | test.front, test.front);
+            let (crossed, front) = (test.back | test.front, test.front);
             if let Some(to) = self.fronts[start..].first_chunk_mut::<LEAF_WIDTH>() {
                 *to = std::array::from_fn(|lane| front >> lane & 1 == 1);
             }
-            if !met & (u32::MAX >> (32 - (end - start))) != 0 {
+            if !crossed & (u32::MAX >> (32 - (end - start))) != 0 {
                 for i in start..end {
                     let lane = i - start;
                     if test.doubt >> lane & 1 == 1 {
@@ -104,7 +105,7 @@ impl Candidates {
                         let side = triangle.exact_crossing(&lines[usize::from(of_lines[i])].0);
                         self.fronts[i] = side == Some(Side::Front);
                         of_lines[i] = if side.is_none() { NO_LINE } else { of_lines[i] };
-                    } else if met >> lane & 1 == 0 {
+                    } else if crossed >> lane & 1 == 0 {
                         of_lines[i] = NO_LINE;
                     }
                 }

@@ -1,4 +1,4 @@
-//! The search for crossings of rays, nearest first, until one of them ends it.
+//! Search for the crossings of rays, nearest boxes first, until a crossing ends it.
 
 use crate::grid::GridLine;
 use crate::line_f32::{LineF32, Span};
@@ -8,29 +8,29 @@ use crate::simd::backend::{F32Lanes, Kernel, NODE_WIDTH, SimdBackend};
 use crate::tree::Tree;
 use crate::triangle::Crossing;
 
-/// Rays that are searched at the same time.
+/// Largest number of rays that are searched at the same time.
 pub(crate) const MAX_RAYS: usize = 64;
 
-/// The purpose of a search: which rays there are, and which crossings matter.
+/// Query that a search answers: supplies the rays and decides which crossings count.
 pub(crate) trait Rays {
-    /// The result for a ray so far.
+    /// Result for a ray so far.
     type Ray;
-    /// True if the first crossing that matters ends the search for a ray.
+    /// True if the first crossing that counts ends the search for a ray.
     const FIRST_ENDS: bool;
-    /// Returns the next ray to be searched, the part of its line where crossings matter, and the place of a triangle that is not
-    /// met; `None` at the end.
+    /// Returns the next ray to search, the part of its line where crossings count, and the place of a triangle to skip;
+    /// `None` at the end.
     fn next(&mut self) -> Option<(Self::Ray, GridLine, Span, u32)>;
-    /// Takes a crossing of a ray, and returns the end of the part where further ones matter \[radii\].
+    /// Processes a crossing of a ray, and returns the end of the part where further crossings count \[radii\].
     fn cross(&mut self, ray: &mut Self::Ray, line: &GridLine, crossing: Crossing) -> f32;
-    /// Takes a ray of which all crossings that matter were found.
+    /// Finishes a ray for which all crossings that count have been found.
     fn done(&mut self, ray: Self::Ray, line: &GridLine);
 }
 
-/// The state of a ray during the search.
+/// State of a ray during the search.
 #[derive(Clone, Debug)]
 struct Active<R> {
     span: Span,
-    /// The place of a triangle that is not met.
+    /// Place of a triangle to skip.
     leaving: u32,
     /// Number of entries on the stack.
     depth: usize,
@@ -40,8 +40,9 @@ struct Active<R> {
 /// Scratch memory of the search.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FirstHitScratch {
-    /// The stacks of all rays: children that are still to be visited, the next one last, and where the ray enters them.
+    /// Stacks of all rays, the next child last: distances at which the ray enters the children still to be visited.
     entries: Vec<f32>,
+    /// Children on these stacks.
     children: Vec<u32>,
     lines: Vec<(GridLine, LineF32)>,
     candidates: Candidates,
@@ -57,7 +58,7 @@ struct RayList {
 impl RayList {
     const EMPTY: Self = Self { numbers: [0; MAX_RAYS], count: 0 };
 
-    /// Adds a ray if it belongs here.
+    /// Adds a ray if `belongs` is true.
     #[inline(always)]
     fn add(&mut self, number: u8, belongs: bool) {
         self.numbers[self.count % MAX_RAYS] = number;
@@ -69,7 +70,7 @@ impl RayList {
     }
 }
 
-/// The next step of each ray.
+/// Active rays by their next step.
 struct Steps {
     nodes: RayList,
     leaves: RayList,
@@ -79,7 +80,7 @@ struct Steps {
 impl Steps {
     const EMPTY: Self = Self { nodes: RayList::EMPTY, leaves: RayList::EMPTY, ended: RayList::EMPTY };
 
-    /// Notes the next step of a ray: the last entry of its stack.
+    /// Prefetches the last entry of the stack of a ray, and adds the ray to the list for that step.
     #[inline(always)]
     fn note(&mut self, number: u8, depth: usize, children: &[u32], tree: &Tree) {
         let next = children[depth.wrapping_sub(1).min(children.len() - 1)];
@@ -91,7 +92,7 @@ impl Steps {
     }
 }
 
-/// Finds the crossings of rays about in order.
+/// Search for the crossings of rays, approximately in order of distance.
 pub(crate) struct FirstHits<'a, R> {
     pub(crate) tree: &'a Tree,
     pub(crate) scratch: &'a mut FirstHitScratch,
@@ -104,7 +105,7 @@ impl<R: Rays> Kernel for FirstHits<'_, R> {
     #[inline(always)]
     fn run<B: SimdBackend>(self, backend: B) {
         let Self { tree, scratch, rays } = self;
-        // Room for all children of a node beside those on the stack.
+        // Room for all children of a node in addition to those on the stack.
         let stride = tree.stack_size + NODE_WIDTH;
         let FirstHitScratch { entries, children, lines, candidates } = scratch;
         entries.resize(MAX_RAYS * stride, 0.0);
@@ -135,12 +136,12 @@ impl<R: Rays> Kernel for FirstHits<'_, R> {
                     let [near, far] = node.slabs(backend, &lines[i].1);
                     let from = backend.splat_node(active.span.from);
                     let to = backend.splat_node(active.span.to);
-                    let met = near.max(from).mask_le(far.min(to));
+                    let hit_boxes = near.max(from).mask_le(far.min(to));
                     let near = near.max(backend.splat_node(0.0));
                     let Ok(to_entries) = (&mut entries[top..top + NODE_WIDTH]).try_into() else { continue };
                     let Ok(to_children) = (&mut children[top..top + NODE_WIDTH]).try_into() else { continue };
-                    backend.sort(near, &node.children, met, to_entries, to_children);
-                    active.depth = top + met.count_ones() as usize;
+                    backend.sort(near, &node.children, hit_boxes, to_entries, to_children);
+                    active.depth = top + hit_boxes.count_ones() as usize;
                     steps.note(number, active.depth, children, tree);
                 }
             });
@@ -152,8 +153,8 @@ impl<R: Rays> Kernel for FirstHits<'_, R> {
                     *depth -= 1;
                     let leaf = (children[i * stride + *depth] & !LEAF) as usize;
                     let first = tree.firsts[leaf];
-                    let left = (1u64 << leaving.wrapping_sub(first).min(63)) as u32;
-                    let mask = tree.leaves[leaf].candidates(backend, &lines[i].1, Some(*span)) & !left;
+                    let leaving_bit = (1u64 << leaving.wrapping_sub(first).min(63)) as u32;
+                    let mask = tree.leaves[leaf].candidates(backend, &lines[i].1, Some(*span)) & !leaving_bit;
                     count = candidates.found.add_range(backend, count, first, mask, number);
                 }
                 candidates.prefetch(count, tree);
@@ -198,7 +199,7 @@ impl<R: Rays> Kernel for FirstHits<'_, R> {
     }
 }
 
-/// Keeps those of the first `depth` entries of a stack that are entered before the limit, and returns their number.
+/// Keeps those of the first `depth` entries of a stack whose distance is within the limit, and returns their number.
 #[inline(always)]
 fn keep<B: SimdBackend>(
     backend: B,
@@ -207,24 +208,24 @@ fn keep<B: SimdBackend>(
     entries: &mut [f32],
     children: &mut [u32],
 ) -> usize {
-    // Entries before the origin of the line on the grid are noted as zero.
+    // Distances before the origin of the line on the grid are stored as zero.
     let limit = backend.splat_node(limit.max(0.0));
     let mut kept = 0;
     for start in (0..depth).step_by(NODE_WIDTH) {
-        let (Some(some_entries), Some(some_children)) =
+        let (Some(chunk_entries), Some(chunk_children)) =
             (entries[start..].first_chunk::<NODE_WIDTH>(), children[start..].first_chunk::<NODE_WIDTH>())
         else {
             return depth;
         };
-        let some_entries = backend.load_node(some_entries);
-        let some_children = *some_children;
-        let there = u32::MAX >> (32 - (depth - start).min(NODE_WIDTH));
-        let mask = some_entries.mask_le(limit) & there;
+        let chunk_entries = backend.load_node(chunk_entries);
+        let chunk_children = *chunk_children;
+        let in_stack = u32::MAX >> (32 - (depth - start).min(NODE_WIDTH));
+        let mask = chunk_entries.mask_le(limit) & in_stack;
         if let Some(to) = entries[kept..].first_chunk_mut() {
-            some_entries.compress(mask, to);
+            chunk_entries.compress(mask, to);
         }
         if let Some(to) = children[kept..].first_chunk_mut() {
-            backend.compress(&some_children, mask, to);
+            backend.compress(&chunk_children, mask, to);
         }
         kept += mask.count_ones() as usize;
     }

@@ -4,7 +4,7 @@ use crate::grid::GridLine;
 use crate::simd::backend::{LEAF_WIDTH, SimdBackend};
 use crate::triangle::{EdgeTest, GridTriangle};
 
-/// Eight pairs of a line and a triangle, one lane each.
+/// Eight pairs of a line and a triangle, one per lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Pairs {

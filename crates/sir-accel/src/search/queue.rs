@@ -1,14 +1,14 @@
-//! Work that is to be done for many lines.
+//! Work queues of the searches.
 
 use crate::simd::backend::{LEAF_WIDTH, NODE_WIDTH, SimdBackend};
 
-/// Largest number of lines that are searched at the same time; their numbers fit a byte.
+/// Largest number of lines that are searched at the same time; their numbers fit in a byte.
 pub(crate) const MAX_LINES: usize = 128;
 
-/// How many items ahead memory is prefetched.
+/// Number of items by which prefetching runs ahead.
 const AHEAD: usize = 12;
 
-/// Nodes, leaves or triangles, each with the number of the line that reaches it. The number of items is kept by those who add to it.
+/// Nodes, leaves or triangles, each with the number of the line that reaches it. The caller keeps the number of items.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Queue {
     pub(crate) items: Vec<u32>,
@@ -16,7 +16,7 @@ pub(crate) struct Queue {
 }
 
 impl Queue {
-    /// Adds the items in the mask to a queue with `len` of them, and returns how many it has then.
+    /// Adds the items in the mask to a queue with `len` items, and returns the new number of items.
     #[inline(always)]
     pub(crate) fn add<B: SimdBackend>(
         &mut self,
@@ -32,7 +32,7 @@ impl Queue {
         len + mask.count_ones() as usize
     }
 
-    /// Adds the numbers from `first` on that are in the mask to a queue with `len` items, and returns how many it has then.
+    /// Adds `first` plus each lane number in the mask to a queue with `len` items, and returns the new number of items.
     #[inline(always)]
     pub(crate) fn add_range<B: SimdBackend>(
         &mut self,
@@ -48,7 +48,7 @@ impl Queue {
         len + mask.count_ones() as usize
     }
 
-    /// Makes room for `N` more items of a line.
+    /// Makes room for `N` more items of a line, and returns it.
     #[inline(always)]
     fn room<const N: usize>(&mut self, len: usize, line: u8) -> Option<&mut [u32; N]> {
         if self.items.len() < len + N || self.lines.len() < len + N {
@@ -66,7 +66,7 @@ impl Queue {
         self.lines.resize(len, 0);
     }
 
-    /// The item whose memory should be prefetched while the i-th is worked on.
+    /// Returns the item to prefetch while item `i` is processed.
     #[inline(always)]
     pub(crate) fn ahead(&self, i: usize) -> u32 {
         self.items.get(i + AHEAD).copied().unwrap_or(0)

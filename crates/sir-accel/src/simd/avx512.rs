@@ -1,5 +1,5 @@
-//! AVX-512: 16 numbers in single precision, or 8 in double precision, at a time.
-#![allow(unsafe_code, reason = "vector instructions; the token proves them, and values hold it")]
+//! AVX-512 backend: 16 numbers in single precision, or 8 in double precision, at a time.
+#![allow(unsafe_code, reason = "vector instructions; the token proves them, and vectors hold the token")]
 
 use std::arch::x86_64::*;
 
@@ -10,12 +10,12 @@ use crate::simd::backend::{F32Lanes, F64Lanes, F64Store, Kernel, LEAF_WIDTH, NOD
 use crate::simd::insertion;
 use crate::simd::x86::{compiled_for, lanewise};
 
-/// Exists only if the processor has AVX-512 F, DQ and VL, beside what [`Avx2`] proves.
+/// Token that exists only if the processor has AVX-512 F, DQ and VL, in addition to what [`Avx2`] proves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Avx512(Avx2);
 
 impl Avx512 {
-    /// Asks the processor.
+    /// Returns the token if the processor has the instructions.
     pub(crate) fn detect() -> Option<Self> {
         let has_all = is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512dq")
@@ -33,7 +33,7 @@ impl SimdBackend for Avx512 {
 
     #[inline(always)]
     fn load_node(self, numbers: &[f32; NODE_WIDTH]) -> F32x16 {
-        // SAFETY: the token proves AVX-512; the array has 16 numbers.
+        // SAFETY: the token proves AVX-512; the array has 16 elements.
         F32x16(unsafe { _mm512_loadu_ps(numbers.as_ptr()) }, self)
     }
 
@@ -55,7 +55,7 @@ impl SimdBackend for Avx512 {
 
     #[inline(always)]
     fn load_f64(self, numbers: &[f64; LEAF_WIDTH]) -> F64x8 {
-        // SAFETY: the token proves AVX-512; the array has 8 numbers.
+        // SAFETY: the token proves AVX-512; the array has 8 elements.
         F64x8(unsafe { _mm512_loadu_pd(numbers.as_ptr()) }, self)
     }
 
@@ -67,26 +67,26 @@ impl SimdBackend for Avx512 {
 
     #[inline(always)]
     fn i32_to_f64(self, numbers: &[i32; LEAF_WIDTH]) -> F64x8 {
-        // SAFETY: the token proves AVX-512; the array has 8 numbers.
+        // SAFETY: the token proves AVX-512; the array has 8 elements.
         F64x8(unsafe { _mm512_cvtepi32_pd(_mm256_loadu_si256(numbers.as_ptr().cast())) }, self)
     }
 
     #[inline(always)]
     fn f32_to_f64(self, numbers: &[f32; LEAF_WIDTH]) -> F64x8 {
-        // SAFETY: the token proves AVX-512; the array has 8 numbers.
+        // SAFETY: the token proves AVX-512; the array has 8 elements.
         F64x8(unsafe { _mm512_cvtps_pd(_mm256_loadu_ps(numbers.as_ptr())) }, self)
     }
 
     #[inline(always)]
     fn highest_bits(self, numbers: &[u32; NODE_WIDTH]) -> u32 {
-        // SAFETY: the token proves AVX-512; the array has 16 numbers.
+        // SAFETY: the token proves AVX-512; the array has 16 elements.
         unsafe { u32::from(_mm512_movepi32_mask(_mm512_loadu_si512(numbers.as_ptr().cast()))) }
     }
 
     #[inline(always)]
     fn compress(self, numbers: &[u32; NODE_WIDTH], mask: u32, to: &mut [u32; NODE_WIDTH]) {
-        // To a register and from there to memory: straight to memory is slow on some processors (Zen 4).
-        // SAFETY: the token proves AVX-512; the arrays have 16 numbers.
+        // Compress to a register and store that: compressing straight to memory is slow on some processors (Zen 4).
+        // SAFETY: the token proves AVX-512; the arrays have 16 elements.
         unsafe {
             let numbers = _mm512_loadu_si512(numbers.as_ptr().cast());
             let front = _mm512_maskz_compress_epi32(mask as __mmask16, numbers);
@@ -96,7 +96,7 @@ impl SimdBackend for Avx512 {
 
     #[inline(always)]
     fn compress_range(self, first: u32, mask: u32, to: &mut [u32; LEAF_WIDTH]) {
-        // SAFETY: the token proves AVX-512; the array has 8 places.
+        // SAFETY: the token proves AVX-512; the array has 8 elements.
         unsafe {
             let numbers = _mm256_add_epi32(lane_numbers(self.0), _mm256_set1_epi32(first as i32));
             let front = _mm256_maskz_compress_epi32(mask as __mmask8, numbers);
@@ -116,17 +116,18 @@ impl SimdBackend for Avx512 {
         let count = mask.count_ones();
         if count > 8 {
             let mut all = [0.0; NODE_WIDTH];
-            // SAFETY: the token proves AVX-512; the array has 16 places.
+            // SAFETY: the token proves AVX-512; the array has 16 elements.
             unsafe { _mm512_storeu_ps(all.as_mut_ptr(), keys.0) }
             return insertion::sort(&all, numbers, mask, keys_to, to);
         }
-        // SAFETY: the token proves AVX-512; the arrays have 16 numbers.
+        // SAFETY: the token proves AVX-512; the arrays have 16 elements.
         unsafe {
-            // The number of the lane replaces the last bits of its key. Keys are not negative, so they are ordered as integers are.
+            // The lane number replaces the last bits of its key. Keys are not negative, so their bits have the order of
+            // integers.
             let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
             let exact = _mm512_set1_epi32(!(NODE_WIDTH as i32 - 1));
             let keys = _mm512_ternarylogic_epi32::<0xF8>(lanes, _mm512_castps_si512(keys.0), exact);
-            // Unused places are zero and end up last.
+            // Unused lanes are zero and end up last.
             let keys = _mm512_castsi512_si256(_mm512_maskz_compress_epi32(mask as __mmask16, keys));
             let keys = if count > 4 { sort8(self.0, keys) } else { sort4(self.0, keys) };
             let numbers = _mm512_loadu_si512(numbers.as_ptr().cast());
@@ -138,11 +139,11 @@ impl SimdBackend for Avx512 {
     }
 }
 
-/// Sixteen numbers in single precision. They hold the token that proves AVX-512.
+/// Sixteen numbers in single precision. The value holds the token that proves AVX-512.
 #[derive(Clone, Copy)]
 pub(crate) struct F32x16(__m512, Avx512);
 
-/// Eight numbers in double precision. They hold the token that proves AVX-512.
+/// Eight numbers in double precision. The value holds the token that proves AVX-512.
 #[derive(Clone, Copy)]
 pub(crate) struct F64x8(__m512d, Avx512);
 
@@ -156,7 +157,7 @@ impl F32Lanes<NODE_WIDTH> for F32x16 {
 
     #[inline(always)]
     fn compress(self, mask: u32, to: &mut [f32; NODE_WIDTH]) {
-        // SAFETY: the value holds the token; the array has 16 places.
+        // SAFETY: the value holds the token; the array has 16 elements.
         unsafe { _mm512_storeu_ps(to.as_mut_ptr(), _mm512_maskz_compress_ps(mask as __mmask16, self.0)) }
     }
 
@@ -196,7 +197,7 @@ impl F64Lanes for F64x8 {
 impl F64Store for F64x8 {
     #[inline(always)]
     fn store(self, to: &mut [f64; LEAF_WIDTH]) {
-        // SAFETY: the value holds the token; the array has 8 places.
+        // SAFETY: the value holds the token; the array has 8 elements.
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) }
     }
 }

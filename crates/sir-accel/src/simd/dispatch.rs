@@ -1,4 +1,4 @@
-//! The choice of a backend at run time.
+//! Choice of the backend at run time.
 
 #[cfg(target_arch = "x86_64")]
 use crate::simd::avx2::token::Avx2;
@@ -7,7 +7,7 @@ use crate::simd::avx512::Avx512;
 use crate::simd::backend::{Kernel, SimdBackend};
 use crate::simd::portable::Portable;
 
-/// One of the backends that the processor has.
+/// A backend that the processor supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Backend {
     #[cfg(target_arch = "x86_64")]
@@ -18,7 +18,7 @@ pub(crate) enum Backend {
 }
 
 impl Backend {
-    /// Returns those that the processor has, the best first and the portable one last.
+    /// Returns the backends that the processor supports, the best first and the portable one last.
     pub(crate) fn available() -> impl Iterator<Item = Self> {
         #[cfg(target_arch = "x86_64")]
         let of_processor = [Avx512::detect().map(Self::Avx512), Avx2::detect().map(Self::Avx2)];
@@ -27,7 +27,7 @@ impl Backend {
         of_processor.into_iter().flatten().chain([Self::Portable(Portable)])
     }
 
-    /// Returns the best one that the processor has.
+    /// Returns the best backend that the processor supports.
     pub(crate) fn best() -> Self {
         Self::available().next().unwrap_or(Self::Portable(Portable))
     }

@@ -2,7 +2,7 @@
 
 use crate::simd::backend::NODE_WIDTH;
 
-/// Sorts as [`SimdBackend::sort`](crate::simd::backend::SimdBackend::sort) does, number by number.
+/// Sorts as [`SimdBackend::sort`](crate::simd::backend::SimdBackend::sort) does, one number at a time.
 #[inline(always)]
 pub(crate) fn sort(
     keys: &[f32; NODE_WIDTH],

@@ -1,11 +1,11 @@
-//! Arrays, for any processor.
+//! Portable backend: plain arrays, for any processor.
 
 use std::array::from_fn;
 
 use crate::simd::backend::{F32Lanes, F64Lanes, F64Store, Kernel, LEAF_WIDTH, NODE_WIDTH, SimdBackend};
 use crate::simd::insertion;
 
-/// Needs no vector instructions.
+/// Backend without vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Portable;
 
@@ -103,7 +103,7 @@ fn compress<T: Copy, const N: usize>(from: &[T; N], mask: u32, to: &mut [T; N]) 
     }
 }
 
-/// A method that applies a function to the lanes of `self` and of the other arguments.
+/// Defines a method that applies a function to the lanes of `self` and of the other arguments.
 macro_rules! lanewise {
     ($method:ident, $function:expr $(, $argument:ident)*) => {
         #[inline(always)]
@@ -114,7 +114,7 @@ macro_rules! lanewise {
     };
 }
 
-/// A method that returns the mask of the lanes for which a comparison holds.
+/// Defines a method that returns the mask of the lanes for which a comparison holds.
 macro_rules! mask {
     ($method:ident, $comparison:tt) => {
         #[inline(always)]

@@ -1,6 +1,6 @@
-//! What the backends for x86 have in common: methods that differ in a literal or in the name of an instruction only.
+//! Macros that the x86 backends share, for methods that differ only in a literal or in the name of an instruction.
 
-/// The methods [`run`](crate::simd::backend::SimdBackend::run) and
+/// Defines the methods [`run`](crate::simd::backend::SimdBackend::run) and
 /// [`outline`](crate::simd::backend::SimdBackend::outline) of a token that proves these target features.
 macro_rules! compiled_for {
     ($features:literal) => {
@@ -19,7 +19,8 @@ macro_rules! compiled_for {
             fn outline<R, F: FnOnce() -> R>(work: F) -> R {
                 work()
             }
-            // The compiler drops `inline(never)` where there are target features; it cannot inline a pointer that it does not know.
+            // The compiler ignores `inline(never)` on functions with target features, but it cannot inline an unknown
+            // function pointer.
             let outline: unsafe fn(F) -> R = std::hint::black_box(outline::<R, F>);
             // SAFETY: the token proves the features.
             unsafe { outline(work) }
@@ -27,7 +28,8 @@ macro_rules! compiled_for {
     };
 }
 
-/// A method that applies an instruction to the lanes of `self` and of the other arguments, which are a register and the token.
+/// Defines a method that applies an instruction to the lanes of `self` and of the other arguments, which consist of a
+/// register and the token.
 macro_rules! lanewise {
     ($method:ident, $instruction:ident $(, $argument:ident)*) => {
         #[inline(always)]
@@ -38,7 +40,7 @@ macro_rules! lanewise {
     };
 }
 
-/// The same for two registers and the token.
+/// Defines the same method for types that consist of two registers and the token.
 macro_rules! halves {
     ($method:ident, $instruction:ident $(, $argument:ident)*) => {
         #[inline(always)]

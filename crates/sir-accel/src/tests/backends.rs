@@ -8,7 +8,7 @@ use crate::ray::{Ray, TRange};
 use crate::tests::common::{KINDS, arrange, difficult_line, furnished_room, furnished_room_of};
 use crate::tests::{bits, tracers};
 
-/// The room, with surfaces that let half of all lines pass.
+/// Returns the room with surfaces that let half of all lines pass.
 fn transparent_room() -> Scene {
     furnished_room_of(Opacity { factor: 0.5, ..Opacity::default() })
 }
@@ -20,13 +20,13 @@ fn all_backends_find_the_same_hits_bit_for_bit() {
     find_the_same_hits(&transparent_room(), 2);
 }
 
-/// Traces `times` times 100,000 lines.
-fn find_the_same_hits(scene: &Scene, times: u64) {
+/// Traces `batches` times 100,000 lines.
+fn find_the_same_hits(scene: &Scene, batches: u64) {
     let accel = arrange(scene);
     let mut tracers = tracers(&accel);
     let streams = Streams::new(8, Purpose::PROBE);
-    for some in 0..times {
-        let lines: Vec<Line> = (some * 100_000..(some + 1) * 100_000)
+    for batch in 0..batches {
+        let lines: Vec<Line> = (batch * 100_000..(batch + 1) * 100_000)
             .filter_map(|i| difficult_line(scene, i as usize % KINDS, &mut streams.line(i)))
             .collect();
         let found: Vec<_> = tracers
@@ -60,7 +60,7 @@ fn find_the_same_closest_hits(scene: &Scene) {
         let Some(line) = difficult_line(scene, i as usize % KINDS, &mut streams.line(i)) else {
             continue;
         };
-        // From outside, and on from each surface that is met.
+        // Rays from outside, and rays that leave each surface hit.
         rays.push(line.into());
         rays.extend(
             tracers[0]

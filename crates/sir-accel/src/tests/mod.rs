@@ -1,4 +1,4 @@
-//! Tests of all backends that the processor has.
+//! Tests of all backends that the processor supports.
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
@@ -14,12 +14,12 @@ use crate::simd::dispatch::Backend;
 use crate::simd::portable::Portable;
 use crate::tracer::Tracer;
 
-/// A hit, comparable bit for bit.
+/// Returns a hit in a form that compares bit for bit.
 fn bits(hit: Hit) -> (TriangleId, bool, [u64; 3]) {
     (hit.triangle, hit.side == Side::Front, [hit.t, hit.point.v, hit.point.w].map(f64::to_bits))
 }
 
-/// Tracers with all backends that this processor has; the last one is the portable one.
+/// Returns tracers with all backends that the processor supports; the last one is portable.
 fn tracers(accel: &Accel) -> Vec<Tracer<'_>> {
     let backends: Vec<Backend> = Backend::available().collect();
     assert_eq!(backends.last(), Some(&Backend::Portable(Portable)));

@@ -1,5 +1,5 @@
-//! Searches in ranges find those hits of the whole line that lie in the range, in scenes where much is degenerate: triangles on
-//! a coarse lattice, most of which touch, intersect or lie on others.
+//! Searches in ranges find the hits of the whole line that lie in the range. The scenes are degenerate: triangles on a
+//! coarse lattice, most of which touch, intersect or lie on others.
 
 use glam::DVec3;
 use proptest::prelude::*;
@@ -76,7 +76,7 @@ impl End {
     }
 }
 
-/// More than the distance within which surfaces are in contact, in these scenes.
+/// Larger than the distance within which surfaces are in contact in these scenes.
 const NEAR: f64 = 1e-5;
 
 proptest! {
@@ -100,7 +100,7 @@ proptest! {
                 let ray = Ray::new(line).within(range);
                 prop_assert_eq!(tracer.occluded(&ray), !expected.is_empty());
                 check_first(tracer.closest(&ray), &expected)?;
-                // From the surface of each hit on.
+                // Rays that leave the surface of each hit.
                 for hit in &all {
                     let origin = line.at(hit.t);
                     let ray = Ray::leaving(Line { origin, direction }, hit.triangle);
@@ -108,7 +108,7 @@ proptest! {
                     prop_assert_eq!(tracer.occluded(&ray), first.is_some());
                     let before = tracer.closest(&ray.within(0.0..length));
                     prop_assert_eq!(tracer.occluded(&ray.within(0.0..length)), before.is_some());
-                    // Hits in contact may have a part on either side of the end.
+                    // Hits in contact may lie on both sides of the end.
                     if first.is_none_or(|first| (first.t - length).abs() > NEAR) {
                         prop_assert_eq!(before, first.filter(|first| first.t < length));
                     }
@@ -128,8 +128,8 @@ proptest! {
     }
 }
 
-/// Checks the first hit of those expected. If others are close to it, the rule for surfaces in contact chooses one of them, for which the
-/// search for the closest hit looks only at those in the range.
+/// Checks the first hit against those expected. If others are close to it, the contact order chooses one of them; the
+/// search for the closest hit applies it only to hits in the range.
 fn check_first(found: Option<Hit>, expected: &[Hit]) -> Result<(), TestCaseError> {
     let nearest = expected.iter().map(|hit| hit.t).fold(f64::INFINITY, f64::min);
     let close = expected.iter().filter(|hit| hit.t <= nearest + NEAR).count();

@@ -1,4 +1,4 @@
-//! Closed scenes and difficult lines.
+//! Closed scenes and difficult lines, shared by the tests.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 #![allow(dead_code, reason = "not all tests use all of it")]
 
@@ -8,30 +8,30 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Line, Material, Opacities, Opacity, Rgb, Scene, SceneBuilder};
 use sir_lines::{Stream, unit_vector};
 
-/// The positions and the corners of the triangles of a scene.
+/// Returns the positions, and the corners of the triangles, of a scene.
 pub(crate) fn mesh(scene: &Scene) -> (&[DVec3], Vec<[u32; 3]>) {
     (scene.vertices(), scene.triangles().iter().map(|t| t.vertices.map(|v| v.0)).collect())
 }
 
-/// Transparent triangles of a scene, and their opacity.
+/// Returns options with the transparent triangles of a scene and their opacity.
 pub(crate) fn options(scene: &Scene) -> Options {
     let Some(opacities) = Opacities::of(scene) else { return Options::default() };
     let is_transparent = scene.triangle_ids().map(|t| scene.is_transparent(t)).collect();
     Options::default().opacity(is_transparent, move |t, p| opacities.at(t, p).unwrap_or(1.0))
 }
 
-/// The triangles of a scene, arranged for tracing.
+/// Returns the acceleration structure of a scene.
 pub(crate) fn arrange(scene: &Scene) -> Accel {
     let (positions, indices) = mesh(scene);
     Accel::build(positions, &indices, options(scene)).unwrap()
 }
 
-/// A room with two spheres, overlapping boxes and a box that touches floor and wall: all closed.
+/// Returns a room with two spheres, overlapping boxes and a box that touches floor and wall: all closed.
 pub(crate) fn furnished_room() -> Scene {
     furnished_room_of(Opacity::default())
 }
 
-/// The same with surfaces of this opacity.
+/// Returns the same room with surfaces of this opacity.
 pub(crate) fn furnished_room_of(opacity: Opacity) -> Scene {
     let mut b = SceneBuilder::new();
     let m = b.add_material(Material { opacity, ..Material::diffuse("m", Rgb::splat(0.5)) });
@@ -58,7 +58,7 @@ fn through(origin: DVec3, target: DVec3) -> Option<Line> {
     Some(Line { origin, direction: (target - origin).try_normalize()? })
 }
 
-/// A line of the given kind: anywhere, through a vertex, through a point of an edge, along an edge, through two
+/// Returns a line of the given kind: anywhere, through a vertex, through a point of an edge, along an edge, through two
 /// vertices, along an axis through a vertex, or in the plane of a triangle.
 pub(crate) fn difficult_line(scene: &Scene, kind: usize, s: &mut Stream) -> Option<Line> {
     let triangle =
@@ -90,5 +90,5 @@ pub(crate) fn difficult_line(scene: &Scene, kind: usize, s: &mut Stream) -> Opti
     }
 }
 
-/// How many kinds of lines there are.
+/// Number of kinds of lines.
 pub(crate) const KINDS: usize = 7;

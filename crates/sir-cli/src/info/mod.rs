@@ -1,4 +1,4 @@
-//! `sir info`: what is in a scene, and what a pipeline should set to light it.
+//! `sir info`: the contents of a scene, and suggested pipeline settings.
 
 mod text;
 
@@ -8,7 +8,7 @@ use sir_pipeline::info::inspect;
 
 use crate::error::CliError;
 
-/// What to read, and how to tell it.
+/// Arguments of `sir info`.
 #[derive(Debug, clap::Args)]
 pub struct InfoArgs {
     /// The scene: a .gltf, .glb or .obj file.
@@ -18,7 +18,7 @@ pub struct InfoArgs {
     pub json: bool,
 }
 
-/// Reads a scene; returns what there is to tell.
+/// Executes the command: reads the scene and returns the text to print.
 pub(crate) fn command(args: &InfoArgs) -> Result<String, CliError> {
     let info = inspect(&args.scene)?;
     Ok(if args.json { format!("{:#}\n", serde_json::json!(info)) } else { text::text(&info) })

@@ -1,19 +1,19 @@
-//! What is in a scene, for people.
+//! The contents of a scene as text for terminals.
 
 use sir_pipeline::format::{dimensions, grouped, length, percent};
 use sir_pipeline::info::{Fates, Info, MaterialInfo, Textures};
 
-/// Most materials, warnings, parts and cameras that are listed.
-const MOST: usize = 20;
+/// Maximum number of materials in the table. Of parts and cameras, a quarter as many are named.
+const MAX_LISTED: usize = 20;
 
-/// Most characters of a name.
-const NAME: usize = 32;
+/// Maximum length of a name, in characters.
+const MAX_NAME: usize = 32;
 
-/// All numbers, what is strange about them, and what to set.
+/// Returns all numbers, notes about likely mistakes, and suggested settings.
 pub(super) fn text(info: &Info) -> String {
     let parts = [overview(info), materials(info), light(info), lines(info), conclusions(info)];
     let mut text = parts.join("\n");
-    // Names of what is in files may play tricks on a terminal.
+    // Names in files may contain control characters, which would change the terminal's state.
     text = text.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}");
     text
 }
@@ -57,35 +57,33 @@ fn textures(info: &Info) -> String {
         return "none".into();
     }
     let [images, texels, triangles] = [images, texels, triangles].map(|n| grouped(n as u64));
-    format!(
-        "{images} images with {texels} texels; {triangles} triangles have them, or colors at their corners"
-    )
+    format!("{images} images with {texels} texels; {triangles} triangles have textures or vertex colors")
 }
 
 fn row(what: &str, value: &str) -> String {
     format!("{what:<10} {value}\n")
 }
 
-/// How many names there are, and the first ones.
+/// Returns the number of names, and the first ones.
 fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     let count = names.len();
     if count == 0 {
         return "none".into();
     }
-    let shown: Vec<String> = names.take(MOST / 4).map(|name| format!("\"{}\"", cut(name))).collect();
+    let shown: Vec<String> = names.take(MAX_LISTED / 4).map(|name| format!("\"{}\"", cut(name))).collect();
     let more = if count > shown.len() { ", …" } else { "" };
     format!("{}: {}{more}", grouped(count as u64), shown.join(", "))
 }
 
 fn cut(name: &str) -> String {
-    match name.char_indices().nth(NAME) {
+    match name.char_indices().nth(MAX_NAME) {
         Some((end, _)) => format!("{}…", &name[..end]),
         None => name.to_owned(),
     }
 }
 
 fn materials(info: &Info) -> String {
-    let shown = &info.materials[..info.materials.len().min(MOST)];
+    let shown = &info.materials[..info.materials.len().min(MAX_LISTED)];
     let wide = shown.iter().map(|m| cut(&m.name).chars().count()).max().unwrap_or(0).max("material".len());
     let mut text = format!(
         "{:<wide$} {:>9} {:>11} {:>5}  {:<17} emitted power, W\n",
@@ -146,13 +144,13 @@ fn lines(info: &Info) -> String {
     }
     let global = &lines.global;
     text += &format!(
-        "through the whole scene: {} cross an odd number of triangles (holes, sheets), {} of the stretches lie between a front and a back\n",
+        "global lines: {} cross an odd number of triangles (holes, sheets), {} of the segments lie between a front and a back\n",
         percent(global.odd),
         percent(global.mixed)
     );
     let twins = info.twins;
     text += &format!(
-        "{} triangles have the same corners as another; {} of the crossings coincide with others\n",
+        "{} triangles have the same corners as another one; {} of the crossings coincide with another one\n",
         grouped(twins.twins as u64),
         percent(global.coincident)
     );

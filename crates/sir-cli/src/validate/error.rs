@@ -1,4 +1,4 @@
-//! Why a validation fails.
+//! The error type of `sir validate`.
 
 use std::io;
 use std::path::PathBuf;
@@ -7,10 +7,10 @@ use sir_pipeline::ErrorKind;
 use sir_validate::ValidateError;
 use thiserror::Error;
 
-/// Why a validation fails.
+/// Failure of a validation.
 #[derive(Debug, Error)]
 pub enum ValidationError {
-    /// The cases cannot be run, or someone wanted to stop.
+    /// The cases cannot be run, or the validation was interrupted.
     #[error(transparent)]
     Cases(ValidateError),
     /// A file of exact answers cannot be read.
@@ -18,15 +18,15 @@ pub enum ValidationError {
     ReadReference {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// Some answers are wrong, or too noisy to tell.
     #[error(
-        "{summary} Try another --seed: chance does not fail twice. If an answer stays wrong, please report it with the table"
+        "{summary} Try another --seed: a failure by chance is unlikely to recur. If an answer stays wrong, please report it with the table"
     )]
     Failed {
-        /// How many answers passed, in a sentence.
+        /// Number of answers that passed, in a sentence.
         summary: String,
     },
 }

@@ -1,4 +1,4 @@
-//! `sir validate`: cases whose answers are known.
+//! `sir validate`: cases with known answers.
 
 pub(crate) mod error;
 pub(crate) mod options;
@@ -17,12 +17,12 @@ use crate::interrupt;
 use crate::progress::Stderr;
 use watch::Watch;
 
-/// The command: runs the cases, writes the report, and returns what is to be printed.
+/// Executes the command: runs the cases, writes the report, and returns the text to print.
 ///
 /// # Errors
 ///
-/// If an answer is wrong or too noisy to tell, after the report was printed; if there is no such case, or files cannot be read or
-/// written.
+/// If an answer is wrong or too noisy to judge, after printing the report; if a case does not exist; or if files cannot
+/// be read or written.
 pub fn command(args: &ValidateArgs) -> Result<String, CliError> {
     let stop = interrupt::flag();
     let reference = match &args.reference {
@@ -30,7 +30,7 @@ pub fn command(args: &ValidateArgs) -> Result<String, CliError> {
         Some(folder) => read(folder)?,
     }
     .map_err(ValidationError::Cases)?;
-    // Before anything that takes time.
+    // Before anything that takes time, so that errors show at once.
     if let Some(folder) = &args.out {
         fs::create_dir_all(folder).map_err(sir_pipeline::Error::directory(folder))?;
     }
@@ -53,7 +53,7 @@ pub fn command(args: &ValidateArgs) -> Result<String, CliError> {
     if report.passed() {
         return Ok(text);
     }
-    // The report says more than the error; whoever does not read it has the exit code.
+    // The report says more than the error. If it cannot be printed, the exit code still tells the failure.
     let _ = std::io::stdout().write_all(text.as_bytes());
     Err(ValidationError::Failed { summary: report.summary() }.into())
 }

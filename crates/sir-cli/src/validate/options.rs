@@ -1,17 +1,17 @@
-//! The command line of `sir validate`.
+//! The arguments of `sir validate`.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use crate::numbers::threads;
 
-/// What to run, and how.
+/// Arguments of `sir validate`.
 #[derive(Debug, clap::Args)]
 pub struct ValidateArgs {
     /// Accept standard errors of 0.5 % instead of 0.1 %: half a minute instead of minutes.
     #[arg(long)]
     pub quick: bool,
-    /// Only these cases, such as VF-13,CIE-5.8; the beginning of names will do: RE, CIE-5.4.
+    /// Run only these cases, such as VF-13,CIE-5.8. Prefixes of names are accepted: RE, CIE-5.4.
     #[arg(long = "case", value_name = "ID,…", value_delimiter = ',')]
     pub cases: Vec<String>,
     /// Seed of the random numbers.
@@ -29,7 +29,7 @@ pub struct ValidateArgs {
     /// Show no progress.
     #[arg(long, short)]
     pub quiet: bool,
-    /// A folder with exact answers in place of those that are built in, in the same layout.
+    /// A folder with exact answers that replace the built-in ones, in the same layout.
     #[arg(long, value_name = "DIR")]
     pub reference: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! What a validation says while it runs.
+//! Progress of a validation on standard error.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -9,10 +9,10 @@ use sir_validate::Watcher;
 
 use crate::progress::Stderr;
 
-/// Time between two lines of progress where there is no terminal.
+/// Time between two progress lines if there is no terminal.
 const PAUSE: Duration = Duration::from_secs(10);
 
-/// Shows the case at work, and how long all will take.
+/// Display of the current case and the remaining time of all cases.
 pub(super) struct Watch {
     progress: Stderr,
     stop: Arc<AtomicBool>,
@@ -28,7 +28,7 @@ impl Watch {
             Stderr::Bar => {
                 let bar = ProgressBar::new(1);
                 let template = "{bar:30} {percent:>3} %  {msg}  {eta} left";
-                // A wrong template would be a slip in the line above; indicatif's own style then serves as well.
+                // Only a mistake in the template above makes it invalid; indicatif's default style is then good enough.
                 if let Ok(style) = ProgressStyle::with_template(template) {
                     bar.set_style(style);
                 }

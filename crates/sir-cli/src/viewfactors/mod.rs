@@ -1,4 +1,4 @@
-//! `sir viewfactors`: view factors between the materials or the named parts of a scene.
+//! `sir viewfactors`: view factors between the materials or named parts of a scene.
 
 pub(crate) mod options;
 mod text;
@@ -13,8 +13,8 @@ use crate::error::CliError;
 use crate::progress::Stderr;
 use options::ViewFactorsArgs;
 
-/// The command, by several ranks together, until it is done or `stop` becomes true: computes, writes the files, and returns what
-/// the first rank is to print.
+/// Executes the command together with the other ranks, until it is done or `stop` becomes true: computes, writes the
+/// files, and returns the text for the first rank to print.
 pub(crate) fn command(
     args: &ViewFactorsArgs,
     comm: &dyn Communicator,

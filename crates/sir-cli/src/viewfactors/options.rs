@@ -1,4 +1,4 @@
-//! The command line of `sir viewfactors`.
+//! The arguments of `sir viewfactors`.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -11,30 +11,30 @@ use sir_radiosity::{Accuracy, ViewFactorSettings};
 
 use crate::numbers::threads;
 
-/// Which view factors to compute, and how well.
+/// Arguments of `sir viewfactors`.
 #[derive(Debug, clap::Args)]
 pub struct ViewFactorsArgs {
     /// The scene file: .gltf, .glb or .obj.
     pub scene: PathBuf,
-    /// What makes a group of surfaces.
+    /// Criterion by which surfaces are grouped.
     #[arg(long, value_enum, default_value_t)]
     pub by: ByOption,
-    /// Which sides of surfaces send and receive. The other sides absorb: what arrives there is `blocked`.
+    /// Sides of surfaces that send and receive. The other sides absorb: the share that arrives there is `blocked`.
     #[arg(long, value_enum, default_value_t)]
     pub sides: SidesOption,
-    /// Trace lines until no factor has a larger standard error; default 0.001, unless there is --lines.
+    /// Trace lines until no factor has a larger standard error; default 0.001, unless --lines is given.
     #[arg(long, value_name = "E", value_parser = error)]
     pub error: Option<f64>,
-    /// With --error E: a standard error of R times the factor is good enough where that is more than E.
+    /// With --error E: accept a standard error of R times the factor where that is more than E.
     #[arg(long, value_name = "R", value_parser = relative, requires = "error")]
     pub relative: Option<f64>,
-    /// Most lines, of all groups together. The number of lines that is reported gives the same result again.
+    /// Maximum number of lines of all groups together. The reported number of lines reproduces the result.
     #[arg(long, value_name = "N", value_parser = lines)]
     pub lines: Option<u64>,
     /// Seed of the random numbers.
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// Also adjust the factors, within their errors, so that they obey reciprocity and each row adds up to 1.
+    /// Also adjust the factors, within their errors, to satisfy reciprocity and row sums of 1.
     #[arg(long)]
     pub closure: bool,
     /// Directory for viewfactors.json, factors.csv, errors.csv and pairs.csv; default: nothing is written.
@@ -54,20 +54,20 @@ pub struct ViewFactorsArgs {
     pub json: bool,
 }
 
-/// What makes a group of surfaces.
+/// Criterion by which surfaces are grouped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum ByOption {
-    /// A material.
+    /// The material.
     #[default]
     Material,
-    /// A name: of a node, or else of its mesh (glTF); in an `o` or `g` statement (OBJ).
+    /// The name: of the node, or else of its mesh (glTF); in an `o` or `g` statement (OBJ).
     Group,
 }
 
-/// Which sides of surfaces send and receive.
+/// Sides of surfaces that send and receive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum SidesOption {
-    /// As the file says: `doubleSided` in glTF; both in OBJ.
+    /// As in the file: `doubleSided` in glTF; both in OBJ.
     #[default]
     AsAuthored,
     /// Both sides of every surface.
@@ -95,11 +95,11 @@ impl From<ByOption> for By {
     }
 }
 
-/// Standard error where none is asked for.
+/// Target standard error if neither an error nor a number of lines is given.
 const DEFAULT_ERROR: f64 = 1e-3;
 
 impl ViewFactorsArgs {
-    /// When to stop.
+    /// Returns the stopping criteria and the seed.
     #[must_use]
     pub fn settings(&self) -> ViewFactorSettings {
         let error = self.error.or(self.lines.is_none().then_some(DEFAULT_ERROR));
@@ -110,7 +110,7 @@ impl ViewFactorsArgs {
         }
     }
 
-    /// What to compute.
+    /// Returns the options of the computation.
     #[must_use]
     pub fn options(&self) -> ViewFactorsOptions {
         ViewFactorsOptions {

@@ -1,22 +1,22 @@
-//! View factors for people.
+//! View factors as text for terminals.
 
 use std::path::PathBuf;
 
 use sir_pipeline::format::grouped;
 use sir_pipeline::view_factors::{Matrix, Report};
 
-/// Most groups whose table is printed.
-const GROUPS: usize = 12;
+/// Maximum number of groups for which the table is printed.
+const MAX_GROUPS: usize = 12;
 
-/// Most characters of a name in a table.
-const NAME: usize = 24;
+/// Maximum length of a name in a table, in characters.
+const MAX_NAME: usize = 24;
 
-/// A table, or a list of the groups if there are many, and how good it is.
+/// Returns the table, or a list of the groups if there are many, with its accuracy.
 pub(super) fn text(report: &Report, paths: &[PathBuf]) -> String {
-    let mut out = if report.groups.len() > GROUPS {
-        format!("{}\n{} groups; --out DIR writes their table\n", list(report), report.groups.len())
+    let mut out = if report.groups.len() > MAX_GROUPS {
+        format!("{}\n{} groups; --out DIR writes the table\n", list(report), report.groups.len())
     } else {
-        let mut out = String::from("View factors: from the group of the row, to that of the column\n\n");
+        let mut out = String::from("View factors from the group of the row to the group of the column\n\n");
         out += &table(report, &report.counted);
         if let Some(closed) = &report.closed {
             out += "\nAdjusted to reciprocity and sums of 1\n\n";
@@ -25,7 +25,7 @@ pub(super) fn text(report: &Report, paths: &[PathBuf]) -> String {
         out
     };
     out += &format!(
-        "\n{} lines, seed {}; `<` is a bound with 95 % confidence where no line arrived; ± is the largest standard error of a row\n",
+        "\n{} lines, seed {}; `<` is an upper bound with 95 % confidence where no line arrived; ± is the largest standard error of a row\n",
         grouped(report.lines),
         report.seed
     );
@@ -34,7 +34,7 @@ pub(super) fn text(report: &Report, paths: &[PathBuf]) -> String {
     out
 }
 
-/// Digits that show an error to at least one place.
+/// Returns the number of decimals that show at least one digit of an error.
 fn digits(error: f64) -> usize {
     (2..9).find(|&digits| error >= 10f64.powi(-digits)).map_or(9, |digits| digits as usize)
 }
@@ -45,7 +45,7 @@ fn row_error(report: &Report, matrix: &Matrix, i: usize) -> f64 {
 }
 
 fn names(report: &Report) -> Vec<String> {
-    let cut = |name: &str| match name.char_indices().nth(NAME) {
+    let cut = |name: &str| match name.char_indices().nth(MAX_NAME) {
         Some((end, _)) => format!("{}…", &name[..end]),
         None => name.to_owned(),
     };
@@ -66,7 +66,7 @@ fn table(report: &Report, matrix: &Matrix) -> String {
             matrix.factors[i].iter().zip(&report.counts[i]).map(|(&factor, &count)| (factor, count > 0));
         let rest = [matrix.blocked[i], matrix.escaped[i]].map(|share| (share, share > 0.0));
         for (share, counted) in shares.chain(rest) {
-            // Adjusted factors may be positive where the one way was not counted, but the other was.
+            // An adjusted factor may be positive without a count, if lines were counted in the other direction.
             out += &match counted || share > 0.0 {
                 true => format!(" {share:>9.digits$}"),
                 false => format!(" {:>9}", format!("<{:.0e}", 3.0 / group.lines as f64)),
@@ -77,7 +77,7 @@ fn table(report: &Report, matrix: &Matrix) -> String {
     out
 }
 
-/// One line per group.
+/// Returns a list with a line for each group.
 fn list(report: &Report) -> String {
     let names = names(report);
     let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
@@ -97,7 +97,7 @@ fn list(report: &Report) -> String {
     out
 }
 
-/// Whether both estimates of each exchange area agree.
+/// Returns a line that says how well both estimates of each exchange area agree.
 fn reciprocity(report: &Report) -> String {
     let pairs = &report.reciprocity;
     let Some(worst) = pairs.iter().max_by(|a, b| a.z.abs().total_cmp(&b.z.abs())) else {

@@ -1,4 +1,4 @@
-//! Why a scene file cannot be read.
+//! Errors of reading a scene file.
 
 use std::io;
 use std::path::PathBuf;
@@ -7,19 +7,19 @@ use thiserror::Error;
 
 use crate::error::SceneError;
 
-/// Why a scene file cannot be read. Every message names the file and says what to do where that is not obvious.
+/// Reason why a scene file cannot be read. Every message names the file, and what to do where that is not obvious.
 #[derive(Debug, Error)]
 pub enum LoadError {
-    /// The extension of the file's name is none of those that are read.
-    #[error("{}: the name ends in {}, but .gltf, .glb and .obj files are read; convert the scene to one of these", path.display(), extension.as_ref().map_or("no extension".to_owned(), |e| format!("\".{e}\"")))]
+    /// The extension of the file name is not supported.
+    #[error("{}: unsupported type of file ({}); convert the scene to one of .gltf, .glb and .obj", path.display(), extension.as_ref().map_or("no extension".to_owned(), |e| format!("\".{e}\"")))]
     UnknownFormat {
         /// The scene file.
         path: PathBuf,
-        /// What its name ends in.
+        /// Extension of its name, if any.
         extension: Option<String>,
     },
-    /// The reader of the format was left out when the program was built.
-    #[error("{}: the reader of this format is switched off; build sir-geom with the cargo feature `{feature}`", path.display())]
+    /// The reader for the format was disabled when the program was built.
+    #[error("{}: the reader for this format is disabled; build sir-geom with the cargo feature `{feature}`", path.display())]
     WithoutReader {
         /// The scene file.
         path: PathBuf,
@@ -31,90 +31,90 @@ pub enum LoadError {
     Read {
         /// The scene file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// A file that the scene cannot do without cannot be read.
-    #[error("{}: {element} is in the file {}, which cannot be read; put it there, or export the scene again", scene.display(), path.display())]
+    /// A file that the scene needs cannot be read.
+    #[error("{}: {element} refers to the file {}, which cannot be read; add this file, or export the scene again", scene.display(), path.display())]
     Missing {
         /// The scene file.
         scene: PathBuf,
-        /// The element of the file, such as `buffer 0`.
+        /// Element of the scene file, such as `buffer 0`.
         element: String,
-        /// The file that it refers to.
+        /// File that the element refers to.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The file breaks the rules of glTF 2.0 in a part that a scene is made of.
-    #[error("{}: not valid glTF 2.0: {what}; a glTF validator tells more, and exporting the file again often helps", path.display())]
+    /// The file violates glTF 2.0 in a part that the scene needs.
+    #[error("{}: not valid glTF 2.0: {what}; check the file with a glTF validator, or export it again", path.display())]
     Gltf {
         /// The scene file.
         path: PathBuf,
-        /// The element of the file, and what is wrong with it.
+        /// Element of the file, and what is wrong with it.
         what: String,
     },
-    /// The file states that it makes no sense without extensions that are not known here.
+    /// The file requires extensions that are not supported.
     #[error("{}: the file requires the glTF extensions {}, which are not supported; export it without them", path.display(), names.join(", "))]
     RequiredExtensions {
         /// The scene file.
         path: PathBuf,
-        /// The unknown extensions among those required.
+        /// Unsupported extensions among those required.
         names: Vec<String>,
     },
-    /// The file refers to data in a place that is not looked into.
-    #[error("{}: {element} refers to \"{uri}\": {why}; put the data into a file beside the scene or into the scene itself", path.display())]
+    /// The file refers to data in a place that is not accessed.
+    #[error("{}: {element} refers to \"{uri}\": {why}; put the data into a file in the scene's folder, or embed it in the scene file", path.display())]
     Reference {
         /// The scene file.
         path: PathBuf,
-        /// The element of the file, such as `buffer 0`.
+        /// Element of the scene file, such as `buffer 0`.
         element: String,
-        /// The reference, shortened if it is long.
+        /// Reference, shortened if it is long.
         uri: String,
-        /// Why it is not followed.
+        /// Reason why it is not followed.
         why: String,
     },
-    /// A line of an OBJ or MTL file has no meaning.
+    /// A line of an OBJ or MTL file is invalid.
     #[error("{}:{line}: {what}; correct this line, or export the file again", path.display())]
     Syntax {
         /// The OBJ or MTL file.
         path: PathBuf,
-        /// The line, from 1.
+        /// Line number, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// What is wrong with the line.
         what: String,
     },
-    /// A face of an OBJ file refers to a vertex that is not there.
+    /// A face of an OBJ file refers to a vertex that does not exist.
     #[error("{}:{line}: a face refers to vertex {index}, but there are {count} vertices{}; export the file again", path.display(), if index.starts_with('-') { " before it" } else { "" })]
     NoSuchVertex {
         /// The OBJ file.
         path: PathBuf,
-        /// The line, from 1.
+        /// Line number, from 1.
         line: usize,
-        /// The number as the file has it.
+        /// Vertex number as in the file.
         index: String,
-        /// How many vertices the file has, or, if the number is negative and so counts back, how many stand before
-        /// the line.
+        /// Number of vertices in the file or, if the vertex number is negative and so counts back, of those before the
+        /// line.
         count: usize,
     },
-    /// The file describes more geometry than is taken in.
-    #[error("{}: the scene has more than {limit} {what} once its instances are laid out; leave out or simplify parts of it", path.display())]
+    /// The file has more geometry than the limit.
+    #[error("{}: the scene has more than {limit} {what} after its instances are expanded; remove or simplify parts of it", path.display())]
     TooLarge {
         /// The scene file.
         path: PathBuf,
         /// `vertices`, `triangles` or `mesh primitives`.
         what: &'static str,
-        /// How many are taken in.
+        /// Maximum number.
         limit: usize,
     },
-    /// The file could be read, but does not describe a scene.
-    #[error("{}: no scene can be made of this file{}", path.display(), if skipped.is_empty() { String::new() } else { format!(", in which {skipped}") })]
+    /// The file can be read, but does not describe a scene.
+    #[error("{}: no scene can be built from this file{}", path.display(), if skipped.is_empty() { String::new() } else { format!(" ({skipped})") })]
     Scene {
         /// The scene file.
         path: PathBuf,
-        /// What geometry was passed over, if any: `4 mesh primitives of points or lines were skipped`.
+        /// Summary of skipped geometry, if any: `4 mesh primitives of points or lines were skipped`.
         skipped: String,
-        /// What is wrong with it.
+        /// Reason why the scene cannot be built.
         source: SceneError,
     },
 }

@@ -1,4 +1,4 @@
-//! Files of scenes, and what may be shown of them.
+//! Access to the files of a scene, and safe display of text from them.
 
 use std::fs;
 use std::io;
@@ -6,10 +6,10 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::load::error::LoadError;
 
-/// The most bytes of a name in a reference.
-const LONGEST_NAME: usize = 500;
+/// Maximum length of a file name in a reference \[bytes\].
+const MAX_NAME_LENGTH: usize = 500;
 
-/// Reads a regular file: a pipe or a device, which may never end, is an error.
+/// Reads a regular file. Anything else is an error, because a pipe or a device may never end.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     if fs::metadata(path)?.is_file() {
         fs::read(path)
@@ -23,12 +23,12 @@ pub(super) fn read_scene(path: &Path) -> Result<Vec<u8>, LoadError> {
     read(path).map_err(|source| LoadError::Read { path: path.to_owned(), source })
 }
 
-/// The file `name` beside the scene, or in a folder beside it; `None` if the name leads elsewhere: a scene from
-/// somebody else must not make its reader open files that have nothing to do with it.
+/// Returns the path of the file `name` in the scene's folder or below it; `None` if the name leads elsewhere. A scene
+/// from an untrusted source must not make its reader open unrelated files.
 ///
-/// One file has one path, however its name is written, so that what is read can be remembered.
+/// Every file has one path, however its name is written, so that its contents can be cached by path.
 pub(super) fn beside(scene: &Path, name: &str) -> Option<PathBuf> {
-    // A drive letter is one on some systems only.
+    // `Path` recognizes drive letters on some systems only.
     let drive = name.as_bytes().get(1) == Some(&b':');
     let is_inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
     let path = Path::new(name);
@@ -38,12 +38,12 @@ pub(super) fn beside(scene: &Path, name: &str) -> Option<PathBuf> {
     })
 }
 
-/// Whether a text can be the name of a file: error messages show it.
+/// Returns true if a text can be the name of a file, and can be shown in an error message.
 pub(super) fn is_name(text: &str) -> bool {
-    !text.is_empty() && text.len() <= LONGEST_NAME && !text.contains(char::is_control)
+    !text.is_empty() && text.len() <= MAX_NAME_LENGTH && !text.contains(char::is_control)
 }
 
-/// The start of a text from a file, without what would play tricks on a terminal.
+/// Returns the start of a text from a file. Control characters are replaced, because they could manipulate a terminal.
 pub(super) fn shortened(text: &str, characters: usize) -> String {
     let mut start: String =
         text.chars().take(characters).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();

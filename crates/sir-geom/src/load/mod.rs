@@ -1,8 +1,8 @@
 //! Readers of scene files: glTF 2.0 and Wavefront OBJ.
 //!
-//! A reader takes from a file what a [`Scene`](crate::Scene) has, and says in [`Warning`](crate::Warning)s, one
-//! line per kind, what it passed over. Files come from anywhere, so nothing in them is trusted: whatever is
-//! wrong with one ends in a [`LoadError`], never in a panic or in memory without bound.
+//! A reader takes from a file what a [`Scene`](crate::Scene) has, and reports what it ignores in
+//! [`Warning`](crate::Warning)s, one per kind. Files may come from anywhere, so nothing in them is trusted: any defect
+//! ends in a [`LoadError`], never in a panic or in unbounded use of memory.
 
 mod error;
 #[cfg(any(feature = "gltf", feature = "obj"))]
@@ -27,42 +27,50 @@ use crate::builder::SceneBuilder;
 use crate::load::notes::{Notes, shorten};
 use crate::warning::Built;
 
-/// Reads a scene file; the extension of its name (`gltf`, `glb` or `obj`, in any case) tells the format.
+/// Reads a scene file. The extension of its name (`gltf`, `glb` or `obj`, in any case) determines the format.
 ///
-/// Each format has a cargo feature, `gltf` and `obj`; both are on by default. With neither, this crate needs no decoder of images
-/// and no reader of JSON.
+/// Each format has a cargo feature, `gltf` and `obj`; both are enabled by default. Without them, this crate needs no
+/// image decoder and no JSON reader.
 ///
-/// Textures are kept as they are, up to 2²⁸ texels in all; triangles without coordinates have their mean linear colors. Only materials that a triangle uses are taken in. What the
-/// file has beyond a scene is passed over with one warning per kind.
+/// Textures keep their resolution, up to 2²⁸ texels in total; triangles without texture coordinates have the mean
+/// linear colors. Only materials that a triangle uses are read. Content that a scene cannot hold is ignored, with one
+/// warning per kind.
 ///
 /// # glTF 2.0
 ///
-/// The default scene, else the first one, else all nodes; triangles in the order of a walk through the nodes,
-/// parents before children. Base color, times the colors of vertices, is the reflectance, also of metals and unlit materials, its alpha the opacity as `alphaMode` says; the emitted color times its strength
-/// is a radiance `L`, which gives the exitance `π L`. Groups have the names of nodes, or else of meshes. Cameras and punctual lights
-/// (`KHR_lights_punctual`) are taken in; the numbers of the latter, in cd and lx, are taken for W/sr and W/m², their range is ignored. Buffers and images may be embedded
-/// or lie in files in the scene's folder or below it.
+/// * **Content**: the default scene, or else the first scene, or else all nodes. Triangles are in the order of a
+///   traversal of the nodes, parents before children.
+/// * **Materials**: the base color times the vertex colors is the reflectance, also of metals and unlit materials. Its
+///   alpha is the opacity, as `alphaMode` states. The emitted color times its strength is a radiance `L`, which gives
+///   the exitance `π L`.
+/// * **Groups** have the names of nodes, or else of meshes.
+/// * **Cameras and punctual lights** (`KHR_lights_punctual`) are read. Intensities in cd and lx are taken as W/sr and
+///   W/m²; the range of lights is ignored.
+/// * **Buffers and images** may be embedded, or lie in files in the scene's folder or below it.
 ///
 /// # OBJ
 ///
-/// Triangles in the order of the faces, polygons cut into fans from their first corner, or into other triangles where that would be wrong. `Kd` times
-/// `map_Kd` and the colors of vertices, taken for sRGB, is the reflectance; `Ke` times `map_Ke` a radiance that gives the exitance `π Ke`; `d` (else
-/// `1 − Tr`) times the alpha, or brightness, of `map_d` the opacity. Groups have the
-/// names in `o` and `g` statements, of which the last before a face counts.
+/// * **Triangles** are in the order of the faces. Polygons are cut into fans from their first corner, or into other
+///   triangles where a fan would be wrong.
+/// * **Materials**: `Kd` times `map_Kd` and the vertex colors, which are taken as sRGB, is the reflectance. `Ke` times
+///   `map_Ke` is a radiance, which gives the exitance `π Ke`. `d` (or else `1 − Tr`) times the alpha, or brightness, of
+///   `map_d` is the opacity.
+/// * **Groups** have the names in `o` and `g` statements; the last one before a face counts.
 ///
 /// # Errors
 ///
-/// If the reader of the format is switched off, or the file or one that its geometry needs cannot be read, breaks its format, or holds no triangle. Missing
-/// material libraries and textures are warnings.
+/// If the reader of the format is disabled; if the file, or another one that its geometry needs, cannot be read or
+/// violates its format; or if there is no triangle. Missing material libraries and textures are warnings.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Built, LoadError> {
     load_with(path, options, |_| {})
 }
 
-/// As [`load`], with more than the file has: `add` gets the builder when it holds the contents of the file.
+/// Reads a scene file as [`load`] does, and adds to it: `add` gets the builder after the contents of the file were
+/// added.
 ///
 /// # Errors
 ///
-/// As [`load`].
+/// The same as those of [`load`].
 #[cfg_attr(
     not(any(feature = "gltf", feature = "obj")),
     expect(unused_variables, reason = "without a reader, there is nothing to do with options")
@@ -86,7 +94,7 @@ pub fn load_with(
     }
 }
 
-/// Lets a reader fill a builder, and builds the scene.
+/// Fills a builder with a reader, and builds the scene.
 #[cfg(any(feature = "gltf", feature = "obj"))]
 fn read(
     path: &Path,

@@ -1,4 +1,4 @@
-//! Warnings, gathered so that a thousand of a kind make one line.
+//! Collection of warnings, where any number of one kind make one line.
 
 use std::collections::HashSet;
 
@@ -6,10 +6,10 @@ use crate::builder::SceneBuilder;
 use crate::load::files::shortened;
 use crate::warning::Warning;
 
-/// How many names a line gives before it only counts.
-const NAMES: usize = 5;
+/// Maximum number of names in a line; further ones are only counted.
+const MAX_NAMES: usize = 5;
 
-/// What a reader left out or replaced, by kind, in the order in which each kind came up first.
+/// Things that a reader left out or replaced, by kind, in the order of the first of each kind.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     kinds: Vec<Note>,
@@ -25,19 +25,19 @@ struct Note {
 }
 
 impl Notes {
-    /// Notes `count` things of the kind `what`, a phrase that goes on after a number.
+    /// Adds `count` things of the kind `what`, a phrase that follows a number.
     pub(super) fn count(&mut self, what: &'static str, count: usize) {
         if count > 0 {
             self.kind(what).count += count;
         }
     }
 
-    /// Notes one thing of the kind `what` by its name, unless it was noted before.
+    /// Adds a thing of the kind `what` by name, unless it was added before.
     pub(super) fn name(&mut self, what: &'static str, name: impl Into<String>) {
         let (note, name) = (self.kind(what), name.into());
         if note.seen.insert(name.clone()) {
             note.count += 1;
-            if note.names.len() < NAMES {
+            if note.names.len() < MAX_NAMES {
                 note.names.push(shortened(&name, 120));
             }
         }
@@ -51,13 +51,13 @@ impl Notes {
         &mut self.kinds[i]
     }
 
-    /// What geometry was passed over, which is what somebody wants to know whose scene turns out to be empty.
+    /// Returns a summary of the skipped geometry, which explains why a scene is empty.
     pub(super) fn skipped(&self) -> String {
         let skipped = self.kinds.iter().filter(|note| note.what.ends_with("were skipped"));
         skipped.map(|note| format!("{} {}", note.count, note.what)).collect::<Vec<_>>().join(" and ")
     }
 
-    /// Passes everything on as warnings.
+    /// Adds all notes to the builder as warnings.
     pub(super) fn warn(self, builder: &mut SceneBuilder) {
         for Note { what, count, names, .. } in self.kinds {
             let mut line = format!("{count} {what}");
@@ -72,22 +72,22 @@ impl Notes {
     }
 }
 
-/// A name from a file in quotes.
+/// Returns a name from a file in quotes.
 pub(super) fn quoted(name: &str) -> String {
     format!("\"{name}\"")
 }
 
-/// Leaves the first few of many warnings about clamped reflectances, and counts the others.
+/// Keeps the first few warnings about clamped reflectances, and replaces the others by their number.
 pub(super) fn shorten(warnings: &mut Vec<Warning>) {
     let mut clamped = 0;
     warnings.retain(|w| {
         clamped += usize::from(matches!(w, Warning::ClampedReflectance { .. }));
-        !matches!(w, Warning::ClampedReflectance { .. }) || clamped <= NAMES
+        !matches!(w, Warning::ClampedReflectance { .. }) || clamped <= MAX_NAMES
     });
-    if clamped > NAMES {
+    if clamped > MAX_NAMES {
         let what = format!(
-            "{} more materials reflect all the light they get, and were clamped too",
-            clamped - NAMES
+            "{} more materials reflect all light or more; their reflectances were clamped, too",
+            clamped - MAX_NAMES
         );
         warnings.push(Warning::Ignored { what });
     }

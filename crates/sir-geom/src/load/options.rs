@@ -1,27 +1,27 @@
-//! How to read a scene file.
+//! Options for reading scene files.
 
 #[cfg(any(feature = "gltf", feature = "obj"))]
 use crate::material::{Material, Sides};
 
 #[cfg(any(feature = "gltf", feature = "obj"))]
-/// Reflectance in place of one that a file does not give.
+/// Reflectance where a file states none.
 pub(super) const DEFAULT_REFLECTANCE: f64 = 0.5;
 
-/// How to read a scene file.
+/// Options for reading a scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct LoadOptions {
-    /// Which sides of surfaces take part in light transport.
+    /// Sides of surfaces that take part in light transport.
     pub sides: SidesPolicy,
 }
 
-/// What decides which sides of a surface reflect.
+/// Rule for which sides of a surface reflect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum SidesPolicy {
-    /// The file: `doubleSided` in glTF, where both sides also emit. OBJ files have no such notion: both sides
-    /// reflect, and the front emits.
+    /// As stated in the file: by `doubleSided` in glTF, where both sides also emit. OBJ files do not state it: both
+    /// sides reflect, and the front emits.
     #[default]
     AsAuthored,
-    /// Both sides of every surface reflect. Which sides emit is left to the file.
+    /// Both sides of every surface reflect. The file determines which sides emit.
     Both,
     /// Only the fronts reflect and emit.
     Front,
@@ -29,7 +29,7 @@ pub enum SidesPolicy {
 
 impl SidesPolicy {
     #[cfg(any(feature = "gltf", feature = "obj"))]
-    /// The material as this policy has it.
+    /// Returns the material with the sides of this policy.
     pub(super) fn apply(self, mut material: Material) -> Material {
         match self {
             Self::AsAuthored => {}

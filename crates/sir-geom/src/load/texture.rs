@@ -1,4 +1,4 @@
-//! Images of surfaces: decoding, and a bound on all of them together.
+//! Decoding of images, and limits on all images of a scene together.
 
 use std::io::Cursor;
 
@@ -11,53 +11,55 @@ use crate::load::notes::Notes;
 use crate::material::Opacity;
 use crate::texture::{ColorMap, Texture, TextureId, TextureMap, Wrap};
 
-/// The kind of warning about textures of which nothing is known.
-pub(super) const UNREADABLE: &str = "textures cannot be read, and their color factor alone is used";
+/// Warning about textures that cannot be read.
+pub(super) const UNREADABLE: &str = "textures cannot be read; only their color factors are used";
 
-/// The kind of warning about textures for which there is no room.
+/// Warning about textures beyond the limit of texels.
 const TOO_MANY: &str =
-    "textures are beyond the 268 million texels of a scene, and were replaced by their mean colors";
+    "textures exceed the limit of 268 million texels per scene and were replaced by their mean colors";
 
-/// The most memory for a decoded image, in bytes.
+/// Maximum memory for a decoded image \[bytes\].
 const MAX_MEMORY: u64 = 512 << 20;
 
-/// The most texels that stay in memory, 1 GiB.
+/// Maximum number of texels in memory (1 GiB).
 const MAX_TEXELS: u64 = 1 << 28;
 
-/// The most texels that are decoded at all: images that have the same bytes in many ways would take time without end.
+/// Maximum number of decoded texels. Many images that refer to the same bytes in different ways would otherwise take
+/// unbounded time.
 const MAX_DECODED: u64 = 1 << 30;
 
-/// The most bytes of pixels that a byte of a file can stand for. PNG packs 1,032 into one (the limit of deflate); JPEG needs a
-/// bit for each of the six blocks that 256 pixels have at least, which makes 1,024. Sixteen bits per channel may need
-/// room for two copies.
-const EXPANSION: u64 = 2200;
+/// Maximum number of bytes of pixels per byte of a file. PNG packs 1,032 bytes into one (the limit of deflate). JPEG
+/// needs a bit for each of the at least six blocks of 256 pixels, which makes 1,024. Images with 16 bits per channel
+/// may need room for two copies.
+const MAX_EXPANSION: u64 = 2200;
 
-/// What is known of an image.
+/// Cached data about an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Image {
-    /// Its texels, unless they are all alike or there is no room for them.
+    /// Its texture; `None` if all texels are equal or exceed the limit.
     texels: Option<TextureId>,
-    /// The means of color and alpha.
+    /// Mean linear color.
     color: Rgb,
+    /// Mean alpha, in `[0, 1]`.
     alpha: f64,
-    /// Whether alpha is the same everywhere.
-    even_alpha: bool,
+    /// True if alpha is the same everywhere.
+    uniform_alpha: bool,
 }
 
 impl Image {
     #[cfg(feature = "obj")]
-    /// Whether it is less than opaque anywhere.
+    /// Returns true if it is not opaque everywhere.
     pub(super) fn has_alpha(&self) -> bool {
         self.alpha < 1.0
     }
 }
 
-/// The images of a scene, as far as their number goes.
+/// Remaining budget of texels for the images of a scene.
 #[derive(Debug)]
 pub(super) struct Images {
-    /// Texels that may still be kept in memory.
+    /// Number of texels that may still be kept in memory.
     texels_left: u64,
-    /// Texels that may still be decoded.
+    /// Number of texels that may still be decoded.
     decodes_left: u64,
 }
 
@@ -72,7 +74,7 @@ impl Images {
     ///
     /// # Errors
     ///
-    /// Why it cannot be read.
+    /// The reason why the image cannot be read.
     pub(super) fn decode(&mut self, bytes: &[u8]) -> Result<Texture, String> {
         if self.decodes_left == 0 {
             return Err("the images of this scene have more than a billion texels".to_owned());
@@ -82,7 +84,7 @@ impl Images {
         Ok(texture)
     }
 
-    /// Adds an image to a scene, unless its means say all about it.
+    /// Adds an image to a scene, unless its means suffice because all texels are equal.
     pub(super) fn add(
         &mut self,
         texture: Texture,
@@ -91,33 +93,33 @@ impl Images {
         notes: &mut Notes,
     ) -> Image {
         let texels = texture.texels();
-        let is_even = texels.iter().all(|texel| *texel == texels[0]);
-        let even_alpha = texels.iter().all(|texel| texel[3] == texels[0][3]);
+        let is_uniform = texels.iter().all(|texel| *texel == texels[0]);
+        let uniform_alpha = texels.iter().all(|texel| texel[3] == texels[0][3]);
         let count = texels.len() as u64;
         let (color, alpha) = (texture.mean_color(), texture.mean_alpha());
         let fits = count <= self.texels_left;
-        if !is_even && !fits {
+        if !is_uniform && !fits {
             notes.name(TOO_MANY, name);
         }
-        let texels = (!is_even && fits).then(|| {
+        let texels = (!is_uniform && fits).then(|| {
             self.texels_left -= count;
             builder.add_texture(texture)
         });
-        Image { texels, color, alpha, even_alpha }
+        Image { texels, color, alpha, uniform_alpha }
     }
 }
 
-/// An image on a surface.
+/// Image on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layer {
     pub(super) image: Image,
     pub(super) wrap: [Wrap; 2],
-    /// Which set of coordinates of its material it uses.
+    /// Index of the coordinate set of its material that it uses.
     pub(super) coordinates: u8,
 }
 
 impl Layer {
-    /// An image whose coordinates are found as `place` says; these get their number among the `sets` of a material.
+    /// Creates a layer whose coordinates are those of `place`, which is added to the `sets` of a material if it is new.
     pub(super) fn new<S: PartialEq>(image: Image, wrap: [Wrap; 2], place: S, sets: &mut Vec<S>) -> Self {
         let number = image.texels.map_or(0, |_| {
             sets.iter().position(|set| *set == place).unwrap_or_else(|| {
@@ -134,29 +136,29 @@ impl Layer {
     }
 }
 
-/// A color, times the mean of an image if there is one; and what it is from place to place.
+/// Returns a color times the mean of an image, if there is one, and the map of its variation.
 pub(super) fn color(factor: Rgb, layer: Option<&Layer>) -> (Rgb, Option<ColorMap>) {
     let mean = layer.map_or(Rgb::ONE, |layer| layer.image.color);
     let map = layer.and_then(Layer::map).filter(|_| factor != Rgb::ZERO);
     (factor * mean, map.map(|map| ColorMap { map, factor }))
 }
 
-/// An opacity, times the alpha of an image if there is one.
+/// Returns an opacity times the alpha of an image, if there is one.
 pub(super) fn opacity(factor: f64, layer: Option<&Layer>, cutoff: Option<f64>) -> Opacity {
     let plain = |factor| Opacity { factor, map: None, cutoff };
     match layer {
         None => plain(factor),
-        Some(layer) if layer.image.even_alpha => plain(factor * layer.image.alpha),
+        Some(layer) if layer.image.uniform_alpha => plain(factor * layer.image.alpha),
         Some(layer) => match layer.map() {
             Some(map) => Opacity { factor, map: Some(map), cutoff },
-            // A mean beside a threshold says nothing.
+            // A mean cannot be compared with a threshold.
             None if cutoff.is_some() => plain(factor),
             None => plain(factor * layer.image.alpha),
         },
     }
 }
 
-/// An affine map of texture coordinates.
+/// Affine transform of texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Placement {
     pub(super) x_axis: DVec2,
@@ -166,19 +168,19 @@ pub(super) struct Placement {
 
 impl Placement {
     #[cfg(feature = "gltf")]
-    /// The coordinates as they are.
+    /// The identity.
     pub(super) const PLAIN: Self = Self { x_axis: DVec2::X, y_axis: DVec2::Y, offset: DVec2::ZERO };
 
-    /// Where a place comes to lie.
+    /// Transforms coordinates.
     pub(super) fn apply(&self, place: Vec2) -> Vec2 {
         let place = place.as_dvec2();
         (place.x * self.x_axis + place.y * self.y_axis + self.offset).as_vec2()
     }
 }
 
-/// A PNG or JPEG image, its values read as sRGB with 8 bits.
+/// Decodes a PNG or JPEG image, whose values are read as 8-bit sRGB.
 ///
-/// Decoders may use as much memory as a file of this size can need, 512 MiB at most.
+/// The decoder may use as much memory as a file of this size can need, at most 512 MiB.
 ///
 /// # Errors
 ///
@@ -186,7 +188,7 @@ impl Placement {
 fn decode(bytes: &[u8]) -> Result<Texture, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_MEMORY.min(EXPANSION.saturating_mul(bytes.len() as u64) + (1 << 20)));
+    limits.max_alloc = Some(MAX_MEMORY.min(MAX_EXPANSION.saturating_mul(bytes.len() as u64) + (1 << 20)));
     reader.limits(limits);
     let pixels = reader.decode().map_err(|e| e.to_string())?.into_rgba8();
     let (width, height) = pixels.dimensions();
@@ -221,7 +223,7 @@ mod tests {
         }
     }
 
-    /// Two columns, black and open, white and closed.
+    /// Returns an image of two columns: black and transparent, white and opaque.
     fn halves() -> Vec<u8> {
         png(&RgbaImage::from_fn(2, 3, |x, _| Rgba([255 * x as u8, 0, 0, 255 * x as u8])))
     }
@@ -238,7 +240,8 @@ mod tests {
         assert_eq!(found[0].texels, Some(TextureId::new(0)));
         assert_eq!((found[1].texels, found[1].color, found[1].alpha), (None, Rgb::X / 2.0, 0.5));
         assert!(images.decode(&halves()).unwrap_err().contains("billion"));
-        // Where the mask cannot be kept, there is a surface: whether half of it is more than the threshold says nothing.
+        // Without its mask the surface is solid, because a comparison of the mean alpha with the threshold is
+        // meaningless.
         let layer = Layer { image: found[1], wrap: [Wrap::Repeat; 2], coordinates: 0 };
         assert_eq!(opacity(0.5, Some(&layer), Some(0.4)).factor, 0.5);
         assert_eq!(opacity(0.5, Some(&layer), None).factor, 0.25);

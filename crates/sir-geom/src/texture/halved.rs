@@ -1,12 +1,12 @@
-//! Smaller images of textures, for views from afar.
+//! Smaller images of textures, for distant views.
 
 use crate::color::Rgb;
 use crate::texture::image::{Texture, srgb_to_linear};
 
 impl Texture {
-    /// The image at half its size, rounded down, but at least one texel wide and high. Each texel has the mean, in linear
-    /// color, of what it covers; if colors count `by_alpha`, the mean weighted by alpha, as far as there is any. Colors are rounded to
-    /// 8 bits of sRGB: good enough to look at, not to compute with.
+    /// Returns the image at half its size, rounded down, but at least one texel wide and high. Each texel is the mean,
+    /// in linear color, of what it covers; if `by_alpha`, the mean weighted by alpha, unless alpha is zero. Colors are
+    /// rounded to 8 bits of sRGB: good enough for display, not for computation.
     #[must_use]
     pub fn halved(&self, by_alpha: bool) -> Self {
         let [columns, rows] = [self.width, self.height].map(Covered::new);
@@ -33,7 +33,7 @@ impl Texture {
     }
 }
 
-/// Which old texels new ones cover, along one edge of an image.
+/// Old texels that the new ones cover, along one edge of an image.
 struct Covered {
     old: usize,
     count: usize,
@@ -45,9 +45,9 @@ impl Covered {
         Self { old, count: (old / 2).max(1) }
     }
 
-    /// The old texels under a new one, and the share that each has of it.
+    /// Returns the old texels under a new one, and the share that each has of it.
     fn by(&self, new: usize) -> impl Iterator<Item = (usize, f64)> + use<> {
-        // In units in which old ones are `count` long, and new ones `old`.
+        // In units in which old texels have the length `count`, and new ones `old`.
         let (old, count) = (self.old, self.count);
         let (start, end) = (new * old, (new + 1) * old);
         (start / count..end.div_ceil(count)).map(move |i| {
@@ -57,7 +57,7 @@ impl Covered {
     }
 }
 
-/// The 8-bit value of sRGB nearest to a linear one.
+/// Returns the 8-bit value of sRGB nearest to a linear one.
 fn linear_to_srgb(linear: f64) -> u8 {
     let (mut below, mut above) = (0u8, 255u8);
     while below < above {
@@ -88,7 +88,11 @@ mod tests {
         let board = Texture::new(4, 4, board.collect()).unwrap();
         let half = board.halved(false);
         assert_eq!((half.size(), half.texels()), ([2, 2], &[[188, 188, 188, 128]; 4][..]));
-        assert_eq!(board.halved(true).texels(), [[255, 255, 255, 128]; 4], "what is open has no color");
+        assert_eq!(
+            board.halved(true).texels(),
+            [[255, 255, 255, 128]; 4],
+            "transparent texels have no color"
+        );
         // Five in two: two and a half each.
         let row = [0, 0, 255, 0, 0].map(|v| [v, 0, 0, 255]);
         let half = Texture::new(5, 1, row.to_vec()).unwrap().halved(true);
@@ -105,7 +109,7 @@ mod tests {
         while smaller.size() != [1, 1] {
             smaller = smaller.halved(false);
         }
-        // Half a step of sRGB, from rounding, for some of the levels.
+        // Rounding costs half a step of sRGB at some of the levels.
         assert!((smaller.mean_color() / mean - 1.0).abs().max_element() < 0.02);
     }
 }

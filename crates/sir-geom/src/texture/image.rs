@@ -1,4 +1,4 @@
-//! Images, and how they are laid on a surface.
+//! Images, and their mapping to surfaces.
 
 use std::sync::LazyLock;
 
@@ -8,14 +8,15 @@ use crate::color::Rgb;
 use sir_types::typed_index;
 
 typed_index!(
-    /// A texture of a [`Scene`](crate::Scene).
+    /// Index of a texture of a [`Scene`](crate::Scene).
     TextureId
 );
 
 /// An image: colors in 8-bit sRGB and 8 linear bits of alpha.
 ///
-/// Coordinates are those of glTF: `(0, 0)` is the upper left corner of the image and `(1, 1)` the lower right. A texel fills its
-/// square evenly, so that the mean over an area is well defined; only pictures interpolate between texels.
+/// Coordinates are those of glTF: `(0, 0)` is the upper left corner of the image and `(1, 1)` the lower right. The
+/// color is constant over the square of a texel, so that the mean over an area is well defined; only pictures
+/// interpolate between texels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     pub(super) width: u32,
@@ -24,26 +25,26 @@ pub struct Texture {
     pub(super) texels: Vec<[u8; 4]>,
 }
 
-/// What a texture shows outside of its square.
+/// Extension of a texture beyond its square.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Wrap {
-    /// The image again.
+    /// Periodic repetition.
     #[default]
     Repeat,
-    /// The image again, every other time its mirror image.
+    /// Periodic repetition, with every other image mirrored.
     Mirror,
     /// The color of the nearest edge.
     Clamp,
 }
 
-/// Which texture lies on a surface, and how.
+/// Texture on a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextureMap {
     /// The image.
     pub texture: TextureId,
-    /// What there is outside of it, horizontally and vertically.
+    /// Extension beyond the image, horizontally and vertically.
     pub wrap: [Wrap; 2],
-    /// Which of the sets of coordinates it uses that the triangles of its material have.
+    /// Index of the coordinate set of the triangles that it uses.
     pub coordinates: u8,
 }
 
@@ -52,13 +53,13 @@ pub struct TextureMap {
 pub struct ColorMap {
     /// The texture.
     pub map: TextureMap,
-    /// The factor, in the unit of the product.
+    /// Factor, in the unit of the product.
     pub factor: Rgb,
 }
 
 impl Texture {
-    /// An image of texels `[red, green, blue, alpha]`, row by row from the top; `None` if their number is zero or not
-    /// `width × height`.
+    /// Returns an image of texels `[red, green, blue, alpha]`, row by row from the top; `None` if their number is zero
+    /// or not `width × height`.
     #[must_use]
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Option<Self> {
         let count = u64::from(width) * u64::from(height);
@@ -70,22 +71,22 @@ impl Texture {
         })
     }
 
-    /// Width and height in texels.
+    /// Returns width and height in texels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [self.width, self.height]
     }
 
-    /// Texels `[red, green, blue, alpha]`, row by row from the top: colors in sRGB, alpha linear.
+    /// Returns the texels `[red, green, blue, alpha]`, row by row from the top: colors in sRGB, alpha linear.
     #[must_use]
     pub fn texels(&self) -> &[[u8; 4]] {
         &self.texels
     }
 
-    /// The mean linear color, alpha ignored.
+    /// Returns the mean linear color; alpha is ignored.
     #[must_use]
     pub fn mean_color(&self) -> Rgb {
-        // Whole numbers add up to the same sum in any order.
+        // Sums of integers do not depend on the order.
         let mut histogram = [[0u64; 3]; 256];
         for texel in &self.texels {
             for (channel, &value) in texel[..3].iter().enumerate() {
@@ -99,14 +100,14 @@ impl Texture {
         sum / self.texels.len() as f64
     }
 
-    /// The mean of alpha, in `[0, 1]`.
+    /// Returns the mean of alpha, in `[0, 1]`.
     #[must_use]
     pub fn mean_alpha(&self) -> f64 {
         let sum: u64 = self.texels.iter().map(|texel| u64::from(texel[3])).sum();
         sum as f64 / (255.0 * self.texels.len() as f64)
     }
 
-    /// Linear color at a place, interpolated between the four texels around it.
+    /// Returns the linear color at a place, interpolated between the four nearest texels.
     #[must_use]
     pub fn color_at(&self, place: DVec2, wrap: [Wrap; 2]) -> Rgb {
         let p = self.in_texels(place) - 0.5;
@@ -120,7 +121,7 @@ impl Texture {
         row(0).lerp(row(1), part.y)
     }
 
-    /// Alpha of the texel at a place, in `[0, 1]`.
+    /// Returns the alpha of the texel at a place, in `[0, 1]`.
     #[inline]
     #[must_use]
     pub fn alpha_at(&self, place: DVec2, wrap: [Wrap; 2]) -> f64 {
@@ -132,7 +133,7 @@ impl Texture {
         place * DVec2::new(f64::from(self.width), f64::from(self.height))
     }
 
-    /// The texel in a column and row.
+    /// Returns the texel in a column and row.
     pub(super) fn texel(&self, at: IVec2, wrap: [Wrap; 2]) -> [u8; 4] {
         let column = wrap[0].inside(i64::from(at.x), i64::from(self.width));
         let row = wrap[1].inside(i64::from(at.y), i64::from(self.height));
@@ -141,7 +142,7 @@ impl Texture {
 }
 
 impl Wrap {
-    /// The column of an image of this width that appears at any column.
+    /// Returns the column of an image of this width that appears at any column.
     pub(super) fn inside(self, column: i64, width: i64) -> usize {
         let inside = match self {
             Self::Repeat => column.rem_euclid(width),
@@ -172,12 +173,12 @@ pub(crate) fn srgb_to_linear_at(s: f64) -> f64 {
     x * x * fifth_root(x * x)
 }
 
-/// The fifth root of a number in `(0, 1]` by Newton's iteration.
+/// Returns the fifth root of a number in `(0, 1]`, by Newton's iteration.
 ///
-/// `powf` may differ in the last bits from one machine to another, and reflectances decide tallies.
+/// `powf` may differ in the last bits between machines, and tallies depend on reflectances.
 fn fifth_root(x: f64) -> f64 {
     let mut root = 1.0;
-    // From above, the iterates fall until rounding stops them.
+    // From above, the iterates decrease until rounding stops them.
     loop {
         let next = (4.0 * root + x / (root * root * root * root)) / 5.0;
         if next < root {

@@ -1,4 +1,4 @@
-//! Textures: images that say how a surface's colors vary on it.
+//! Textures: images that vary the colors of surfaces.
 
 mod halved;
 mod image;

@@ -1,44 +1,44 @@
 //! Means of a texture over triangles, without sampling.
 //!
-//! A texel fills its square evenly, so the integral over a triangle is a sum over texels of value times common area. By
-//! Green's theorem it is also an integral along the rim, `∬ f = ∮ G dy` with `G(x, y) = ∫₀ˣ f(x′, y) dx′`, and needs only
-//! the texels that the rim crosses, if sums along rows are known.
+//! The color is constant over the square of a texel, so the integral over a triangle is a sum over texels of value
+//! times common area. By Green's theorem it is also an integral along the boundary, `∬ f = ∮ G dy` with
+//! `G(x, y) = ∫₀ˣ f(x′, y) dx′`. It needs only the texels that the boundary crosses, if sums along rows are known.
 
 use glam::{DVec2, DVec4};
 
 use crate::color::Rgb;
 use crate::texture::image::{Texture, Wrap, srgb_to_linear};
 
-/// Texels of a row between which a sum is stored.
+/// Number of texels in a row between stored sums.
 const BLOCK: usize = 16;
 
-/// The most texels along the edges of a triangle that are visited; a larger triangle has the mean of the whole image.
-const MOST_TEXELS: f64 = 65_536.0;
+/// Maximum number of texels visited along the edges of a triangle; a larger triangle has the mean of the whole image.
+const MAX_BOUNDARY_TEXELS: f64 = 65_536.0;
 
-/// What a texture is over an area.
+/// Mean of a texture over an area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureMean {
-    /// Mean linear color of what is there: texels count by their weight.
+    /// Mean linear color, weighted by the weights of the texels.
     pub color: Rgb,
     /// Mean weight.
     pub weight: f64,
 }
 
-/// A texture, prepared for means over triangles. Uses 2 bytes per texel beside those of the texture.
+/// A texture prepared for means over triangles. Uses 2 bytes per texel besides those of the texture.
 #[derive(Clone, Debug)]
 pub struct TextureSums<'a> {
     texture: &'a Texture,
     wrap: [Wrap; 2],
     /// Weight of each value of alpha.
     weights: [f64; 256],
-    /// Sums of the texels of a row before every block, and behind the last.
+    /// Sums of the texels of a row before each block, and after the last.
     blocks: Vec<DVec4>,
     blocks_per_row: usize,
     whole: DVec4,
 }
 
 impl<'a> TextureSums<'a> {
-    /// Prepares a texture whose texels count by their alpha, from 0 to 1, as `weight` says.
+    /// Prepares a texture. `weight` maps the alpha of a texel, from 0 to 1, to its weight.
     #[must_use]
     pub fn new(texture: &'a Texture, wrap: [Wrap; 2], weight: impl Fn(f64) -> f64) -> Self {
         let width = texture.width as usize;
@@ -57,7 +57,7 @@ impl<'a> TextureSums<'a> {
                 sums.blocks.push(sum);
                 sum += block.iter().map(|&texel| sums.value(texel)).sum::<DVec4>();
             }
-            // The last is that of the whole row.
+            // The last one is the sum of the whole row.
             sums.blocks.resize(end, sum);
             sums.whole += sum;
         }
@@ -65,24 +65,24 @@ impl<'a> TextureSums<'a> {
         sums
     }
 
-    /// The mean over a triangle, given by the coordinates of its corners.
+    /// Returns the mean over a triangle, given by the coordinates of its corners.
     ///
-    /// Where these are in a line or a point it is the mean along the longest edge, at nine places; where edges have more than
-    /// 65,536 texels it is that of the whole image.
+    /// If these are collinear or coincide, it is the mean of nine points along the longest edge. If the edges have more
+    /// than 65,536 texels, it is that of the whole image.
     #[must_use]
     pub fn mean(&self, corners: [DVec2; 3]) -> TextureMean {
         self.finish(self.weighted_mean(corners.map(|corner| self.texture.in_texels(corner))))
     }
 
-    /// Colors times weights, and weights.
+    /// Returns the mean of colors times weights (`xyz`), and of weights (`w`).
     fn weighted_mean(&self, corners: [DVec2; 3]) -> DVec4 {
         let edges = [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]));
         let length = |&(a, b): &(DVec2, DVec2)| (b - a).abs().element_sum();
         let around: f64 = edges.iter().map(length).sum();
-        if around.is_nan() || around > MOST_TEXELS {
+        if around.is_nan() || around > MAX_BOUNDARY_TEXELS {
             return self.whole;
         }
-        // Near the origin, sums cancel without loss.
+        // Near the origin, sums cancel without loss of precision.
         let origin = corners[0].min(corners[1]).min(corners[2]);
         let shift = DVec2::new(self.shift(0, origin.x), self.shift(1, origin.y));
         let [a, b, c] = corners.map(|corner| corner - shift);
@@ -96,10 +96,10 @@ impl<'a> TextureSums<'a> {
             let at = |i: i32| from.lerp(to, (f64::from(i) + 0.5) / 9.0).floor().as_ivec2();
             return (0..9).map(|i| self.value(self.texture.texel(at(i), self.wrap))).sum::<DVec4>() / 9.0;
         }
-        2.0 * (self.along(a, b) + self.along(b, c) + self.along(c, a)) / doubled_area
+        2.0 * (self.edge_integral(a, b) + self.edge_integral(b, c) + self.edge_integral(c, a)) / doubled_area
     }
 
-    /// A whole number of periods of the pattern, below `least`.
+    /// Returns a whole number of periods of the pattern, at most `least`.
     fn shift(&self, axis: usize, least: f64) -> f64 {
         let size = f64::from(self.texture.size()[axis]);
         match self.wrap[axis] {
@@ -111,7 +111,7 @@ impl<'a> TextureSums<'a> {
 
     fn finish(&self, mean: DVec4) -> TextureMean {
         let weight = mean.w.clamp(0.0, 1.0);
-        // Where nothing is, any color will do.
+        // If the weight is zero, any color will do: that of the whole image is used.
         let of = [mean, self.whole].into_iter().find(|mean| mean.w > 1e-9);
         let color = of.map_or(Rgb::ZERO, |mean| (mean.truncate() / mean.w).clamp(Rgb::ZERO, Rgb::ONE));
         TextureMean { color, weight }
@@ -122,8 +122,8 @@ impl<'a> TextureSums<'a> {
         weight * DVec4::new(srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b), 1.0)
     }
 
-    /// `∫ G dy` along an edge.
-    fn along(&self, from: DVec2, to: DVec2) -> DVec4 {
+    /// Returns `∫ G dy` along an edge.
+    fn edge_integral(&self, from: DVec2, to: DVec2) -> DVec4 {
         let (low, high, sign) = if from.y <= to.y { (from, to, 1.0) } else { (to, from, -1.0) };
         let height = high.y - low.y;
         if height == 0.0 {
@@ -141,7 +141,7 @@ impl<'a> TextureSums<'a> {
         sign * sum
     }
 
-    /// The mean of `G` between two places of a row.
+    /// Returns the mean of `G` between two places in a row.
     fn in_row(&self, row: i64, start: f64, end: f64) -> DVec4 {
         let mut column = start.floor();
         let mut before = self.before(row, column as i64);
@@ -160,7 +160,8 @@ impl<'a> TextureSums<'a> {
         sum / (end - start)
     }
 
-    /// The sum of the texels of a row from column 0 to before any column: negative to the left of it.
+    /// Returns the sum of the texels of a row from column 0 up to, but not including, a column; to the left of column 0
+    /// it is negative.
     fn before(&self, row: i64, column: i64) -> DVec4 {
         let (width, row) =
             (i64::from(self.texture.width), self.wrap[1].inside(row, i64::from(self.texture.height)));
@@ -206,7 +207,7 @@ mod tests {
         Texture::new(width, height, (0..width * height).map(texel).collect()).unwrap()
     }
 
-    /// The mean over a triangle from very many points.
+    /// Returns the mean over a triangle, from very many points.
     fn sampled(texture: &Texture, wrap: [Wrap; 2], [a, b, c]: [DVec2; 3], n: u32) -> TextureMean {
         let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
         let mut count = 0.0;
@@ -291,7 +292,7 @@ mod tests {
             prop_assume!(area > 0.2);
             let mean = TextureSums::new(&texture, wrap, |alpha| alpha).mean(corners);
             let expected = sampled(&texture, wrap, corners, 400);
-            // What is clear has no color.
+            // Transparent areas have no color.
             prop_assume!(expected.weight > 0.02);
             prop_assert!((mean.weight - expected.weight).abs() < 4e-3, "{} {}", mean.weight, expected.weight);
             prop_assert!((mean.color - expected.color).length() < 8e-3, "{} {}", mean.color, expected.color);

@@ -1,4 +1,4 @@
-//! Broken and difficult files of others, which are read where they are and are no part of the project.
+//! Broken and difficult third-party files, which are read in place and are not part of the project.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use sir_geom::{LoadError, SceneError};
 use crate::bounded::{alone, load_within_bounds};
 use crate::files::{chain, third_party_data};
 
-/// All files that a folder and those in it hold, by name, with the bytes of all files in the same folder.
+/// Adds all scene files in a folder and below it, by name, with the total size of all files in the same folder.
 fn scenes_below(folder: &Path, found: &mut Vec<(PathBuf, usize)>) {
     let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
@@ -22,20 +22,20 @@ fn scenes_below(folder: &Path, found: &mut Vec<(PathBuf, usize)>) {
     }
 }
 
-/// Whether the report of a validator finds no error in a file; `None` if there is no report.
+/// Returns true if the report of a validator has no error for a file; `None` if there is no report.
 fn is_valid(file: &Path) -> Option<bool> {
     let report = fs::read(format!("{}.report.json", file.display())).ok()?;
     let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
     Some(report["issues"]["numErrors"] == 0)
 }
 
-/// Whether a file that breaks no rule is refused with good reason.
+/// Returns true if a valid file is rejected for a good reason.
 fn by_design(error: &LoadError) -> bool {
     match error {
-        // Nothing to light, or an extension that is not known here, which the error names.
+        // No triangles, or an unsupported extension, which the error names.
         LoadError::Scene { source: SceneError::Empty { .. }, .. } => true,
         LoadError::RequiredExtensions { names, .. } => !names.is_empty(),
-        // A buffer may have neither a file nor the binary part: its bytes are expected from elsewhere.
+        // A buffer may have neither a file nor the binary chunk: its bytes are expected from elsewhere.
         other => chain(other).contains("has no data"),
     }
 }

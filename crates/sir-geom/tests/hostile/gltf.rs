@@ -1,4 +1,4 @@
-//! glTF files that claim more than they have, lead in circles, or reach for what is not theirs.
+//! glTF files that claim more data than they have, contain cycles, or refer to files outside their folder.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::bounded::{alone, load_hostile, load_within_bounds, refused};
 use crate::files::{Gltf, encoded, png, warnings};
 
-/// Refuses the file of a triangle in whose JSON `change` was made.
+/// Asserts that the file of a triangle is rejected after `change` was applied to its JSON.
 fn refused_after(change: impl FnOnce(&mut Value), words: &[&str]) -> String {
     let mut gltf = Gltf::triangle();
     change(&mut gltf.json);
@@ -44,7 +44,7 @@ fn counts_that_no_data_backs_are_refused() {
     }
 }
 
-/// Zeros that cost the file nothing, used for all that they can be used for.
+/// Zeros that cost the file nothing, used in every possible way.
 #[test]
 fn accessors_without_data_are_small_all_together() {
     let _alone = alone();
@@ -126,7 +126,7 @@ fn a_deep_tree_is_no_problem() {
 #[test]
 fn many_instances_of_much_are_refused_early() {
     let _alone = alone();
-    // Points add nothing to a scene, but looking at each takes time.
+    // Points add nothing to a scene, but each takes time.
     let mut gltf = Gltf::triangle();
     let points = json!({"attributes": {"POSITION": 0}, "mode": 0});
     gltf.json["meshes"] = json!([{"primitives": vec![points; 20_000]}]);
@@ -167,14 +167,14 @@ fn whatever_is_cut_off_is_noticed() {
     }
     let text = gltf.embedded();
     for length in [1, 60, text.len() - 1] {
-        refused(&[("a.gltf", &text[..length])], &["not whole JSON"]);
+        refused(&[("a.gltf", &text[..length])], &["not complete, valid JSON"]);
     }
     let embedded = String::from_utf8(text).unwrap();
     let cut = embedded.replace("AAAA\"", "\"");
     refused(&[("a.gltf", cut.as_bytes())], &["buffer 0 should have 36 bytes"]);
     refused(&[("a.gltf", embedded.replace("AAAA\"", "AAA!\"").as_bytes())], &["buffer 0", "base64"]);
     refused(&[("a.gltf", &gltf.text("data.bin")), ("data.bin", &gltf.bytes[..35])], &["buffer 0", "35"]);
-    refused(&[("a.gltf", &gltf.text("data.bin"))], &["a.gltf: buffer 0", "data.bin", "put it there"]);
+    refused(&[("a.gltf", &gltf.text("data.bin"))], &["a.gltf: buffer 0", "data.bin", "add this file"]);
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn references_out_of_the_folder_are_refused() {
     for uri in ["../../etc/passwd", "/etc/passwd", "%2e%2e%2fsecret", "a/%2E%2E/../secret", "..%5csecret"] {
         refused(
             &[("a.gltf", &gltf.text(uri)), ("../secret", &gltf.bytes)],
-            &["buffer 0", "leads out of the scene's folder"],
+            &["buffer 0", "leads outside the scene's folder"],
         );
     }
     for uri in ["file:///etc/passwd", "http://localhost/a", "C:\\a", "c:a"] {
@@ -208,12 +208,12 @@ fn long_and_strange_names_do_not_flood_the_screen() {
     refused(&[("a.glb", &gltf.glb())], &["material", "exitance"]);
 }
 
-/// A PNG image of two colors, which a single one cannot stand for.
+/// Returns a PNG image of two colors, so that a single color cannot replace it.
 fn two_colors() -> Vec<u8> {
     encoded(image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([255 * x as u8, 80, 9])))
 }
 
-/// A PNG header that claims a size, and the start of its data.
+/// Returns a PNG header that claims a size, and the start of its data.
 fn huge_png(side: u32) -> Vec<u8> {
     let mut bytes = png([1, 2, 3]);
     bytes[16..20].copy_from_slice(&side.to_be_bytes());
@@ -239,7 +239,7 @@ fn a_picture_that_claims_to_be_huge_is_not_made() {
     }
 }
 
-/// The most memory for each byte: a strip has a triangle for each index, of one byte, and all that corners can have.
+/// The largest memory per byte: a strip has a triangle per index of one byte, and all values that corners can have.
 #[test]
 fn a_dense_strip_with_all_that_corners_can_have() {
     let _alone = alone();
@@ -289,7 +289,7 @@ fn encodings_and_things_that_are_no_files() {
         .is_ok()
     );
     refused(&[("a.gltf", b"")], &["the file is empty"]);
-    refused(&[("a.gltf", b"\xff\xfe{\0}\0")], &["not whole JSON"]);
+    refused(&[("a.gltf", b"\xff\xfe{\0}\0")], &["not complete, valid JSON"]);
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.gltf", "a.glb", "a.obj"] {
         let path = folder.path().join(name);

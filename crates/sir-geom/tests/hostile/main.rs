@@ -1,6 +1,6 @@
-//! Files that mean harm, and broken files of others: each ends with a scene or one clear error, in little time and memory.
+//! Malicious files, and broken third-party files: each ends in a scene or one clear error, in little time and memory.
 //!
-//! A program of its own, because the memory of one file can only be measured if nothing else runs.
+//! This is a separate program, because the memory of one file can only be measured if nothing else runs.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "these are tests")]
 

@@ -1,11 +1,11 @@
-//! OBJ and MTL files that claim more than they have, or reach for what is not theirs.
+//! OBJ and MTL files that claim more data than they have, or refer to files outside their folder.
 
 use crate::bounded::{alone, load_hostile, refused};
 use crate::files::warnings;
 
 const VERTICES: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
-/// A triangle of the material `a`.
+/// Returns a triangle of the material `a`.
 fn triangle(statements: &str) -> String {
     format!("{statements}\n{VERTICES}usemtl a\nf 1 2 3\n")
 }
@@ -80,7 +80,7 @@ fn libraries_and_textures_outside_the_folder_are_not_read() {
         let built = load_hostile(&files).unwrap();
         assert!(warnings(&built)[0].contains("not in the folder of the scene"), "{:?}", built.warnings);
     }
-    // Nothing is percent-encoded in these formats, so this is a file in the folder, which is not there.
+    // These formats have no percent encoding, so this names a file in the folder, which does not exist.
     let text = triangle("mtllib %2e%2e/secret.mtl");
     let built = load_hostile(&[("a.obj", text.as_bytes()), ("../secret.mtl", secret)]).unwrap();
     assert!(warnings(&built)[0].contains("cannot be read"), "{:?}", built.warnings);

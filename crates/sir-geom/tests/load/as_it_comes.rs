@@ -1,4 +1,5 @@
-//! Geometry as writers make it: instances, mirrors, stitched strips, odd normals, concave polygons, nothing but lines.
+//! Geometry as exported by other software: instances, reflections, stitched strips, odd normals, concave polygons,
+//! lines only.
 
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -10,7 +11,7 @@ fn obj(text: &str) -> Built {
     load_from("a.obj", &[("a.obj", text.as_bytes())]).unwrap()
 }
 
-/// A box from the origin with its fronts outside, as a mesh of 12 triangles.
+/// Returns a box from the origin with its fronts outside, as a mesh of 12 triangles.
 fn cuboid(size: [f32; 3]) -> Gltf {
     let mut gltf = Gltf::new();
     let corners: [[f32; 3]; 8] =
@@ -24,7 +25,7 @@ fn cuboid(size: [f32; 3]) -> Gltf {
     gltf
 }
 
-/// Six times the volume that the fronts enclose: above zero if they are outside.
+/// Returns six times the volume that the fronts enclose, positive if they are outside.
 fn volume(scene: &Scene) -> f64 {
     let parts = scene.triangle_ids().map(|t| {
         let [a, b, c] = scene.corners(t);
@@ -33,7 +34,7 @@ fn volume(scene: &Scene) -> f64 {
     parts.sum::<f64>() / 6.0
 }
 
-/// The volume tells everything: where the boxes are, how large, and which side their fronts are on.
+/// The volume covers everything: where the boxes are, how large, and on which side their fronts are.
 #[test]
 fn instances_and_mirror_images_of_a_box_have_their_fronts_outside() {
     let mut gltf = cuboid([1.0, 2.0, 3.0]);
@@ -72,7 +73,7 @@ fn a_mirror_in_a_matrix_and_one_below_another_are_seen() {
     assert!((volume(&gltf.load().unwrap().scene) - 4.0).abs() < 1e-12);
 }
 
-/// A mesh of strips or fans is mirrored as one of single triangles is.
+/// A mesh of strips or fans is reflected as one of single triangles is.
 #[test]
 fn mirrored_strips_and_fans_keep_their_fronts() {
     let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
@@ -100,7 +101,8 @@ fn mirrored_strips_and_fans_keep_their_fronts() {
     }
 }
 
-/// Writers join strips by naming corners twice: what is in between has no area, and is no reason for a warning to fear.
+/// Exporters join strips by repeating corners: the triangles in between have no area, which must not cause alarming
+/// warnings.
 #[test]
 fn stitched_strips_keep_their_fronts() {
     let mut gltf = Gltf::new();
@@ -114,7 +116,7 @@ fn stitched_strips_keep_their_fronts() {
     assert!(built.warnings.contains(&Warning::DroppedTriangles { count: 4 }), "{:?}", built.warnings);
 }
 
-/// Fronts follow from the order of corners, as the specification has it, whatever the normals for shading say.
+/// Fronts follow from the order of corners, as the specification states, whatever the shading normals are.
 #[test]
 fn normals_for_shading_decide_nothing() {
     let mut gltf = Gltf::triangle();
@@ -126,8 +128,8 @@ fn normals_for_shading_decide_nothing() {
     assert_eq!(scene.normal(scene.triangle_ids().next().unwrap()), DVec3::Z);
 }
 
-/// The same triangle thrice, once from the other side, and once with its corners elsewhere in the file: all are kept, and share
-/// their vertices.
+/// The same triangle three times, once reversed, and once with its corners elsewhere in the file: all are kept, and
+/// share their vertices.
 #[test]
 fn doubled_triangles_are_kept() {
     let scene =
@@ -147,23 +149,20 @@ fn a_scene_of_points_and_lines_says_that_they_were_passed_over() {
     let text = chain(&gltf.load().unwrap_err());
     assert!(
         text.ends_with(
-            "scene.gltf: no scene can be made of this file, in which 3 mesh primitives of points or lines were skipped and \
-             1 mesh primitives without positions were skipped: it has no triangles; add meshes of triangles to the scene"
+            "scene.gltf: no scene can be built from this file (3 mesh primitives of points or lines were skipped and \
+             1 mesh primitives without positions were skipped): it has no triangles; add meshes of triangles to the scene"
         ),
         "{text}"
     );
     let cloud = "v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2 3\nl 1 2\n";
     let error = load_from("a.obj", &[("a.obj", cloud.as_bytes())]).unwrap_err();
-    assert!(
-        chain(&error).contains("in which 2 points and lines were skipped: it has no triangles"),
-        "{error}"
-    );
+    assert!(chain(&error).contains("(2 points and lines were skipped): it has no triangles"), "{error}");
     let nothing = load_from("a.obj", &[("a.obj", b"v 0 0 0\n")]).unwrap_err();
-    assert!(chain(&nothing).contains("of this file: it has no triangles"), "{nothing}");
+    assert!(chain(&nothing).contains("from this file: it has no triangles"), "{nothing}");
     assert!(matches!(nothing, sir_geom::LoadError::Scene { source: SceneError::Empty { dropped: 0 }, .. }));
 }
 
-/// Negative numbers count back from where they stand, not from the end of the file.
+/// Negative indices count back from their line, not from the end of the file.
 #[test]
 fn corners_count_back_from_their_line() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 5\nv 1 0 5\nv 0 1 5\nf -3 -2 -1\nf -6 -5 -4\nf 1 -2 -1\n";
@@ -174,7 +173,7 @@ fn corners_count_back_from_their_line() {
     }
 }
 
-/// A U in a plane that no axis is normal to: a fan from any of its corners but two lies outside of it.
+/// A U in a plane that is not perpendicular to an axis: a fan from any of its corners except two lies outside it.
 #[test]
 fn concave_polygons_have_their_area_and_one_front() {
     let (right, up) = (DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.48, 0.8, 0.36));
@@ -205,7 +204,8 @@ fn polygons_that_cross_themselves_are_one_warning() {
     assert!(built.warnings.contains(&Warning::CrossedPolygons { count: 2 }), "{:?}", built.warnings);
 }
 
-/// Walls with a window, as some writers have them: the outline goes to the hole and back, so two corners are there twice.
+/// Walls with a window, as some exporters write them: the outline goes to the hole and back, so two corners occur
+/// twice.
 #[test]
 fn a_wall_with_a_window_has_no_glass() {
     let text =
@@ -220,7 +220,7 @@ fn a_wall_with_a_window_has_no_glass() {
     }
 }
 
-/// What polygons of many corners cost is bounded: a comb of 4,096 is cut, one of 20,000 is not.
+/// The cost of polygons with many corners is limited: a comb of 4,096 corners is triangulated, one of 20,000 is not.
 #[test]
 fn combs_of_many_teeth_end() {
     for (teeth, right) in [(2047, true), (10_000, false)] {

@@ -1,11 +1,11 @@
-//! Whatever is in a file, reading it ends with a scene or an error.
+//! Reading any file ends in a scene or an error.
 
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use crate::files::{Gltf, load_from, png};
 
-/// A file that uses most of what is read.
+/// Returns a file that uses most supported features.
 fn rich_gltf() -> Gltf {
     let mut gltf = Gltf::with_material(json!({
         "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "baseColorTexture": {"index": 0}},
@@ -39,7 +39,7 @@ const OBJ: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0 # c\nv 1 1 0\nv 0 1 0 1 1 1\nv
 const MTL: &str =
     "newmtl a\nKd 0.5 0.5 0.5\nKe 1 1 1\nmap_Kd -s 1 1 1 t.png\nnewmtl b\nKd 0.5\nmap_Ke t.png\n";
 
-/// Reads a file; what comes of it does not matter.
+/// Reads a file and ignores the result.
 fn survive(name: &str, bytes: &[u8]) {
     let image = png([9, 9, 9]);
     let result = load_from(name, &[("a.mtl", MTL.as_bytes()), ("t.png", &image), (name, bytes)]);
@@ -58,7 +58,7 @@ fn mutate(bytes: &[u8], changes: &[(usize, u8)], cut: usize) -> Vec<u8> {
     bytes
 }
 
-/// Replaces leaf number `n` (counted round) of a JSON tree.
+/// Replaces leaf number `n` (modulo the number of leaves) of a JSON tree.
 fn replace_leaf(tree: &mut Value, n: usize, value: &Value) {
     fn leaves<'a>(tree: &'a mut Value, found: &mut Vec<&'a mut Value>) {
         match tree {

@@ -1,4 +1,4 @@
-//! Files that the tests make themselves.
+//! Files that the tests create.
 
 use std::fs;
 use std::path::Path;
@@ -7,12 +7,12 @@ use base64::Engine as _;
 use serde_json::{Value, json};
 use sir_geom::{Built, LoadError, LoadOptions, Scene, load};
 
-/// Reads `name` from a folder in which the given files lie.
+/// Reads `name` from a folder with the given files.
 pub(crate) fn load_from(name: &str, files: &[(&str, &[u8])]) -> Result<Built, LoadError> {
     load_with(name, files, &LoadOptions::default())
 }
 
-/// The same with options.
+/// Does the same with options.
 pub(crate) fn load_with(
     name: &str,
     files: &[(&str, &[u8])],
@@ -27,17 +27,17 @@ pub(crate) fn load_with(
     load(&folder.path().join(name), options)
 }
 
-/// What a reader said beside the scene.
+/// Returns the warnings of a reader.
 pub(crate) fn warnings(built: &Built) -> Vec<String> {
     built.warnings.iter().map(ToString::to_string).collect()
 }
 
-/// The corners of all triangles.
+/// Returns the corners of all triangles.
 pub(crate) fn corners(scene: &Scene) -> Vec<[[f64; 3]; 3]> {
     scene.triangle_ids().map(|t| scene.corners(t).map(|p| p.to_array())).collect()
 }
 
-/// A message with everything behind it, as a program prints it.
+/// Returns an error with its whole chain of sources, as a program prints it.
 pub(crate) fn chain(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();
     let mut source = error.source();
@@ -48,19 +48,19 @@ pub(crate) fn chain(error: &dyn std::error::Error) -> String {
     text
 }
 
-/// A PNG image of one color.
+/// Returns a PNG image of one color.
 pub(crate) fn png(rgb: [u8; 3]) -> Vec<u8> {
     encoded(image::RgbImage::from_pixel(3, 2, image::Rgb(rgb)))
 }
 
-/// An image as a PNG file.
+/// Encodes an image as PNG.
 pub(crate) fn encoded(image: impl Into<image::DynamicImage>) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     image.into().write_to(&mut bytes, image::ImageFormat::Png).unwrap();
     bytes.into_inner()
 }
 
-/// A glTF file in the making: one scene with one node with one mesh, and one buffer.
+/// Builder of a glTF file: one scene with one node with one mesh, and one buffer.
 pub(crate) struct Gltf {
     pub(crate) json: Value,
     pub(crate) bytes: Vec<u8>,
@@ -80,7 +80,7 @@ impl Gltf {
         Self { json, bytes: Vec::new() }
     }
 
-    /// One triangle in the plane z = 0 whose front looks along +z.
+    /// Returns one triangle in the plane z = 0 whose front faces +z.
     pub(crate) fn triangle() -> Self {
         let mut gltf = Self::new();
         let positions = gltf.positions(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
@@ -88,7 +88,7 @@ impl Gltf {
         gltf
     }
 
-    /// A triangle with the given material.
+    /// Returns a triangle with the given material.
     pub(crate) fn with_material(material: Value) -> Self {
         let mut gltf = Self::triangle();
         gltf.json["materials"] = json!([material]);
@@ -129,14 +129,14 @@ impl Gltf {
         self.json["meshes"][0]["primitives"].as_array_mut().unwrap().push(primitive);
     }
 
-    /// Text with a reference to the buffer.
+    /// Returns the text with a reference to the buffer.
     pub(crate) fn text(&self, uri: &str) -> Vec<u8> {
         let mut json = self.json.clone();
         json["buffers"] = json!([{"byteLength": self.bytes.len(), "uri": uri}]);
         serde_json::to_vec(&json).unwrap()
     }
 
-    /// Text with the buffer inside.
+    /// Returns the text with the buffer embedded.
     pub(crate) fn embedded(&self) -> Vec<u8> {
         let data = base64::engine::general_purpose::STANDARD.encode(&self.bytes);
         self.text(&format!("data:application/octet-stream;base64,{data}"))
@@ -162,7 +162,7 @@ impl Gltf {
     }
 }
 
-/// The folder with data of others that tests may read, if this machine has it.
+/// Returns the folder of third-party data that tests may read, if this machine has it.
 pub(crate) fn third_party_data() -> Option<std::path::PathBuf> {
     let folder = std::env::var_os("SIR_TEST_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared"), Into::into);

@@ -1,4 +1,4 @@
-//! glTF: containers, nodes, triangles, cameras, and what is wrong with files.
+//! glTF: containers, nodes, triangles, cameras, and invalid files.
 
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -67,13 +67,13 @@ fn points_and_lines_are_one_warning() {
     assert!(warnings(&built).contains(&"4 mesh primitives of points or lines were skipped".to_owned()));
 }
 
-/// A square root of a half, to single precision.
+/// The square root of one half, in single precision.
 const R: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
 #[test]
 fn transforms_are_composed_down_the_tree() {
     let mut gltf = Gltf::triangle();
-    // Twice as large, then turned by 90° about z, then moved; below it the same mesh moved by one along x.
+    // Scaled by two, then rotated by 90° about z, then translated; below it the same mesh translated by one along x.
     gltf.json["nodes"] = json!([
         {"mesh": 0, "children": [1], "translation": [10, 0, 0], "rotation": [0, 0, R, R], "scale": [2, 2, 2]},
         {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1]},
@@ -87,7 +87,7 @@ fn transforms_are_composed_down_the_tree() {
         let off = DVec3::from_array(*found).distance(DVec3::from_array(*expected));
         assert!(off < 1e-14, "{found:?} is {off} off");
     }
-    // Single precision rotations must not scale: the area is exact in double precision.
+    // Single-precision rotations must not scale: the area is exact in double precision.
     assert!((scene.total_area() - 4.0).abs() < 1e-14);
 }
 
@@ -205,9 +205,9 @@ fn cameras_stand_where_their_nodes_are() {
     assert_eq!((&*plan.name, plan.aspect), ("plan", Some(2.0)));
     assert!(plan.forward.distance(DVec3::NEG_Y) < 1e-15 && plan.up.distance(DVec3::NEG_Z) < 1e-15);
     assert_eq!(plan.projection, Projection::Orthographic { height: 3.0 });
-    assert!(
-        warnings(&built).contains(&"2 cameras show nothing, and were left out: \"shut\", \"odd\"".to_owned())
-    );
+    assert!(warnings(&built).contains(
+        &"2 cameras have no valid projection or orientation and were ignored: \"shut\", \"odd\"".to_owned()
+    ));
 }
 
 #[test]
@@ -227,12 +227,12 @@ fn what_is_ignored_is_named_once() {
     assert_eq!(
         warnings(&gltf.load().unwrap()),
         [
-            "1 glTF extensions describe gloss, which diffuse surfaces lack, and were ignored: KHR_materials_sheen",
-            "1 glTF extensions have no meaning here and were ignored: EXT_mine",
+            "1 glTF extensions describe gloss, which diffuse surfaces do not have, and were ignored: KHR_materials_sheen",
+            "1 glTF extensions are not supported and were ignored: EXT_mine",
             "1 skinned meshes are read in the pose of their nodes",
             "1 mesh primitives have no material, and are made gray",
-            "2 mesh primitives have morph targets, and are read in their basic shape",
-            "2 mesh primitives have more than one set of colors, of which the first is used",
+            "2 mesh primitives have morph targets, which were ignored",
+            "2 mesh primitives have more than one set of colors; only the first is used",
         ]
     );
 }
@@ -282,7 +282,7 @@ fn faults_are_errors_that_say_where() {
         ("/nodes/0/camera", json!(0), "camera 0 does not exist"),
         ("/meshes/0/primitives/0/material", json!(0), "material 0 does not exist"),
         ("/meshes/0/primitives/0/indices", json!(9), "mesh 0, primitive 0: accessor 9 does not exist"),
-        ("/meshes/0/primitives/0/indices", json!(0), "accessor 0 has a type that has no meaning there"),
+        ("/meshes/0/primitives/0/indices", json!(0), "accessor 0 has a type that is not allowed here"),
         ("/meshes/0/primitives/0/attributes", json!({"POSITION": 9}), "accessor 9 does not exist"),
         ("/meshes/0/primitives/0/attributes", json!({"POSITION": 1}), "accessor 1 has a type"),
         ("/meshes/0/primitives/0/mode", json!(7), "unknown mode"),
@@ -310,7 +310,7 @@ fn faults_are_errors_that_say_where() {
         let text = chain(&error);
         assert!(text.contains(expected) && text.contains("scene.gltf"), "{pointer} = {value}: {text}");
     }
-    // A stride of zero and an index beyond the vertices.
+    // A stride of zero, and an index beyond the vertices.
     assert_eq!(corners(&with("/bufferViews/0/byteStride", json!(0)).unwrap().scene), [FRONT]);
     let error = with("/accessors/0/count", json!(2)).unwrap_err();
     assert!(error.to_string().contains("mesh 0, primitive 0: index 2 is beyond its 2 vertices"), "{error}");

@@ -8,10 +8,10 @@ use sir_geom::{Built, Light, LightKind, LoadError, Rgb, Spread};
 
 use crate::files::{Gltf, chain, warnings};
 
-/// Half of the square root of two: what a quarter turn has in its quaternion.
+/// Half of the square root of two, as in the quaternion of a quarter turn.
 const R: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// A file with these lights, and nodes beside that of the mesh.
+/// Returns a file with these lights, and nodes besides that of the mesh.
 fn load(lights: Value, nodes: &[Value]) -> Result<Built, LoadError> {
     let mut gltf = Gltf::triangle();
     gltf.json["extensionsUsed"] = json!(["KHR_lights_punctual"]);
@@ -26,7 +26,7 @@ fn load(lights: Value, nodes: &[Value]) -> Result<Built, LoadError> {
     gltf.load()
 }
 
-/// A node with a light, and more.
+/// Returns a node with a light and other members.
 fn node(light: usize, more: Value) -> Value {
     let mut node = more;
     node["extensions"] = json!({"KHR_lights_punctual": {"light": light}});
@@ -87,8 +87,8 @@ fn lights_that_shine_nowhere_are_left_out() {
     .unwrap();
     assert_eq!(built.scene.lights(), []);
     let all = warnings(&built);
-    assert!(all.contains(&"1 lights are of an unknown type, and were left out: \"a\"".to_owned()), "{all:?}");
-    let none = "3 lights have no direction or no cone, and were left out: \"b\", \"c\", \"d\"";
+    assert!(all.contains(&"1 lights have an unknown type and were ignored: \"a\"".to_owned()), "{all:?}");
+    let none = "3 lights have no valid direction or cone and were ignored: \"b\", \"c\", \"d\"";
     assert!(all.contains(&none.to_owned()), "{all:?}");
 }
 

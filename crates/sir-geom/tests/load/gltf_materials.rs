@@ -61,7 +61,7 @@ fn sides_are_a_matter_of_policy() {
     }
 }
 
-/// A material whose reflectance and emission come from texture 0.
+/// Returns a material whose reflectance and emission come from texture 0.
 fn textured(image: serde_json::Value) -> Gltf {
     let mut gltf = Gltf::with_material(json!({
         "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "baseColorTexture": {"index": 0}},
@@ -99,7 +99,7 @@ fn textures_count_with_their_mean_wherever_they_are() {
 fn textures_that_cannot_be_read_are_one_warning_and_leave_the_factor() {
     for (image, expected) in [
         (json!({"uri": "absent.png"}), "absent.png"),
-        (json!({"uri": "../up.png"}), "leads out of the scene's folder"),
+        (json!({"uri": "../up.png"}), "leads outside the scene's folder"),
         (json!({"uri": "data:image/png;base64,AAAA"}), "image 0"),
         (json!({"bufferView": 8}), "buffer view 8 does not exist"),
         (json!({"mimeType": "image/webp", "bufferView": 0}), "image 0"),
@@ -112,7 +112,7 @@ fn textures_that_cannot_be_read_are_one_warning_and_leave_the_factor() {
         let [warning] = &warnings(&built)[..] else { panic!("{:?}", built.warnings) };
         assert!(warning.starts_with("1 textures cannot be read") && warning.contains(expected), "{warning}");
     }
-    // An image in a format that only an extension knows has no source.
+    // An image in a format that only an extension supports has no source.
     let mut webp = textured(json!({}));
     webp.json["textures"] = json!([{}, {}]);
     assert_eq!(warnings(&webp.load().unwrap()).len(), 1);

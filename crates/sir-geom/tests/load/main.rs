@@ -1,4 +1,4 @@
-//! Reading scene files, from the outside.
+//! Tests of reading scene files through the public interface.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "these are tests")]
 

@@ -17,7 +17,7 @@ fn refused(obj: &str) -> LoadError {
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-/// Material names of the triangles, in order.
+/// Returns the material names of the triangles, in order.
 fn order(built: &Built) -> Vec<String> {
     built.scene.triangle_ids().map(|t| built.scene.material(t).name.clone()).collect()
 }
@@ -164,9 +164,7 @@ fn textures_count_with_their_mean() {
     assert!(b.reflectance.distance(mean.min(DVec3::splat(0.999))) < 1e-14, "{b:?}");
     assert_eq!(c.reflectance, DVec3::splat(0.3));
     let texts = warnings(&built);
-    assert!(
-        texts[0].starts_with("1 textures cannot be read, and their color factor alone is used: absent.png")
-    );
+    assert!(texts[0].starts_with("1 textures cannot be read; only their color factors are used: absent.png"));
     assert!(
         matches!(&built.warnings[1..], [Warning::ClampedReflectance { material, .. }] if material == "b")
     );

@@ -1,4 +1,4 @@
-//! Textures, masks and colors of vertices, in both formats.
+//! Textures, masks and vertex colors, in both formats.
 
 use glam::{DVec2, DVec3};
 use image::{Rgba, RgbaImage};
@@ -7,7 +7,7 @@ use sir_geom::{Barycentric, Built, Opacity, Rgb, Scene, TextureSums, TriangleId,
 
 use crate::files::{Gltf, encoded, load_from, warnings};
 
-/// An image of 2 × 2 texels: red, green; blue, white. Alpha 255, 128; 0, 51.
+/// Returns an image of 2 × 2 texels: red, green; blue, white. Alpha 255, 128; 0, 51.
 fn four() -> Vec<u8> {
     let texels = [[255, 0, 0, 255], [0, 255, 0, 128], [0, 0, 255, 0], [255, 255, 255, 51]];
     encoded(RgbaImage::from_fn(2, 2, |x, y| Rgba(texels[(2 * y + x) as usize])))
@@ -19,7 +19,7 @@ fn floats(numbers: &[f32]) -> Vec<u8> {
     numbers.iter().flat_map(|x| x.to_le_bytes()).collect()
 }
 
-/// A triangle over the upper left texel, with a base color texture and whatever else the material has.
+/// Returns a triangle over the upper left texel, with a base color texture and further members of the material.
 fn textured(info: &Value, material: &Value) -> Gltf {
     let mut whole = json!({"pbrMetallicRoughness": {"baseColorTexture": info}});
     for (name, value) in material.as_object().unwrap() {
@@ -34,13 +34,13 @@ fn textured(info: &Value, material: &Value) -> Gltf {
     gltf
 }
 
-/// The coordinates of the corners of the first triangle for its reflectance.
+/// Returns the coordinates at the corners of the first triangle for its reflectance.
 fn places(scene: &Scene) -> [DVec2; 3] {
     let map = scene.materials()[0].reflectance_map.unwrap().map;
     scene.texture_on(TriangleId(0), &map).unwrap().1
 }
 
-/// The mean reflectance of the first triangle.
+/// Returns the mean reflectance of the first triangle.
 fn mean(scene: &Scene) -> Rgb {
     let color = scene.materials()[0].reflectance_map.unwrap();
     let (texture, corners) = scene.texture_on(TriangleId(0), &color.map).unwrap();
@@ -146,11 +146,11 @@ fn without_coordinates_there_is_the_mean_and_a_warning() {
     assert_eq!(built.scene.opacity_at(TriangleId(0), middle), 1.0);
     assert_eq!(
         warnings(&built),
-        ["1 mesh primitives lack coordinates for a texture, and have its mean color"]
+        ["1 mesh primitives lack coordinates for a texture and have its mean color"]
     );
 }
 
-/// Opacity where the texture has the upper right texel, of alpha 128/255, and the lower right one, of 51/255.
+/// Returns the opacity at the upper right texel, of alpha 128/255, and at the lower right one, of 51/255.
 fn opacities(alpha: &Value, factor: f64) -> [f64; 2] {
     let mut gltf = textured(&json!({"index": 0}), alpha);
     gltf.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = json!([1, 1, 1, factor]);
@@ -167,7 +167,7 @@ fn alpha_counts_as_its_mode_says() {
     assert_eq!(opacities(&json!({}), 0.5), [1.0, 1.0]);
     assert_eq!(opacities(&json!({"alphaMode": "BLEND"}), 0.5), [half / 2.0, 0.1]);
     assert_eq!(opacities(&json!({"alphaMode": "MASK"}), 1.0), [1.0, 0.0]);
-    // As much as the threshold is enough.
+    // An alpha equal to the threshold suffices.
     assert_eq!(opacities(&json!({"alphaMode": "MASK", "alphaCutoff": 0.2}), 1.0), [1.0, 1.0]);
     assert_eq!(opacities(&json!({"alphaMode": "MASK", "alphaCutoff": 0.2}), 0.99), [1.0, 0.0]);
     assert_eq!(opacities(&json!({"alphaMode": "MASK", "alphaCutoff": 1.1}), 1.0), [0.0, 0.0]);
@@ -272,7 +272,7 @@ fn obj_values_stay_with_their_faces_when_materials_alternate() {
     let first = |t: u32| built.scene.texture_on(TriangleId(t), &map).map(|(_, corners)| corners[0]);
     let found: Vec<_> = (0..5).map(first).collect();
     assert_eq!(found, [Some(DVec2::new(0.0, 1.0)), None, Some(DVec2::new(0.5, 0.5)), None, None]);
-    assert_eq!(warnings(&built), ["1 faces lack coordinates for a texture, and have its mean color"]);
+    assert_eq!(warnings(&built), ["1 faces lack coordinates for a texture and have its mean color"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Files by others, which are read where they are and are no part of the project.
+//! Third-party files, which are read in place and are not part of the project.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use sir_geom::{LoadOptions, Scene, Warning, load};
 
 use crate::files::third_party_data;
 
-/// Triangles of the files, those without an area included, as their README counts them.
+/// Numbers of triangles in the files, including those without an area, as counted in their README.
 const TRIANGLES: [(&str, usize); 11] = [
     ("cornell-mcguire/CornellBox-Original.obj", 36),
     ("cornell-mcguire/CornellBox-Sphere.obj", 2_188),
@@ -36,7 +36,7 @@ fn scenes_have_as_many_triangles_as_their_readme_says() {
     }
 }
 
-/// Area and material of every triangle by its number in the file.
+/// Checks area and material of every triangle by its number in the file.
 fn check_against_table(scene: &Scene, table: &str) -> usize {
     let rows: Vec<Vec<&str>> = table
         .lines()

@@ -1,11 +1,11 @@
-//! The hull of points in a plane.
+//! Convex hull of coplanar points.
 
 use glam::DVec3;
 
 use crate::hull::grid::winding;
 
-/// The triangles of a polygon and, turned over, of its other side, by the numbers of the points. `base` is a triangle
-/// with an area.
+/// Returns the facets of the hull: the triangles of both sides of a polygon, as indices of points. `base` is a
+/// non-degenerate triangle.
 pub(super) fn facets(points: &[DVec3], base: [u32; 3]) -> Vec<[u32; 3]> {
     let [a, b, c] = base.map(|i| points[i as usize]);
     let polygon = polygon(points, winding(a, b, c));
@@ -13,12 +13,12 @@ pub(super) fn facets(points: &[DVec3], base: [u32; 3]) -> Vec<[u32; 3]> {
     fan.flat_map(|[a, b, c]| [[a, b, c], [c, b, a]]).collect()
 }
 
-/// The corners of the hull, one after the other (Andrew 1979: a chain from the first point to the last in the order of
-/// coordinates, and one back).
+/// Returns the corners of the hull in order, by the monotone chain algorithm (Andrew 1979): one chain from the first
+/// point to the last in the order of coordinates, and one back.
 fn polygon(points: &[DVec3], normal: [i128; 3]) -> Vec<u32> {
-    // Seen along the axis that is nearest to the normal, no two points of the plane fall together.
+    // Projected along the axis that is nearest to the normal, distinct points of the plane remain distinct.
     let axis = (0..3).max_by_key(|&k| normal[k].abs()).unwrap_or(2);
-    let seen = |i: u32| {
+    let projected = |i: u32| {
         let p = points[i as usize];
         [p[(axis + 1) % 3], p[(axis + 2) % 3]]
     };
@@ -27,7 +27,7 @@ fn polygon(points: &[DVec3], normal: [i128; 3]) -> Vec<u32> {
     };
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     order.sort_by(|&i, &j| {
-        let ([x, y], [u, v]) = (seen(i), seen(j));
+        let ([x, y], [u, v]) = (projected(i), projected(j));
         x.total_cmp(&u).then(y.total_cmp(&v))
     });
     let mut polygon: Vec<u32> = Vec::new();
@@ -42,7 +42,7 @@ fn polygon(points: &[DVec3], normal: [i128; 3]) -> Vec<u32> {
             }
             polygon.push(i);
         }
-        // The last one begins the next chain.
+        // The last corner is the first one of the next chain.
         polygon.pop();
     }
     polygon

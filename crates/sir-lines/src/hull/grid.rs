@@ -1,16 +1,16 @@
-//! Points on an integer grid, and on which side of a plane they are, exactly.
+//! Points on an integer grid, with exact tests on which side of a plane they lie.
 
 use glam::DVec3;
 use sir_types::BoundingBox;
 
-/// Most steps of the grid along an axis: 128 bits then hold every determinant.
+/// Largest number of grid steps along an axis. It is such that 128 bits hold every determinant.
 const STEPS: f64 = (1u64 << 40) as f64;
 
-/// Points rounded to a grid: vectors of whole numbers from 0 to 2⁴⁰. `None` if they have no extent, or one that is not
-/// finite.
+/// Rounds points to a grid: vectors of whole numbers from 0 to 2⁴⁰. Returns `None` if the extent of the points is zero
+/// or not finite.
 pub(super) fn on_grid(points: &[DVec3]) -> Option<Vec<DVec3>> {
     let bounds = BoundingBox::of(points.iter().copied())?;
-    // A power of two: points with few digits are not changed, and those in a plane stay in it.
+    // A power of two, so that points with few significant bits are not rounded, and coplanar ones stay coplanar.
     let scale = power_of_two_below(STEPS / bounds.size().max_element());
     let round = |x: f64| (x + 0.5) as i64 as f64;
     (scale > 0.0 && scale.is_finite()).then(|| {
@@ -19,54 +19,55 @@ pub(super) fn on_grid(points: &[DVec3]) -> Option<Vec<DVec3>> {
     })
 }
 
-/// The largest power of two that is not above `x`, a positive number: its exponent without its digits.
+/// Returns the largest power of two that is not above the positive number `x`, by clearing its mantissa.
 fn power_of_two_below(x: f64) -> f64 {
     f64::from_bits(x.to_bits() & f64::INFINITY.to_bits())
 }
 
-fn whole(p: DVec3) -> [i128; 3] {
+fn to_integers(p: DVec3) -> [i128; 3] {
     p.to_array().map(|x| x as i128)
 }
 
-/// `(b − a) × (c − a)`, exactly: components of at most 2⁸¹.
+/// Returns `(b − a) × (c − a)` exactly; its components are at most 2⁸¹.
 pub(super) fn winding(a: DVec3, b: DVec3, c: DVec3) -> [i128; 3] {
-    let (u, v) = (whole(b - a), whole(c - a));
+    let (u, v) = (to_integers(b - a), to_integers(c - a));
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }
 
-/// Six times the volume of a tetrahedron, exactly: positive if the triangle runs counterclockwise seen from `p`.
+/// Returns six times the signed volume of a tetrahedron exactly: positive if the triangle is counterclockwise seen from
+/// `p`.
 pub(super) fn volume([a, b, c]: [DVec3; 3], p: DVec3) -> i128 {
-    let (n, d) = (winding(a, b, c), whole(p - a));
+    let (n, d) = (winding(a, b, c), to_integers(p - a));
     n[0] * d[0] + n[1] * d[1] + n[2] * d[2]
 }
 
-/// The plane of a triangle.
+/// Plane of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
     origin: DVec3,
     normal: DVec3,
-    /// How much of a height may be an error of rounding, per step along each axis.
-    doubt: DVec3,
+    /// Bound of the rounding error of a height, per step along each axis.
+    error_bound: DVec3,
 }
 
 impl Plane {
     pub(super) fn new([a, b, c]: [DVec3; 3]) -> Self {
-        // Differences of whole numbers below 2⁵³ are exact.
+        // Exact: differences of whole numbers below 2⁵³.
         let (u, v) = (b - a, c - a);
         let (p, q) = (u.abs(), v.abs());
         let terms = DVec3::new(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
-        // Two roundings in each component of the normal and three in a product with it make five times 2⁻⁵³.
-        Self { origin: a, normal: u.cross(v), doubt: terms * (8.0 * 0.5 * f64::EPSILON) }
+        // Two roundings in each component of the normal and three in a scalar product with it: five times 2⁻⁵³.
+        Self { origin: a, normal: u.cross(v), error_bound: terms * (8.0 * 0.5 * f64::EPSILON) }
     }
 
-    /// How far a point is above the plane of these corners, from which the plane was made, in an arbitrary unit. The sign
-    /// is right: zero says that the point is in the plane.
+    /// Returns the signed height of a point above the plane, in an arbitrary unit. The sign is exact: zero means that
+    /// the point is in the plane. `corners` must return the corners that the plane was built from.
     #[inline]
     pub(super) fn height(&self, corners: impl FnOnce() -> [DVec3; 3], p: DVec3) -> f64 {
         let d = p - self.origin;
-        let (height, doubt) = (self.normal.dot(d), self.doubt.dot(d.abs()));
-        // Without a doubt, all terms are zero.
-        if height.abs() > doubt || doubt == 0.0 { height } else { volume(corners(), p) as f64 }
+        let (height, bound) = (self.normal.dot(d), self.error_bound.dot(d.abs()));
+        // If the bound is zero, all terms of the height are zero.
+        if height.abs() > bound || bound == 0.0 { height } else { volume(corners(), p) as f64 }
     }
 }
 
@@ -96,8 +97,8 @@ mod tests {
         assert!(on_grid(&[DVec3::ZERO, DVec3::splat(1e300)]).is_some());
     }
 
-    /// Points of the grid: anywhere; the fourth in the plane of the others, or a step above or below; or all nearly on a
-    /// line, where the normal of the plane is mostly rounding.
+    /// Four points of the grid: independent ones; the fourth in the plane of the others or one step above or below; or
+    /// all nearly collinear, so that the normal of the plane is mostly rounding error.
     fn four_points() -> impl Strategy<Value = [DVec3; 4]> {
         let vector = |p: [i64; 3]| DVec3::from_array(p.map(|x| x as f64));
         let component = prop_oneof![0..=1i64 << 40, 0..100i64];

@@ -1,4 +1,4 @@
-//! The convex hull of points in space.
+//! Convex hull of points in space.
 
 mod flat;
 mod grid;
@@ -8,20 +8,21 @@ use glam::DVec3;
 
 use grid::{on_grid, volume, winding};
 
-/// The convex hull of points, as a closed surface of triangles whose corners are some of the points.
+/// Convex hull of points: a closed surface of triangles whose corners are some of the points.
 ///
-/// Where the points lie to each other is decided exactly, once they are rounded to an integer grid of at least 2³⁹ steps
-/// along their extent. Any points will do: in a plane, on top of each other, in masses on the same faces. They all lie
-/// in the hull, and the hull is convex, but for that rounding, which is less than 10⁻¹² of the extent.
+/// Points are rounded to an integer grid of at least 2³⁹ steps along their extent. On this grid all geometric
+/// predicates are exact, so any input is allowed: coplanar points, duplicates, any number of points on one face. Except
+/// for the rounding, which is less than 10⁻¹² of the extent, the hull is convex and contains all points.
 ///
-/// Points in a plane have a flat hull: a polygon with both its sides. Equal points have equal hulls, on every machine.
+/// Coplanar points have a flat hull: a polygon with two sides. Equal points have equal hulls on every machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConvexHull {
     facets: Vec<[DVec3; 3]>,
 }
 
 impl ConvexHull {
-    /// The hull of finite points; `None` if there are none, or all lie on one line (to the precision of the grid).
+    /// Returns the hull of finite points, or `None` if there are no points or all of them are collinear (to the
+    /// precision of the grid).
     ///
     /// A million points on a sphere take about a second, a million points in a room less.
     #[must_use]
@@ -36,32 +37,32 @@ impl ConvexHull {
         Some(Self { facets: facets.into_iter().map(|corners| corners.map(at)).collect() })
     }
 
-    /// Triangles, counterclockwise seen from outside. Those in the same plane are not made one, and some may be as narrow
-    /// as rounding allows.
+    /// Returns the triangles, counterclockwise seen from outside. Coplanar triangles are not merged, and some may be as
+    /// narrow as rounding allows.
     #[must_use]
     pub fn facets(&self) -> &[[DVec3; 3]] {
         &self.facets
     }
 
-    /// Area of the surface; for a flat hull, of both sides.
+    /// Returns the area of the surface. A flat hull has two sides.
     #[must_use]
     pub fn surface_area(&self) -> f64 {
         self.facets.iter().map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum()
     }
 }
 
-/// Points that are far apart, by their numbers.
+/// Indices of points that are far apart.
 struct Simplex {
-    /// A triangle with an area.
+    /// Non-degenerate triangle.
     base: [u32; 3],
-    /// A point outside its plane; `None` if all lie in it.
+    /// Point outside the plane of the triangle; `None` if all points lie in it.
     apex: Option<u32>,
 }
 
 impl Simplex {
-    /// `None` if all points lie on one line.
+    /// Returns `None` if all points are collinear.
     fn of(points: &[DVec3]) -> Option<Self> {
-        // The first of the points that are farthest, by a measure that is zero only where it is meaningless.
+        // Returns the first point with the largest measure, or `None` if the measure is zero for all points.
         let farthest = |measure: &dyn Fn(DVec3) -> f64| {
             let (mut best, mut most) = (None, 0.0);
             for (i, &p) in points.iter().enumerate() {

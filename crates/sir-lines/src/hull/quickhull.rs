@@ -1,81 +1,83 @@
-//! The hull of points in space, one point after the other (Clarkson and Shor 1989; Barber, Dobkin and Huhdanpaa 1996,
-//! *The quickhull algorithm for convex hulls*).
+//! Incremental convex hull of points in space (Clarkson and Shor 1989; Barber, Dobkin and Huhdanpaa 1996, *The
+//! quickhull algorithm for convex hulls*).
 //!
-//! The hull grows from a tetrahedron. Every point outside is kept in the list of one facet that it is above of. The farthest
-//! point of a list is taken next: the facets that it sees are replaced by those from their outline to the point, and
-//! the points that they kept are shared among the new ones, or are inside and forgotten.
+//! The hull grows from a tetrahedron. Every point outside of the current hull is in the outside list of one facet that
+//! it is above. Each step takes the farthest point of a list: the facets visible from it are replaced by the facets
+//! between their horizon and the point. The points in the lists of the removed facets are assigned to the new facets;
+//! points above none of these are inside and are discarded.
 //!
-//! A facet is seen only by points strictly above its plane, which is decided exactly. A point then sees what it would see
-//! from a little nearer to the hull, where it is in the plane of no facet: a disc, whose outline is one closed path and has
-//! no edge in a line with the point. So masses of points in a plane need no rules of their own, and there is nothing to
-//! go wrong by rounding. Each step takes one point from the lists for good.
+//! A facet is visible only from points strictly above its plane, which is decided exactly. The facets visible from a
+//! point are therefore those visible from a position slightly nearer to the hull, which lies in the plane of no facet.
+//! They form a disc, whose horizon is one closed path without an edge collinear with the point. So coplanar points need
+//! no special cases, and rounding cannot break the topology. Each step permanently removes one point from the lists.
 
 use glam::DVec3;
 
 use crate::hull::grid::{Plane, volume};
 
-/// No facet, or no point.
+/// Index that stands for no facet or no point.
 const NONE: u32 = u32::MAX;
 
 struct Facet {
-    /// Counter-clockwise seen from outside.
+    /// Corners, counterclockwise seen from outside.
     corners: [u32; 3],
-    /// The facets beyond the edges from each corner to the next.
+    /// Facets beyond the edges from each corner to the next.
     neighbors: [u32; 3],
     plane: Plane,
-    /// The first of the points that it keeps.
+    /// First point of the outside list.
     first: u32,
-    /// The one that is farthest from the plane, and its height.
+    /// Point of the outside list that is farthest from the plane.
     farthest: u32,
+    /// Height of the farthest point.
     height: f64,
-    /// The last point that was found to see it.
-    seen_from: u32,
+    /// Last point from which the facet was found visible.
+    visible_from: u32,
 }
 
 struct Hull<'a> {
     points: &'a [DVec3],
     facets: Vec<Facet>,
-    /// Places in `facets` that are not in use.
+    /// Unused places in `facets`.
     free: Vec<u32>,
-    /// Of each point that a facet keeps, the next one of the same facet.
+    /// Linked outside lists: for each point, the next point of the same list.
     next: Vec<u32>,
 }
 
-/// An edge of the outline, in the direction in which the facet that is seen has it, and the facet beyond it.
+/// Edge of the horizon, in its direction in the visible facet, and the facet beyond it.
 struct Edge {
     corners: [u32; 2],
     beyond: u32,
 }
 
-/// The triangles of the hull, by the numbers of the points. `base` and `apex` are a tetrahedron with a volume.
+/// Returns the triangles of the hull as indices of points. `base` and `apex` are a non-degenerate tetrahedron.
 pub(super) fn facets(points: &[DVec3], base: [u32; 3], apex: u32) -> Vec<[u32; 3]> {
     let mut hull = Hull { points, facets: Vec::new(), free: Vec::new(), next: vec![NONE; points.len()] };
     hull.begin(base, apex);
     let mut waiting: Vec<u32> = (0..4).collect();
-    // The edge of the outline that begins at a point, as the facet that was put there.
+    // For each corner of the horizon, the new facet at the edge that begins there.
     let mut facet_from = vec![NONE; points.len()];
-    let (mut outline, mut kept) = (Vec::new(), Vec::new());
+    let (mut horizon, mut orphans) = (Vec::new(), Vec::new());
     while let Some(facet) = waiting.pop() {
-        // A facet that has been replaced keeps none.
+        // A facet that has been replaced has an empty list.
         if hull.facets[facet as usize].first == NONE {
             continue;
         }
         let eye = hull.facets[facet as usize].farthest;
-        hull.remove_seen(eye, facet, &mut outline, &mut kept);
+        hull.remove_visible(eye, facet, &mut horizon, &mut orphans);
         let new = waiting.len();
-        for edge in &outline {
+        for edge in &horizon {
             let facet = hull.add([edge.corners[0], edge.corners[1], eye]);
             facet_from[edge.corners[0] as usize] = facet;
             waiting.push(facet);
         }
-        for (edge, &facet) in outline.iter().zip(&waiting[new..]) {
+        for (edge, &facet) in horizon.iter().zip(&waiting[new..]) {
             let next = facet_from[edge.corners[1] as usize];
             hull.join(facet, 0, edge.beyond);
             hull.facets[facet as usize].neighbors[1] = next;
             hull.facets[next as usize].neighbors[2] = facet;
         }
-        for &point in &kept {
-            hull.keep(point, &waiting[new..]);
+        for &point in &orphans {
+            hull.assign(point, &waiting[new..]);
         }
     }
     hull.facets.iter().map(|facet| facet.corners).filter(|corners| corners[0] != NONE).collect()
@@ -86,7 +88,7 @@ impl Hull<'_> {
         self.points[point as usize]
     }
 
-    /// Makes a tetrahedron, and shares all points among its facets.
+    /// Creates a tetrahedron and assigns all points to its facets.
     fn begin(&mut self, [a, b, c]: [u32; 3], apex: u32) {
         let inward = volume([a, b, c].map(|i| self.at(i)), self.at(apex)) > 0;
         let [b, c] = if inward { [c, b] } else { [b, c] };
@@ -101,24 +103,24 @@ impl Hull<'_> {
             }
         }
         for point in 0..self.points.len() as u32 {
-            self.keep(point, &[0, 1, 2, 3]);
+            self.assign(point, &[0, 1, 2, 3]);
         }
     }
 
-    /// How far a point is above a facet.
+    /// Returns the signed height of a point above a facet.
     #[inline]
     fn height(&self, facet: u32, point: u32) -> f64 {
         let Facet { plane, corners, .. } = &self.facets[facet as usize];
         plane.height(|| corners.map(|i| self.at(i)), self.at(point))
     }
 
-    /// Which of its edges a facet has from one corner to the other.
+    /// Returns the edge of a facet that leads from one corner to another.
     fn edge_of(&self, facet: u32, [from, to]: [u32; 2]) -> Option<usize> {
         let corners = &self.facets[facet as usize].corners;
         (0..3).find(|&k| corners[k] == from && corners[(k + 1) % 3] == to)
     }
 
-    /// Adds a facet that has no neighbors and keeps no points yet.
+    /// Adds a facet without neighbors and with an empty outside list.
     fn add(&mut self, corners: [u32; 3]) -> u32 {
         let facet = Facet {
             corners,
@@ -127,7 +129,7 @@ impl Hull<'_> {
             first: NONE,
             farthest: NONE,
             height: 0.0,
-            seen_from: NONE,
+            visible_from: NONE,
         };
         if let Some(place) = self.free.pop() {
             self.facets[place as usize] = facet;
@@ -146,8 +148,9 @@ impl Hull<'_> {
         }
     }
 
-    /// Lets the first of these facets that a point is above of keep it. A point that is above of none is inside.
-    fn keep(&mut self, point: u32, facets: &[u32]) {
+    /// Adds a point to the outside list of the first of these facets that it is above. A point above none of them is
+    /// inside.
+    fn assign(&mut self, point: u32, facets: &[u32]) {
         for &facet in facets {
             let height = self.height(facet, point);
             if height > 0.0 {
@@ -161,28 +164,28 @@ impl Hull<'_> {
         }
     }
 
-    /// Removes all facets that a point sees, of which `first` is one: gives their outline, and the points that they kept,
-    /// but for the point itself.
-    fn remove_seen(&mut self, eye: u32, first: u32, outline: &mut Vec<Edge>, kept: &mut Vec<u32>) {
-        outline.clear();
-        kept.clear();
+    /// Removes all facets visible from a point, of which `first` is one. Fills `horizon` with their outline and
+    /// `orphans` with the points of their outside lists, except the point itself.
+    fn remove_visible(&mut self, eye: u32, first: u32, horizon: &mut Vec<Edge>, orphans: &mut Vec<u32>) {
+        horizon.clear();
+        orphans.clear();
         let start = self.free.len();
-        self.facets[first as usize].seen_from = eye;
-        // What is seen hangs together; the free places serve as the list of it.
+        self.facets[first as usize].visible_from = eye;
+        // Visible facets are connected. The list of free places serves as the queue of the search.
         self.free.push(first);
         let mut i = start;
         while let Some(&facet) = self.free.get(i) {
             i += 1;
             let Facet { corners, neighbors, .. } = self.facets[facet as usize];
             for (k, &beyond) in neighbors.iter().enumerate() {
-                if self.facets[beyond as usize].seen_from == eye {
+                if self.facets[beyond as usize].visible_from == eye {
                     continue;
                 }
                 if self.height(beyond, eye) > 0.0 {
-                    self.facets[beyond as usize].seen_from = eye;
+                    self.facets[beyond as usize].visible_from = eye;
                     self.free.push(beyond);
                 } else {
-                    outline.push(Edge { corners: [corners[k], corners[(k + 1) % 3]], beyond });
+                    horizon.push(Edge { corners: [corners[k], corners[(k + 1) % 3]], beyond });
                 }
             }
         }
@@ -192,7 +195,7 @@ impl Hull<'_> {
             let mut point = std::mem::replace(&mut facet.first, NONE);
             while point != NONE {
                 if point != eye {
-                    kept.push(point);
+                    orphans.push(point);
                 }
                 point = self.next[point as usize];
             }

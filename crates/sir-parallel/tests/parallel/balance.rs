@@ -1,11 +1,11 @@
-//! No power is lost or made, and no line is left out or traced twice.
+//! Power is conserved, and every line is traced exactly once.
 
 use sir_radiosity::{Balance, Quanta};
 
 use crate::jobs::{JOBS, Job, LINES, Outcome, ROOM, executor};
 use crate::ranks::run_ranks;
 
-/// What a executor of two ranks with two threads makes.
+/// Returns the outcome on two ranks with two threads each.
 fn outcome(job: Job) -> Outcome {
     run_ranks(2, |comm| job.run(&ROOM, &mut executor(comm, 2), None).unwrap()).swap_remove(0)
 }
@@ -24,11 +24,11 @@ fn what_is_emitted_is_absorbed_or_blocked_or_escapes_or_is_unshot() {
             assert_eq!(wide(emitted)[band], parts.iter().sum::<i128>(), "{job:?}: {balance:?}");
         }
         assert!(balance.closes());
-        // Otherwise the scene would show less than it should.
+        // Otherwise the scene would not cover all cases.
         let ends = [emitted, absorbed, escaped];
         assert!(ends.iter().all(|q| q.0.iter().all(|&q| q > 0)), "{job:?}: {balance:?}");
         assert_ne!(unshot, Quanta::ZERO, "{job:?}");
-        // Light from outside falls on the backs of walls, reflected light on the back of the lamp.
+        // Light from outside is blocked by the backs of walls, reflected light by the back of the lamp.
         assert_ne!(blocked, Quanta::ZERO, "{job:?}: {balance:?}");
     }
 }
@@ -43,14 +43,15 @@ fn all_lines_are_traced_once() {
     for job in JOBS {
         let Outcome { counts, .. } = outcome(job);
         assert_eq!(counts.lines, LINES, "{job:?}");
-        // Of the lines through the hull of the room, none misses it; some local lines leave it.
+        // No line through the hull of the room misses it; some local lines do.
         let some =
             if matches!(job, Job::FirstShot | Job::FocusedShot | Job::SecondShot) { 1..LINES } else { 0..1 };
         assert!(some.contains(&counts.empty) && counts.crossings > 0, "{job:?}: {counts:?}");
     }
 }
 
-/// Of what a side receives it absorbs what it does not reflect, to within a rounding each time, and what is done when books are closed.
+/// Received power is either absorbed or reflected, up to one rounding per crossing and the corrections at the end of a
+/// stage.
 #[test]
 fn what_is_received_is_absorbed_or_reflected() {
     for job in JOBS {
@@ -68,8 +69,8 @@ fn what_is_received_is_absorbed_or_reflected() {
         });
         for (band, absorbed) in absorbed.into_iter().enumerate() {
             let difference = absorbed - balance.absorbed.0[band] as f64;
-            // When the books of batches are closed, the tail is stretched, and numbers of lines are corrected: surfaces that
-            // absorb more may then have received a little more.
+            // At the end of batches, unshot power is extrapolated from the tail and the ratio estimator is applied.
+            // Surfaces that absorb more may then have received slightly more.
             let extrapolated = extrapolated.0[band] as f64;
             let corrected =
                 if matches!(job, Job::Batches | Job::FocusedBatches) { 1e-2 * absorbed } else { 0.0 };

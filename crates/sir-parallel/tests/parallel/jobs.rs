@@ -1,4 +1,4 @@
-//! A scene with everything that light can meet, and the stages that are run on it.
+//! Test scene with all kinds of surfaces and lights, and the stages that are run on it.
 
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
@@ -17,25 +17,25 @@ use sir_radiosity::{
 
 use crate::observers::StopAfter;
 
-/// Lines of every stage.
+/// Number of lines of every stage.
 pub(crate) const LINES: u64 = 30_000;
 
 const SEED: u64 = 3;
 
-/// A scene, and the light that its lamp throws on it.
+/// Scene with its first shot.
 pub(crate) struct Room {
     pub(crate) model: Model,
     pub(crate) shot: Shot,
     pub(crate) domain: Domain,
 }
 
-/// The room of most tests.
+/// Room of most tests.
 pub(crate) static ROOM: LazyLock<Room> = LazyLock::new(|| Room::new(400));
 
-/// The same room in so many patches that their state is handed over in several chunks.
+/// The same room with so many patches that their state is communicated in several chunks.
 pub(crate) static FINE_ROOM: LazyLock<Room> = LazyLock::new(|| Room::new(40_000));
 
-/// A stage with its settings.
+/// Stage with its settings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Job {
     FirstShot,
@@ -51,7 +51,7 @@ pub(crate) enum Job {
     },
 }
 
-/// What a stage has made.
+/// Outcome of a stage.
 #[derive(Clone, PartialEq)]
 pub(crate) struct Outcome {
     pub(crate) received: Received,
@@ -79,9 +79,9 @@ pub(crate) const JOBS: [Job; 11] = [
 ];
 
 impl Room {
-    /// A room whose front is open, in about so many patches. With a lamp that does not shine to the back, a
-    /// solid block, and a sheet that reflects from both sides, light ends in all possible ways. It comes from a spot, the
-    /// sun and the sky, too.
+    /// Returns a room with an open front and about this number of patches. It contains a one-sided lamp, a solid block
+    /// and a two-sided sheet, so that power is absorbed, blocked and escapes. Light also comes from a spot, the sun and
+    /// the sky.
     pub(crate) fn new(patches: u64) -> Self {
         let mut b = SceneBuilder::new();
         let add = |r: f64, g: f64, blue: f64| Material::diffuse("", Rgb::new(r, g, blue));
@@ -93,7 +93,7 @@ impl Room {
         let sheet = b.add_material(add(0.5, 0.6, 0.4).with_sides(Sides::Both));
         let lamp = b.add_material(add(0.3, 0.3, 0.3).emitting(Rgb::new(9.0, 7.0, 4.0)));
 
-        // The walls of a box of 2 by 2 by 2, but for the one at y = −1.
+        // The walls of a box of 2 by 2 by 2, except the one at y = −1.
         let wall = |axis: DVec3, u: DVec3| {
             let v = axis.cross(u);
             [u + v, v - u, -u - v, u - v].map(|corner| corner - axis)
@@ -129,7 +129,7 @@ impl Room {
         Self { model, shot, domain }
     }
 
-    /// A focus on a part of the room.
+    /// Returns a focus on a part of the room.
     fn focus(&self) -> Focus {
         let bounds = BoundingBox { min: DVec3::splat(-1.0), max: DVec3::new(0.2, 0.6, 0.1) };
         Focus::new(bounds, 0.75, self.model.scene.bounding_box(), self.model.scene.bounding_sphere()).unwrap()
@@ -153,7 +153,7 @@ impl Job {
         MultipathSettings { tail, replicas, ..settings }
     }
 
-    /// Runs the stage, or goes on with what was saved.
+    /// Runs the stage, from the start or from a checkpoint.
     pub(crate) fn run(
         self,
         room: &Room,
@@ -189,7 +189,7 @@ impl Job {
         BatchSettings::new(&room.model, domain, LINES, SEED)
     }
 
-    /// The same stage without an executor: line by line.
+    /// Runs the same stage without an executor, line by line.
     pub(crate) fn by_hand(self, room: &Room) -> Outcome {
         let shot = ShotSettings::new(&room.model, LINES, SEED);
         match self {
@@ -207,12 +207,12 @@ impl Job {
     }
 }
 
-/// Who goes on has no input.
+/// Returns the starting point: the checkpoint, or the input if there is none.
 fn start<I>(input: I, saved: Option<Saved>) -> Start<I> {
     saved.map_or(Start::Fresh(input), Start::Resumed)
 }
 
-/// Runs a stage line by line, one call for each.
+/// Runs a stage line by line, with one call for each.
 fn by_hand<S: Stage>(settings: S::Settings, input: S::Input) -> StageRun<S::Outcome> {
     let mut stage = S::begin(settings, input, &OneWorker).unwrap();
     let mut totals = StageTotals::default();
@@ -242,7 +242,7 @@ impl Outcome {
         Self { received, quantum: unit.quantum(), balance, counts, extrapolated, batches, sent: Vec::new() }
     }
 
-    /// Equal to the last bit.
+    /// Fails unless both outcomes are bit-identical.
     #[track_caller]
     pub(crate) fn assert_is(&self, expected: &Self, what: &str) {
         assert_eq!(self.counts, expected.counts, "{what}: counts");
@@ -252,13 +252,13 @@ impl Outcome {
             self.received.variance == expected.received.variance,
             "{what}: variance of the power received"
         );
-        assert_eq!(self.extrapolated, expected.extrapolated, "{what}: power made up");
+        assert_eq!(self.extrapolated, expected.extrapolated, "{what}: extrapolated power");
         assert_eq!(self.batches, expected.batches, "{what}: batches");
         assert!(self == expected, "{what}");
     }
 }
 
-/// Some threads of this rank.
+/// Returns an executor with this number of threads on this rank.
 pub(crate) fn executor(comm: &dyn Communicator, threads: usize) -> Executor<'_> {
     let threads = NonZeroUsize::new(threads).unwrap();
     Executor { comm, threads, observer: Box::new(StopAfter::NEVER), checkpoints: None, prior: None }

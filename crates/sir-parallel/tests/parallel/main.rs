@@ -1,4 +1,4 @@
-//! Any number of ranks and threads, and any number of restarts, give the same result to the last bit.
+//! Results are bit-identical for any number of ranks, threads and restarts.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod balance;

@@ -1,4 +1,4 @@
-//! What sensors measure does not depend on how many work on it.
+//! Measurements of sensors do not depend on the number of workers.
 
 use glam::DVec3;
 use sir_parallel::{Executor, RunError, StageRun, Start};
@@ -10,7 +10,7 @@ use crate::ranks::run_ranks;
 
 const SEED: u64 = 5;
 
-/// With an aim at the error, so that some sensors take more rays than others.
+/// A target for the error, so that some sensors need more rays than others.
 const SETTINGS: SensorSettings = SensorSettings { rays: 8192, error: 0.02 };
 
 fn sensors() -> Vec<Sensor> {

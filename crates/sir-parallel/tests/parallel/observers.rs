@@ -1,15 +1,15 @@
-//! Observers that stop a stage, slow it down, or keep what it has saved.
+//! Observers that stop a stage, slow it down, or copy its checkpoints.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use sir_parallel::Observer;
 
-/// Asks to stop after so many reports of progress.
+/// Observer that asks to stop after this number of progress reports.
 pub(crate) struct StopAfter(pub(crate) u32);
 
 impl StopAfter {
-    /// Lets everything finish.
+    /// Never asks to stop.
     pub(crate) const NEVER: Self = Self(u32::MAX);
 }
 
@@ -24,7 +24,7 @@ impl Observer for StopAfter {
     }
 }
 
-/// Takes its time for the first few reports of progress.
+/// Observer that delays the first few progress reports.
 pub(crate) struct Dawdle(pub(crate) u32);
 
 impl Observer for Dawdle {
@@ -36,10 +36,10 @@ impl Observer for Dawdle {
     }
 }
 
-/// Copies the checkpoint, if there is one, whenever there is progress.
+/// Observer that copies the checkpoint, if there is one, at every progress report.
 pub(crate) struct Collect<'a> {
     pub(crate) checkpoint: &'a Path,
-    /// With the number of lines done at that time.
+    /// Copies, each with the number of lines done at that time.
     pub(crate) copies: &'a mut Vec<(u64, PathBuf)>,
 }
 

@@ -1,4 +1,4 @@
-//! Ranks within one process: every rank is a thread that waits for the others in a [`Meeting`].
+//! Ranks within one process: every rank is a thread that synchronizes with the others in a [`Meeting`].
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -6,14 +6,14 @@ use std::thread;
 
 use sir_parallel::Communicator;
 
-/// One of several ranks.
+/// Communicator of one of several ranks.
 pub(crate) struct Ranks<'a> {
     rank: usize,
     size: usize,
     meeting: &'a Meeting,
 }
 
-/// Where ranks add up their numbers.
+/// State of the sums over all ranks.
 #[derive(Default)]
 struct Meeting {
     state: Mutex<State>,
@@ -22,18 +22,19 @@ struct Meeting {
 
 #[derive(Default)]
 struct State {
-    /// How many sums have been finished.
+    /// Number of finished sums.
     round: u64,
-    /// How many ranks have brought their numbers for the next one.
+    /// Number of ranks that have contributed to the next sum.
     arrived: usize,
     sums: Vec<i64>,
-    /// The last finished sums. Nobody can finish the next ones before all ranks have fetched these.
+    /// Last finished sums. The next ones cannot be finished before all ranks have fetched these.
     outcome: Arc<Vec<i64>>,
-    /// A rank has ended or panicked: a sum that is not finished will never be.
+    /// True if a rank has ended or panicked, so that an unfinished sum will never be finished.
     gone: bool,
 }
 
-/// What ends a rank that waits in vain. Nothing is printed: why another rank has gone says more.
+/// Panic payload that ends a rank whose sum will never be finished. Nothing is printed: the reason is the end of
+/// another rank.
 struct Lost;
 
 impl Meeting {
@@ -82,8 +83,8 @@ impl Communicator for Ranks<'_> {
     }
 }
 
-/// Runs `job` on this number of ranks, and returns what each of them makes. Panics if a rank does, or if one
-/// ends while another one waits for it.
+/// Runs `job` on this number of ranks, and returns the outcome of each. Panics if a rank panics, or if one ends while
+/// another one waits for it.
 #[track_caller]
 pub(crate) fn run_ranks<T: Send>(size: usize, job: impl Fn(&Ranks<'_>) -> T + Sync) -> Vec<T> {
     let meeting = Meeting::default();

@@ -1,4 +1,4 @@
-//! Files that cannot be resumed are refused, and the message says which file and why.
+//! Checkpoints that cannot be resumed are rejected with a message that names the file and the reason.
 
 use std::error::Error;
 use std::fs;
@@ -17,7 +17,7 @@ use crate::ranks::run_ranks;
 
 const MULTIPATH: Job = Job::Multipath { replicas: 3, tail: 0 };
 
-/// A folder with the checkpoint of a stage that was stopped.
+/// Returns a folder with the checkpoint of a stopped stage.
 fn stopped(room: &Room, job: Job) -> (TempDir, PathBuf) {
     let folder = tempdir().unwrap();
     let path = folder.path().join("run.checkpoint");
@@ -32,7 +32,7 @@ fn stopped(room: &Room, job: Job) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// The message names the file and says why.
+/// Fails unless the error names the file and the reason.
 #[track_caller]
 fn assert_unfit(error: &CheckpointError, file: &Path, reason: &str) {
     let CheckpointError::Unfit { path, why } = error else { panic!("{error:?}") };
@@ -47,7 +47,7 @@ fn assert_not_opened(file: &Path, reason: &str) {
     assert_unfit(&Saved::open(file).unwrap_err(), file, reason);
 }
 
-/// The checkpoint is opened, but a stage does not take it.
+/// Fails unless the checkpoint can be opened but is rejected by the stage.
 #[track_caller]
 fn assert_not_taken(room: &Room, job: Job, file: &Path) {
     let saved = Saved::open(file).unwrap();
@@ -97,7 +97,7 @@ fn a_file_of_another_kind_is_refused() {
     let picture = [&b"\x89PNG\r\n\x1a\n"[..], &[0xFF; 500]].concat();
     for content in [text, picture, vec![b'S'; 1000], b"SIR".repeat(20), vec![b'\n'; 64]] {
         fs::write(&path, content).unwrap();
-        assert_not_opened(&path, "it does not begin with \"SIR checkpoint 4\"");
+        assert_not_opened(&path, "the checkpoint does not begin with \"SIR checkpoint 4\"");
     }
 }
 
@@ -172,7 +172,7 @@ fn a_checkpoint_of_another_domain_is_refused() {
     }
 }
 
-/// A checkpoint from before the first stage has only a head: the caller must not hand it to a stage.
+/// An initial checkpoint has only a head. The caller must not pass it to a stage.
 #[test]
 fn a_checkpoint_without_a_state_is_refused_by_stages() {
     let folder = tempdir().unwrap();
@@ -183,7 +183,7 @@ fn a_checkpoint_without_a_state_is_refused_by_stages() {
     }
 }
 
-/// The first rank says why, the others which rank knows; nobody waits.
+/// The first rank returns the reason, the others the number of that rank. No rank waits forever.
 #[test]
 fn a_refusal_reaches_all_ranks() {
     for (there, jobs) in [
@@ -209,7 +209,7 @@ fn a_refusal_reaches_all_ranks() {
     }
 }
 
-/// Nothing is done to a file that is refused.
+/// A rejected file is not changed.
 #[test]
 fn a_checkpoint_that_was_refused_by_one_stage_can_be_resumed_by_another() {
     let (_folder, path) = stopped(&ROOM, Job::FirstShot);

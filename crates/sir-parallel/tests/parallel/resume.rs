@@ -1,4 +1,4 @@
-//! A stage that was stopped goes on as if nothing had happened, whoever goes on with it.
+//! A stopped stage has the same outcome after it is resumed, by any number of ranks and threads.
 
 use std::path::Path;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::jobs::{FINE_ROOM, JOBS, Job, LINES, Outcome, ROOM, Room, executor};
 use crate::observers::{Collect, StopAfter};
 use crate::ranks::{Ranks, run_ranks};
 
-/// A part of a run: who works on it, and after how many reports of progress one rank asks to stop.
+/// Part of a run: its workers, and the number of progress reports after which one rank asks to stop.
 #[derive(Clone, Copy, Debug)]
 struct Leg {
     ranks: usize,
@@ -22,23 +22,23 @@ const fn leg(ranks: usize, threads: usize, looks: u32) -> Leg {
     Leg { ranks, threads, looks }
 }
 
-/// Works on until the end.
+/// Returns a leg that runs until the end.
 const fn last(ranks: usize, threads: usize) -> Leg {
     leg(ranks, threads, u32::MAX)
 }
 
-/// What a rank goes on with.
+/// Returns the checkpoint from which a rank resumes.
 fn saved(comm: &Ranks<'_>, path: &Path) -> Saved {
     if comm.is_first() { Saved::open(path).unwrap() } else { Saved::elsewhere() }
 }
 
-/// Only the first rank writes: the path of the others leads nowhere.
+/// Returns checkpoint settings. Only the first rank writes: the path of the others does not exist.
 fn checkpoints(comm: &Ranks<'_>, path: &Path, every: Duration) -> Checkpoints {
     let nowhere = Path::new("/nowhere/at/all");
     Checkpoints::new(if comm.is_first() { path } else { nowhere }.to_owned(), every)
 }
 
-/// Runs a stage leg by leg. Returns the outcome, that of all ranks, and the numbers of lines at the stops.
+/// Runs a stage leg by leg. Returns the outcome, which is that of all ranks, and the numbers of lines at the stops.
 fn run(room: &Room, job: Job, legs: &[Leg]) -> (Outcome, Vec<u64>) {
     let folder = tempdir().unwrap();
     let path = folder.path().join("run.checkpoint");
@@ -48,7 +48,7 @@ fn run(room: &Room, job: Job, legs: &[Leg]) -> (Outcome, Vec<u64>) {
         let outcomes = run_ranks(leg.ranks, |comm| {
             let saved = (n > 0).then(|| saved(comm, &path));
             let mut checkpoints = checkpoints(comm, &path, Duration::MAX);
-            // Any rank may ask.
+            // Any rank can ask to stop.
             let asks = comm.rank() == n % leg.ranks;
             let observer = Box::new(StopAfter(if asks { leg.looks } else { u32::MAX }));
             let mut executor =
@@ -75,7 +75,7 @@ fn run(room: &Room, job: Job, legs: &[Leg]) -> (Outcome, Vec<u64>) {
     panic!("{job:?} does not finish: {legs:?}, {stops:?}");
 }
 
-/// Stops after each of some numbers of reports, and goes on with another executor.
+/// Stops a stage after several numbers of reports and resumes it with another executor.
 fn assert_resumable(job: Job) {
     let expected = job.by_hand(&ROOM);
     let mut within = 0;
@@ -92,7 +92,7 @@ fn assert_resumable(job: Job) {
     assert!(within >= 9, "{job:?}: only {within} stops were in the middle");
 }
 
-/// A run that was stopped many times.
+/// Stops and resumes a stage many times.
 fn assert_resumable_often(job: Job) {
     // Neither the numbers of workers nor those of reports follow a pattern.
     let legs = [
@@ -141,7 +141,7 @@ fn every_stage_may_be_stopped_again_and_again() {
     JOBS.into_iter().for_each(assert_resumable_often);
 }
 
-/// Stops fall in all batches: near the end there is little power, and a tail to be stretched.
+/// Stops a run in every batch. Near the end little power is left, and power is extrapolated from the tail.
 #[test]
 fn batches_go_on_from_any_batch() {
     let expected = Job::Batches.by_hand(&ROOM);
@@ -156,7 +156,7 @@ fn batches_go_on_from_any_batch() {
     }
 }
 
-/// The state is saved and restored in chunks of 16,384 sides.
+/// A state is saved and restored in chunks of 16,384 sides.
 #[test]
 fn a_state_of_several_chunks_goes_on_after_a_stop() {
     for job in [Job::FirstShot, Job::Batches, Job::Multipath { replicas: 3, tail: 0 }] {
@@ -166,7 +166,7 @@ fn a_state_of_several_chunks_goes_on_after_a_stop() {
     }
 }
 
-/// A run that is killed leaves its last checkpoint behind, of whatever moment.
+/// Resumes from every checkpoint of a run, since a killed run can leave any of them behind.
 fn assert_saved_at_every_look(job: Job) {
     let expected = job.by_hand(&ROOM);
     let folder = tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The result does not depend on how many work on it.
+//! Results do not depend on the number of workers.
 
 use std::num::NonZeroUsize;
 
@@ -50,7 +50,7 @@ fn a_process_by_itself_gets_the_same_as_ranks() {
     }
 }
 
-/// How many lines come next depends on how long the last ones took, and each rank has a clock of its own.
+/// The length of a slice depends on the time of the previous one, and each rank has its own clock.
 #[test]
 fn ranks_agree_on_the_next_lines_however_fast_each_of_them_is() {
     for job in [Job::FirstShot, Job::Batches, Job::Multipath { replicas: 3, tail: 0 }] {
@@ -67,7 +67,7 @@ fn ranks_agree_on_the_next_lines_however_fast_each_of_them_is() {
     }
 }
 
-/// Some replicas have no line at all, or some workers no replica.
+/// Some replicas have no lines, or some workers no replica.
 #[test]
 fn replicas_may_be_more_than_lines_and_fewer_than_workers() {
     for replicas in [2, 40, LINES + 10] {
@@ -94,7 +94,7 @@ fn sides_may_be_fewer_than_threads() {
     }
 }
 
-/// Counters are handed over in chunks of 16,384 sides.
+/// Counters are communicated in chunks of 16,384 sides.
 #[test]
 fn sides_may_be_more_than_are_handed_over_at_a_time() {
     for job in [Job::FirstShot, Job::Batches, Job::Multipath { replicas: 3, tail: 0 }] {

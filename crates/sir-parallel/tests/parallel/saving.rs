@@ -1,4 +1,4 @@
-//! What is written, and what happens if it cannot be.
+//! Contents of checkpoint files, and errors while they are written.
 
 use std::error::Error;
 use std::fs;
@@ -12,7 +12,7 @@ use crate::jobs::{JOBS, Job, Outcome, ROOM, executor};
 use crate::observers::StopAfter;
 use crate::ranks::run_ranks;
 
-/// Runs a stage until it has progressed so often, and saves it.
+/// Runs a stage until it has reported its progress `looks` times, and saves it.
 fn stop(
     job: Job,
     comm: &dyn Communicator,
@@ -24,14 +24,14 @@ fn stop(
     job.run(&ROOM, &mut executor, None)
 }
 
-/// The message names the file, and says what can still be relied on.
+/// Fails unless the message names the file and states that an earlier checkpoint can still be used.
 #[track_caller]
 fn assert_not_written(end: Result<Outcome, RunError>, file: &Path) {
-    let Err(RunError::Checkpoint(error)) = end else { panic!("it is written, or nobody knows") };
+    let Err(RunError::Checkpoint(error)) = end else { panic!("no checkpoint error") };
     let CheckpointError::Write { path, .. } = &error else { panic!("{error:?}") };
     assert_eq!(path, file);
     let message = error.to_string();
-    assert!(message.contains(file.to_str().unwrap()) && message.contains("still whole"), "{message}");
+    assert!(message.contains(file.to_str().unwrap()) && message.contains("still intact"), "{message}");
     assert!(error.source().is_some());
 }
 
@@ -73,7 +73,7 @@ fn a_new_head_replaces_the_old_one_at_the_next_save() {
     assert_eq!(Saved::open(&path).unwrap().head(), "second");
 }
 
-/// Nothing but the checkpoint is left in its folder; what lay there from a killed run is written over.
+/// Only the checkpoint is left in its folder. A partial file of a killed run is overwritten.
 #[test]
 fn there_is_only_one_file() {
     let folder = tempdir().unwrap();
@@ -87,7 +87,7 @@ fn there_is_only_one_file() {
     }
 }
 
-/// Runs may save at the same time to files in one folder that differ in what looks like the extension.
+/// Several runs can save at the same time to files of one folder whose names differ only in the extension.
 #[test]
 fn checkpoints_with_similar_names_do_not_mix() {
     let folder = tempdir().unwrap();
@@ -132,7 +132,7 @@ fn only_the_first_rank_writes() {
     assert_eq!(names(folder.path()), ["0.checkpoint"]);
 }
 
-/// Something that cannot be written to stands where the new file has to be made.
+/// A folder is in the place of the new file, so that the file cannot be created.
 #[test]
 fn the_file_before_stays_whole_if_a_new_one_cannot_be_made() {
     for job in JOBS {
@@ -151,7 +151,7 @@ fn the_file_before_stays_whole_if_a_new_one_cannot_be_made() {
     }
 }
 
-/// The device `/dev/full` takes no byte: the failure comes while the ranks are adding up their state.
+/// The device `/dev/full` accepts no byte, so that writing fails while the ranks are summing their state.
 #[test]
 #[cfg(target_os = "linux")]
 fn the_file_before_stays_whole_if_the_disk_is_full() {

@@ -1,4 +1,4 @@
-//! View factors are the same by any number of workers, and can be stopped.
+//! View factors do not depend on the number of workers, and the stage can be stopped.
 
 use sir_parallel::{Communicator, Executor, RunError, Start};
 use sir_radiosity::{
@@ -10,7 +10,7 @@ use crate::jobs::{ROOM, executor};
 use crate::observers::StopAfter;
 use crate::ranks::run_ranks;
 
-/// Until the errors are small, in several rounds.
+/// A target for the errors, which takes several rounds.
 const SETTINGS: ViewFactorSettings =
     ViewFactorSettings { accuracy: Some(Accuracy { error: 5e-3, relative: 0.05 }), lines: u64::MAX, seed: 4 };
 
@@ -18,7 +18,7 @@ fn task(grouping: &Grouping) -> ViewFactorTask<'_> {
     ViewFactorTask { model: &ROOM.model, grouping, settings: SETTINGS }
 }
 
-/// Without an executor.
+/// Runs the stage without an executor.
 fn by_hand(grouping: &Grouping) -> ViewFactors {
     let mut stage = ViewFactorLines::begin(task(grouping), (), &OneWorker).unwrap();
     let mut totals = StageTotals::default();
@@ -41,7 +41,7 @@ fn count(grouping: &Grouping, executor: &mut Executor<'_>) -> Result<ViewFactors
 fn any_number_of_workers_counts_the_same() {
     let grouping = Grouping::by_material(&ROOM.model.scene);
     let expected = by_hand(&grouping);
-    // Something is blocked, something escapes, and all has one place.
+    // Some lines are blocked and some escape.
     for receiver in [Receiver::Blocked, Receiver::Escaped] {
         assert!((0..expected.len()).any(|i| expected.count(i, receiver) > 0));
     }

@@ -1,11 +1,11 @@
-//! Feeds the readers of files with broken ones until something breaks.
+//! A fuzzer of the readers of pipeline and scene files.
 //!
 //!     cargo run --release -p sir-pipeline --example fuzz -- glb --minutes 60 --seed 1
 //!
-//! Case `n` of a seed is the same wherever and whenever it is made. What is wrong: a panic, a case that takes too long or too
-//! much memory, an error that names no file, and one that is too long to read or writes to the terminal what it should not.
-//! What was found is kept; the exit code then is 1. Where memory cannot be had or the stack overflows the program ends at
-//! once: the files of that case are in the folder `case`.
+//! Case `n` of a seed is the same on every machine and in every run. Findings are a panic, a case that takes too much
+//! time or memory, an error that names no file, and an error that is too long or contains control characters. The files
+//! of findings are kept, and the exit code is then 1. If an allocation fails or the stack overflows, the program ends
+//! at once: the files of that case are in the folder `case`.
 
 #![allow(clippy::print_stdout, reason = "a program's output")]
 
@@ -34,32 +34,33 @@ use sir_radiosity::{FirstShot, Model, ShotSettings, run_stage};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Bytes that a case may take, and those for each byte of its files.
+/// Memory limit of a case: a constant, and a number for each byte of its files \[bytes\].
 const MEMORY_LIMIT: (usize, usize) = (32 << 20, 300);
 
-/// Seconds that a case may take.
+/// Time limit of a case \[s\].
 const TIME_LIMIT: u64 = 20;
 
-/// The most characters of an error about a scene. Those of pipelines have several lines for each of many problems.
-const LONGEST_ERROR: usize = 1000;
+/// Maximum number of characters of an error about a scene. Errors about pipelines are not limited, because they have
+/// several lines for each of many problems.
+const MAX_ERROR_LENGTH: usize = 1000;
 
-/// The most triangles of a scene that is also lit.
-const LIT: usize = 2000;
+/// Maximum number of triangles of a scene that is also lit.
+const MAX_LIT_TRIANGLES: usize = 2000;
 
 #[derive(Parser)]
 struct Args {
-    /// What to read.
+    /// Kind of files to read.
     target: Target,
-    /// How long to go on.
+    /// Duration in minutes.
     #[arg(long, default_value_t = 1.0)]
     minutes: f64,
     /// The seed of all cases.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// The case to begin with.
+    /// The number of the first case.
     #[arg(long, default_value_t = 0)]
     first: u64,
-    /// Where the case at work and the findings are kept.
+    /// Folder of the current case and of the findings.
     #[arg(long, default_value = "target/fuzz")]
     folder: PathBuf,
 }
@@ -75,24 +76,24 @@ fn main() -> ExitCode {
     }
 }
 
-/// Tries cases until time is up; returns how many were findings.
+/// Tries cases until the time is up, and returns the number of findings.
 fn fuzz(args: &Args) -> Result<u64, Box<dyn Error>> {
     let Args { target, seed, .. } = *args;
-    let at_work = args.folder.join("case");
-    fs::create_dir_all(&at_work)?;
-    let at_work = fs::canonicalize(at_work)?;
+    let current = args.folder.join("case");
+    fs::create_dir_all(&current)?;
+    let current = fs::canonicalize(current)?;
     let (start, now) = (Instant::now(), Arc::new(AtomicU64::new(0)));
     watch(start, Arc::clone(&now));
     std::panic::set_hook(Box::new(|_| {}));
-    // Changes to what is refused anyway would try little.
-    if let Err(why) | Ok(Some(why)) = try_case(target, &at_work, &target.seed())? {
+    // The seed must be valid: changes to a file that is refused anyway would test little.
+    if let Err(why) | Ok(Some(why)) = try_case(target, &current, &target.seed())? {
         return Err(format!("the seed is not accepted: {why}").into());
     }
-    let (mut n, mut findings, mut accepted, mut said) = (args.first, 0, 0u64, 0);
+    let (mut n, mut findings, mut accepted, mut reported) = (args.first, 0, 0u64, 0);
     while start.elapsed().as_secs_f64() < 60.0 * args.minutes {
         let files = case(target, &mut Dice::new(seed, n));
         now.store(start.elapsed().as_secs() + 1, Relaxed);
-        let outcome = try_case(target, &at_work, &files)?;
+        let outcome = try_case(target, &current, &files)?;
         now.store(0, Relaxed);
         match outcome {
             Ok(refused) => accepted += u64::from(refused.is_none()),
@@ -108,8 +109,8 @@ fn fuzz(args: &Args) -> Result<u64, Box<dyn Error>> {
         }
         n += 1;
         let minutes = start.elapsed().as_secs() / 60;
-        if minutes > said {
-            said = minutes;
+        if minutes > reported {
+            reported = minutes;
             eprintln!("{minutes} min: {} cases, {accepted} accepted, {findings} findings", n - args.first);
         }
     }
@@ -117,7 +118,7 @@ fn fuzz(args: &Args) -> Result<u64, Box<dyn Error>> {
     Ok(findings)
 }
 
-/// Ends the program if a case takes too long. `now` is the second after the one in which it began, or 0.
+/// Ends the program if a case takes too long. `now` is the second in which the case began, plus 1, or 0 between cases.
 fn watch(start: Instant, now: Arc<AtomicU64>) {
     std::thread::spawn(move || {
         loop {
@@ -131,14 +132,17 @@ fn watch(start: Instant, now: Arc<AtomicU64>) {
     });
 }
 
-/// Writes and reads the files of a case. Why they are refused, if they are; or else what is wrong with how they were treated.
+/// Writes and reads the files of a case.
+///
+/// Returns `Ok(None)` if the files are accepted, `Ok(Some(reason))` if they are refused, and `Err(finding)` if the
+/// reader misbehaves.
 fn try_case(
     target: Target,
     folder: &Path,
     files: &[(&str, Vec<u8>)],
 ) -> Result<Result<Option<String>, String>, std::io::Error> {
     for (name, bytes) in files {
-        // Some file systems take milliseconds to write a file anew in place, but not to remove it first.
+        // Some file systems take milliseconds to overwrite a file in place; removing it first is faster.
         let path = folder.join(name);
         if path.exists() {
             fs::remove_file(&path)?;
@@ -170,7 +174,7 @@ fn attempt(target: Target, folder: &Path, bytes: usize) -> Result<Option<String>
     if text.contains(control) {
         return Err(format!("control characters in {text:?}"));
     }
-    if target != Target::Pipeline && text.chars().count() > LONGEST_ERROR + 3 * folder.as_os_str().len() {
+    if target != Target::Pipeline && text.chars().count() > MAX_ERROR_LENGTH + 3 * folder.as_os_str().len() {
         return Err(format!("an error of {} characters", text.chars().count()));
     }
     if text.contains(&*folder.to_string_lossy()) {
@@ -180,14 +184,16 @@ fn attempt(target: Target, folder: &Path, bytes: usize) -> Result<Option<String>
     }
 }
 
-/// Makes patches and a hull of a small scene, and traces some lines.
+/// Makes patches and the convex hull of a small scene, and traces some lines.
 fn light(built: Option<Built>) {
-    let Some(scene) = built.map(|built| built.scene).filter(|scene| scene.triangles().len() <= LIT) else {
+    let Some(scene) =
+        built.map(|built| built.scene).filter(|scene| scene.triangles().len() <= MAX_LIT_TRIANGLES)
+    else {
         return;
     };
     let Ok(model) = Model::new(scene, Subdivision::Patches(50)) else { return };
     drop(Domain::hull(model.scene.vertices()));
-    // Too much power is an error as any other.
+    // An error, such as too much power, is no finding.
     let _ = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, 200, 1), ());
 }
 

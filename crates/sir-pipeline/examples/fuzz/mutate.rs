@@ -1,4 +1,4 @@
-//! Small changes to inputs: of bytes, of words, and of the tree of a JSON document.
+//! Small changes to inputs: to bytes, to words, and to the tree of a JSON document.
 
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
@@ -6,18 +6,18 @@ use serde_json::{Value, json};
 
 use crate::seeds::{self, Target};
 
-/// Where all chance comes from.
+/// Random numbers of a case.
 pub(crate) struct Dice(SplitMix64);
 
 impl Dice {
-    /// The dice of a case.
+    /// Returns the generator of a case.
     pub(crate) fn new(seed: u64, case: u64) -> Self {
         Self(SplitMix64::seed_from_u64(
             SplitMix64::seed_from_u64(seed).next_u64() ^ case.wrapping_mul(0x9e37_79b9),
         ))
     }
 
-    /// A whole number below `n`, or 0.
+    /// Returns a uniform whole number below `n`, or 0 if `n` is 0.
     fn below(&mut self, n: usize) -> usize {
         (self.0.next_u64() % n.max(1) as u64) as usize
     }
@@ -26,7 +26,7 @@ impl Dice {
         self.below(one_in) == 0
     }
 
-    /// A range of some bytes, mostly a short one.
+    /// Returns a random range of bytes within `length`, usually a short one.
     fn range(&mut self, length: usize) -> std::ops::Range<usize> {
         let start = self.below(length + 1);
         let most = if self.chance(4) { length } else { 12 };
@@ -34,7 +34,7 @@ impl Dice {
     }
 }
 
-/// The files of a case: those of the seed, one or more of which are changed.
+/// Returns the files of a case: those of the seed, one or more of them changed.
 pub(crate) fn case(target: Target, dice: &mut Dice) -> Vec<(&'static str, Vec<u8>)> {
     let mut files = target.seed();
     let mut in_tree = false;
@@ -49,11 +49,11 @@ pub(crate) fn case(target: Target, dice: &mut Dice) -> Vec<(&'static str, Vec<u8
         };
         in_tree = true;
     }
-    // A changed tree stays whole JSON more often than not.
+    // If the tree was changed, usually keep valid JSON.
     if !in_tree || dice.chance(4) {
         let words = target.words();
         for _ in 0..=dice.below(6) {
-            // Mostly the file itself, sometimes one that it names.
+            // Usually the file itself, sometimes one that it names.
             let which = if dice.chance(3) { dice.below(files.len()) } else { 0 };
             change_bytes(&mut files[which].1, &words, dice);
         }
@@ -61,9 +61,9 @@ pub(crate) fn case(target: Target, dice: &mut Dice) -> Vec<(&'static str, Vec<u8
     files
 }
 
-/// Files do not grow beyond this number of bytes: repeated again and again they would have hundreds of millions, and only reading them takes
-/// longer than a case may.
-const LARGEST: usize = 4 << 20;
+/// Maximum size of a file \[bytes\]. Without it, repetitions of repetitions would have hundreds of millions of bytes,
+/// and reading alone would exceed the time limit of a case.
+const MAX_FILE_SIZE: usize = 4 << 20;
 
 fn change_bytes(bytes: &mut Vec<u8>, words: &[&str], dice: &mut Dice) {
     let range = dice.range(bytes.len());
@@ -74,10 +74,10 @@ fn change_bytes(bytes: &mut Vec<u8>, words: &[&str], dice: &mut Dice) {
         2 => bytes[range].iter_mut().for_each(|byte| *byte = dice.below(256) as u8),
         3 if !range.is_empty() => bytes[range.start] ^= 1 << dice.below(8),
         4 => {
-            // The same again, sometimes so often that depth or length becomes a trouble.
+            // Repeats a piece, sometimes so often that nesting depth or length becomes a problem.
             let piece = bytes[range.clone()].to_vec();
             let times = if dice.chance(20) { 2000 } else { 1 + dice.below(4) };
-            let times = times.min(LARGEST.saturating_sub(bytes.len()) / piece.len().max(1));
+            let times = times.min(MAX_FILE_SIZE.saturating_sub(bytes.len()) / piece.len().max(1));
             drop(bytes.splice(range.end..range.end, piece.repeat(times)));
         }
         5 => {
@@ -93,7 +93,7 @@ fn change_bytes(bytes: &mut Vec<u8>, words: &[&str], dice: &mut Dice) {
     }
 }
 
-/// Replaces the first number at or behind a place.
+/// Replaces the first number at or after a position.
 fn replace_number(bytes: &mut Vec<u8>, place: usize, by: &[u8]) {
     let digit = |byte: &u8| byte.is_ascii_digit();
     let Some(start) = bytes[place..].iter().position(digit).map(|i| place + i) else { return };
@@ -101,7 +101,7 @@ fn replace_number(bytes: &mut Vec<u8>, place: usize, by: &[u8]) {
     drop(bytes.splice(start..end, by.iter().copied()));
 }
 
-/// Replaces, removes or doubles a value of a document.
+/// Replaces, removes or repeats a value of a document.
 fn change_tree(document: &mut Value, dice: &mut Dice) {
     let paths = pointers(document);
     let other = document.pointer(&paths[dice.below(paths.len())]).cloned().unwrap_or_default();
@@ -121,7 +121,7 @@ fn change_tree(document: &mut Value, dice: &mut Dice) {
     }
 }
 
-/// The paths of all values but the document itself.
+/// Returns the JSON pointers of all values except the document itself.
 fn pointers(document: &Value) -> Vec<String> {
     let mut found = Vec::new();
     let mut stack = vec![(String::new(), document)];

@@ -1,22 +1,22 @@
-//! Whole inputs, which mutation starts from: small, and with most of what is read.
+//! Valid inputs that mutation starts from. They are small, and contain most of what the readers support.
 
 use serde_json::{Value, json};
 
-/// What the files of others are read as.
+/// Kind of file whose reader is tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Target {
     /// Pipeline files.
     Pipeline,
     /// OBJ with a material library.
     Obj,
-    /// glTF text with a buffer beside it.
+    /// glTF text with a buffer file.
     Gltf,
     /// Binary glTF.
     Glb,
 }
 
 impl Target {
-    /// The name of the file that is read.
+    /// Returns the name of the file that is read.
     pub(crate) fn file(self) -> &'static str {
         match self {
             Self::Pipeline => "a.ron",
@@ -26,7 +26,7 @@ impl Target {
         }
     }
 
-    /// Words with a meaning in files of this kind, and numbers at the limits of some type.
+    /// Returns words with a meaning in files of this kind, and numbers at the limits of numeric types.
     pub(crate) fn words(self) -> Vec<&'static str> {
         let mut words = vec![
             "0",
@@ -140,7 +140,7 @@ impl Target {
         words
     }
 
-    /// The files to begin with, the one that is read first.
+    /// Returns the unchanged files; the first one is the one that is read.
     pub(crate) fn seed(self) -> Vec<(&'static str, Vec<u8>)> {
         let file = self.file();
         match self {
@@ -186,7 +186,7 @@ const PNG: &[u8] = &[
     0x82, 0, 0x81, 0x77, 0xcd, 0x72, 0xb6, 0, 0, 0, 0, b'I', b'E', b'N', b'D', 0xae, 0x42, 0x60, 0x82,
 ];
 
-/// A document whose buffer is [`data`]: in a file, or in the binary chunk.
+/// Returns a glTF document whose buffer is [`data`], in the file `uri` or in the binary chunk.
 pub(crate) fn document(uri: Option<&str>) -> Value {
     let mut document = json!({
         "asset": {"version": "2.0", "generator": "x"},
@@ -238,14 +238,14 @@ pub(crate) fn document(uri: Option<&str>) -> Value {
     document
 }
 
-/// Four positions, four indices, a sparse index and its value, and an image.
+/// Returns the buffer: four positions, four indices, a sparse index and its value, and an image.
 pub(crate) fn data() -> Vec<u8> {
     let floats = |list: &[f32]| list.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
     let positions = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0]);
     [positions, vec![0, 0, 1, 0, 2, 0, 3, 0, 1, 0, 0, 0], floats(&[1.0, 0.0, 2.0]), PNG.to_vec()].concat()
 }
 
-/// A GLB file of a document and its buffer.
+/// Returns a GLB file of a document and its buffer.
 pub(crate) fn glb(document: &Value, data: &[u8]) -> Vec<u8> {
     let mut body = Vec::new();
     for (kind, mut chunk, pad) in

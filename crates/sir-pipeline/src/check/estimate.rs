@@ -1,8 +1,8 @@
-//! What a pipeline will do and cost, without doing it.
+//! Estimates memory and time of a pipeline.
 
 use std::path::Path;
 
-use crate::check::needs::{memory, needed_beside_model};
+use crate::check::needs::{memory, needed_besides_model};
 use crate::check::probe::{StageEstimate, probe};
 use crate::error::Error;
 use crate::memory;
@@ -11,53 +11,53 @@ use crate::prepare::prepared::{Prepared, prepare};
 use crate::progress::{NoProgress, Progress};
 use crate::units::Units;
 
-/// What a pipeline will do and cost.
+/// Estimate of the cost of a pipeline.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// What power is measured in.
+    /// Units of power.
     pub units: Units,
-    /// The scene, ready to be lit.
+    /// Scene, ready for tracing.
     pub prepared: Prepared,
     /// Memory per part \[bytes\].
     pub memory: Vec<(&'static str, usize)>,
-    /// Most memory in use at one time \[bytes\].
+    /// Peak memory use \[bytes\].
     pub peak_memory: usize,
-    /// Lines and lines per second of each stage that has any: the rate of one thread in a short try on this machine now,
-    /// times its processor cores.
+    /// Lines and lines per second of each stage with lines: the rate of one thread in a short trial on this machine,
+    /// times the number of its processor cores.
     pub stages: Vec<StageEstimate>,
-    /// How often these stages are repeated.
+    /// Repetition of these stages, if there is any.
     pub repeat: Option<Repeated>,
 }
 
-/// How often stages are repeated, see [`Repeat`].
+/// Repetition of stages, see [`Repeat`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repeated {
-    /// Until when.
+    /// Target at which to stop.
     pub until: Until,
-    /// How often at most.
+    /// Maximum number of repeats.
     pub at_most: Option<u64>,
 }
 
-/// Says what the pipeline in the file `path` will do and cost: reads its scene, makes its patches and tries some lines of each
-/// stage. Writes nothing.
+/// Estimates the cost of the pipeline in the file `path`: reads its scene, makes its patches and traces a few lines of
+/// each stage. Writes nothing.
 ///
 /// # Errors
 ///
-/// If the pipeline has mistakes, or as [`prepare`].
+/// If the pipeline is invalid, or [`prepare`] fails.
 pub fn check(path: &Path) -> Result<Estimate, Error> {
     estimate(&Pipeline::read(path)?, &NoProgress)
 }
 
-/// As [`check`], of a pipeline that has been read: reads the scene of a pipeline, makes its patches and tries some lines of each stage. Writes nothing.
+/// Estimates the cost of a pipeline, like [`check`].
 ///
 /// # Errors
 ///
-/// As [`prepare`].
+/// Same as [`prepare`].
 pub fn estimate(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Estimate, Error> {
     let prepared = prepare(pipeline, progress)?;
     let (memory, peak_memory) = memory(&prepared.model, pipeline);
-    // The try below takes as much as the run.
-    memory::refuse_more_than_available(needed_beside_model(&memory))?;
+    // The trial below needs as much memory as the run.
+    memory::refuse_more_than_available(needed_besides_model(&memory))?;
     let repeat = pipeline.stages.iter().find_map(|stage| match &stage.action {
         Action::Repeat(repeat) => Some(repeat),
         _ => None,

@@ -1,4 +1,4 @@
-//! What a pipeline will do and cost, without doing it.
+//! Estimates memory and time of a pipeline without running it.
 
 pub mod estimate;
 pub(crate) mod needs;

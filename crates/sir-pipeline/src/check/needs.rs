@@ -1,4 +1,4 @@
-//! How much memory a run needs.
+//! Estimates the memory that a run needs.
 
 use sir_geom::Rgb;
 use sir_radiosity::{Model, Quanta, Repeats};
@@ -11,39 +11,40 @@ use crate::prepare::cameras::chosen_camera;
 use crate::progress::Progress;
 use crate::run::save::{is_denoised, settings};
 
-/// Bytes per side of what pictures and lit meshes are made from: measured on two million sides, rounded up.
+/// Bytes per side of the display mesh of images and lit meshes: measured on two million sides, rounded up.
 const DISPLAY_BYTES: usize = 200;
 
-/// Bytes per pixel of the largest picture: a ray's colors while it is drawn and when it is done, and its file.
+/// Bytes per pixel of the largest image: colors while it is rendered and when it is finished, and its file.
 const PIXEL_BYTES: usize = 2 * 24 + 16;
 
-/// Says how much memory a run will take, and refuses what this machine does not have.
+/// Reports the peak memory of a run. Returns an error if it exceeds the available memory.
 pub(crate) fn check_memory(model: &Model, pipeline: &Pipeline, progress: &dyn Progress) -> Result<(), Error> {
     let (parts, most) = memory(model, pipeline);
     progress.note(&format!("Memory: {} at most", bytes(most)));
-    memory::refuse_more_than_available(needed_beside_model(&parts))
+    memory::refuse_more_than_available(needed_besides_model(&parts))
 }
 
-/// Of the parts of a run's memory, what it needs beside its scene, patches and acceleration structure.
-pub(super) fn needed_beside_model(memory: &[(&'static str, usize)]) -> usize {
+/// Returns the memory that a run needs in addition to its scene, patches and acceleration structure \[bytes\], from the
+/// result of `memory`.
+pub(super) fn needed_besides_model(memory: &[(&'static str, usize)]) -> usize {
     memory.iter().skip(3).map(|part| part.1).max().unwrap_or(0)
 }
 
-/// Memory of a run per part and at most \[bytes\].
+/// Returns the memory of a run per part, and its peak \[bytes\].
 pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
     let Model { scene, mesh, accel } = model;
     let sides = mesh.side_count();
-    // Power and its variance; in the first shot two records of 64 bytes in the ledger, later one, and less than 64 bytes
-    // for what is unshot.
+    // Power and its variance; in the first shot two tally records of 64 bytes, later one, and less than 64 bytes for
+    // the unshot power.
     let tracing = size_of::<Quanta>() + size_of::<[f32; 3]>() + 2 * 64;
     let solution = 2 * size_of::<Rgb>();
     let repeats = pipeline.stages.iter().any(|stage| matches!(stage.action, Action::Repeat(_)));
     let tracing = tracing + if repeats { Repeats::BYTES_PER_SIDE } else { 0 };
     let shown = pipeline.outputs().any(|o| !matches!(o, Output::Table(_)));
-    // Pictures for measuring have one of standard errors, too.
+    // EXR images need a display mesh of standard errors, too.
     let measured =
         pipeline.outputs().any(|o| o.path().extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
-    // Pictures without noise have a mesh of their own; making it takes less than it has itself.
+    // Denoised images need a display mesh of their own. Making it takes less memory than the mesh itself.
     let denoise = pipeline.outputs().any(is_denoised);
     let displays = usize::from(shown) + usize::from(measured) + usize::from(denoise);
     let pixels = pipeline.outputs().filter_map(|o| match o {
@@ -67,7 +68,7 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
                 + pixels.max().unwrap_or(0) * PIXEL_BYTES,
         ),
     ];
-    // The last two are not needed at the same time.
+    // The last two parts are not needed at the same time.
     let [scene, patches, accel, light, display] = [0, 1, 2, 3, 4].map(|i: usize| memory[i].1);
     (memory, scene + patches + accel + light.max(display))
 }

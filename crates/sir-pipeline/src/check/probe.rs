@@ -1,4 +1,4 @@
-//! A short try of the lines of each stage, to learn their rate.
+//! Measures the line rate of each stage in a short trial.
 
 use std::time::{Duration, Instant};
 
@@ -13,24 +13,24 @@ use crate::plan;
 use crate::plan::{Action, Pipeline};
 use crate::prepare::prepared::Prepared;
 
-/// How long the lines of a stage are tried to learn their rate.
+/// Duration of the trial of a stage.
 const PROBE: Duration = Duration::from_millis(300);
 
-/// Lines between two looks at the clock.
+/// Number of lines between two checks of the clock.
 const BLOCK: u64 = 1 << 10;
 
-/// What a stage will cost.
+/// Estimated cost of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageEstimate {
     /// Name of the stage.
     pub name: &'static str,
-    /// Its lines.
+    /// Number of lines.
     pub lines: u64,
     /// Lines per second.
     pub rate: f64,
 }
 
-/// Tries the lines of each stage of a pipeline.
+/// Measures the line rate of each stage of a pipeline.
 pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<StageEstimate>, SolveError> {
     let Prepared { model, focus, .. } = prepared;
     let (focus, seed) = (*focus, pipeline.seed);
@@ -56,7 +56,7 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
             }
             Action::Multipath(plan::Multipath { lines, domain, .. }) => {
                 let Some(shot) = shot.take() else { continue };
-                // Both transports trace the same lines at about the same rate.
+                // Both transports trace the same lines, at about the same rate.
                 let domain = domain.lines_around(&model.scene, focus);
                 let settings = BatchSettings { model, domain, lines, seed };
                 let stage = Batches::begin(settings, shot, &OneWorker)?;
@@ -69,14 +69,14 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
     Ok(estimates)
 }
 
-/// Tries lines of a stage: returns lines per second, and what was counted.
+/// Traces lines of a stage for a short time. Returns lines per second, and the stage totals.
 fn try_stage<S: Stage<Chain = AnyOrder>>(stage: &S, lines: u64) -> (f64, StageTotals) {
     let mut totals = StageTotals::default();
     let rate = rate(lines, |block| stage.trace(0, &mut AnyOrder, block, &mut totals));
     (rate, totals)
 }
 
-/// Lines per second of a short try, if all cores do the same.
+/// Returns the lines per second in a short trial on one core, times the number of cores.
 fn rate(lines: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
     let start = Instant::now();
     let mut done = 0;

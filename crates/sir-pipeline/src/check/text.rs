@@ -1,4 +1,4 @@
-//! An estimate as text.
+//! Formats an estimate as text.
 
 use std::fmt;
 
@@ -12,19 +12,20 @@ use crate::prepare::prepared::Prepared;
 use crate::prepare::sources::kinds;
 
 impl Repeated {
-    /// What a repeat of so many seconds comes to: whether that is all, the seconds, and how often it is.
+    /// Returns the cost of all repeats, if one takes `once` seconds: whether the time is exact or a bound, the time in
+    /// seconds, and a description of the number of repeats.
     fn cost(self, once: f64) -> (&'static str, f64, Option<String>) {
         let most = self.at_most.map_or(f64::INFINITY, |most| most as f64);
         let limit = self.at_most.map_or(String::new(), |most| format!(", {} times at most", grouped(most)));
         match self.until {
             Until::Times(times) => {
                 let times = most.min(times as f64);
-                (" in all", times * once, Some(format!("{} times", grouped(times as u64))))
+                (" in total", times * once, Some(format!("{} times", grouped(times as u64))))
             }
             Until::Seconds(budget) => {
                 let seconds = budget.min(most * once).max(once);
                 let how = format!("for {}{limit}", duration(budget));
-                (" in all", seconds, Some(how))
+                (" in total", seconds, Some(how))
             }
             Until::RelativeError(target) => {
                 let how = format!("until the relative error is {} %{limit}", 100.0 * target);
@@ -65,7 +66,7 @@ impl fmt::Display for Estimate {
         }
         let once: f64 = self.stages.iter().map(|s| s.lines as f64 / s.rate).sum();
         let (bound, tracing, repeats) =
-            self.repeat.map_or((" in all", once, None), |repeat| repeat.cost(once));
+            self.repeat.map_or((" in total", once, None), |repeat| repeat.cost(once));
         writeln!(
             f,
             "time       {}{bound}, without outputs:",

@@ -1,4 +1,5 @@
-//! What is strange about a scene, and what a pipeline should set. Everything said here follows from numbers in [`Info`].
+//! Notes about likely mistakes in a scene, and suggested pipeline settings. All of them follow from numbers in
+//! [`Info`].
 
 use glam::DVec3;
 
@@ -6,13 +7,14 @@ use crate::format::{dimensions, grouped, length, percent};
 use crate::info::facts::{Info, Setting};
 use crate::info::lines::{Fates, Lines};
 
-/// A share of lines that is more than a crack between surfaces.
-const SOME: f64 = 0.01;
+/// Share of lines above which an effect is significant: more than what cracks between surfaces cause.
+const SIGNIFICANT: f64 = 0.01;
 
-/// A share of lines that does not matter, and that some of a hundred thousand lines would have found.
-const NONE: f64 = 0.0005;
+/// Share of lines below which an effect is negligible. It is large enough that some of a hundred thousand lines find
+/// it.
+const NEGLIGIBLE: f64 = 0.0005;
 
-/// What looks like a mistake, or makes lighting difficult.
+/// Returns notes about likely mistakes, and about properties that make lighting difficult.
 pub(super) fn findings(info: &Info) -> Vec<String> {
     [unit(info), far_away(info), dominated(info), twins(info), coincident(info), winding(info), lamps(info)]
         .into_iter()
@@ -23,33 +25,29 @@ pub(super) fn findings(info: &Info) -> Vec<String> {
 fn unit(info: &Info) -> Option<String> {
     let size = info.extent.size();
     let height = size.dot(info.up.into());
-    // A room is about as high as wide; a landscape is flat.
+    // A room is about as high as it is wide; a landscape is flat.
     let room = info.dominant.is_none() && height > 0.05 * size.max_element();
-    let lengths = "powers and distances of lights are meant in meters";
+    let lengths = "powers and distances of lights assume meters";
     match size.max_element() {
         _ if room && height > 100.0 => {
             let unit = if height > 1000.0 { "millimeters" } else { "centimeters" };
-            Some(format!(
-                "a height of {} m: if this is a room, it looks like {unit}; {lengths}",
-                length(height)
-            ))
+            Some(format!("a height of {} m looks like {unit}, if this is a room; {lengths}", length(height)))
         }
         most if most > 1000.0 => Some(format!("an extent of {} m; {lengths}", length(most))),
-        most if most < 0.05 => Some(format!(
-            "an extent of {} m: looks like kilometers or a wrong scale; {lengths}",
-            length(most)
-        )),
+        most if most < 0.05 => {
+            Some(format!("an extent of {} m looks like kilometers or a wrong scale; {lengths}", length(most)))
+        }
         _ => None,
     }
 }
 
 fn far_away(info: &Info) -> Option<String> {
     let times = info.distance_from_origin / info.extent.size().length();
-    // Files mostly have numbers of single precision, with a relative step of 2⁻²⁴.
+    // Most files store single-precision numbers, with a relative step of 2⁻²⁴.
     let step = info.distance_from_origin / f64::from(1 << 24);
     (times > 100.0).then(|| {
         format!(
-            "the scene is {} times as far from the origin as it is large: coordinates of single precision have steps of {} m there; \
+            "the scene is far from the origin, {} times its size (single-precision coordinates have steps of {} m there); \
              move it to the origin",
             grouped(times as u64),
             length(step)
@@ -60,8 +58,8 @@ fn far_away(info: &Info) -> Option<String> {
 fn dominated(info: &Info) -> Option<String> {
     let dominant = info.dominant.as_ref()?;
     Some(format!(
-        "{} has {} of the area, and everything else fits into {}: most lines through the whole scene meet nothing else; leave it out of the \
-         file, or have a `Focus` on the rest",
+        "{} has {} of the area, and everything else fits into {} (most global lines meet nothing else); leave it out of the \
+         file, or set a `Focus` on the rest",
         dominant.what,
         percent(dominant.share),
         dimensions(dominant.rest.size())
@@ -72,7 +70,7 @@ fn twins(info: &Info) -> Option<String> {
     let twins = info.twins;
     (twins.alike > 0).then(|| {
         format!(
-            "{} triangles lie on another with the same corners and the same front: the later one is seen, the other one is not",
+            "{} triangles lie on another one with the same corners and the same front; only the later one is visible",
             grouped(twins.alike as u64)
         )
     })
@@ -80,9 +78,9 @@ fn twins(info: &Info) -> Option<String> {
 
 fn coincident(info: &Info) -> Option<String> {
     let share = info.lines.global.coincident;
-    (share > SOME).then(|| {
+    (share > SIGNIFICANT).then(|| {
         format!(
-            "{} of the crossings coincide with another surface in the same plane: where both show their fronts, the later one in the \
+            "{} of the crossings coincide with another surface in the same plane; where both show their fronts, the later one in the \
              file is on top",
             percent(share)
         )
@@ -99,9 +97,9 @@ fn winding(info: &Info) -> Option<String> {
             percent(fronts.escaped),
             percent(info.lines.from_backs.escaped)
         ))
-    } else if backs > SOME {
+    } else if backs > SIGNIFICANT {
         Some(format!(
-            "{} of the light falls on backs: triangles are wound differently, or surfaces are seen from both sides",
+            "{} of the light falls on backs: the winding of triangles is inconsistent, or surfaces are visible from both sides",
             percent(backs)
         ))
     } else {
@@ -109,14 +107,14 @@ fn winding(info: &Info) -> Option<String> {
     }
 }
 
-/// A share of the light: that of the emitting surfaces before or after its first reflection, whichever is more, or else that of all
-/// fronts, hidden ones included.
+/// Returns a share of the light: of the light from emitting surfaces before or after its first reflection, whichever is
+/// larger. Without emitting surfaces, returns the share of lines from all fronts, including hidden ones.
 fn of_light(info: &Info, share: fn(Fates) -> f64) -> f64 {
     let Lines { from_fronts, from_emitters, reflected, .. } = info.lines;
     from_emitters.map_or(share(from_fronts), |emitted| share(emitted).max(reflected.map_or(0.0, share)))
 }
 
-/// Whether fronts face the outside. (Of the fronts of a room with thick walls, about half do.)
+/// Returns true if fronts face the outside. (In a room with thick walls, about half of the fronts do.)
 fn looks_outward(info: &Info) -> bool {
     let [fronts, backs] = [info.lines.from_fronts.escaped, info.lines.from_backs.escaped];
     fronts > 0.7 && backs < 0.5 * fronts
@@ -126,7 +124,7 @@ fn lamps(info: &Info) -> Option<String> {
     let fates = info.lines.from_emitters?;
     if fates.escaped > 0.5 && info.lines.from_fronts.escaped < 0.7 {
         Some(format!(
-            "{} of the light of emitting surfaces leaves the scene at once: are they turned the wrong way? OBJ and one-sided glTF \
+            "{} of the light of emitting surfaces leaves the scene directly: are they turned the wrong way? OBJ and one-sided glTF \
              materials emit from their fronts",
             percent(fates.escaped)
         ))
@@ -140,7 +138,7 @@ fn lamps(info: &Info) -> Option<String> {
     }
 }
 
-/// What a pipeline should set.
+/// Returns suggested pipeline settings.
 pub(super) fn settings(info: &Info) -> Vec<Setting> {
     sides(info).into_iter().chain(light(info)).chain(focus(info)).chain(patches(info)).collect()
 }
@@ -153,23 +151,23 @@ fn sides(info: &Info) -> Option<Setting> {
     if one_sided && looks_outward(info) {
         return load(
             "Both",
-            "the fronts face outward; if this is a room, its insides would only absorb".into(),
+            "the fronts face outward; if this is a room, its inner sides would only absorb".into(),
         );
     }
     let absorbed = of_light(info, |fates| fates.absorbed);
-    if absorbed > SOME {
+    if absorbed > SIGNIFICANT {
         let why = format!("{} of the light falls on backs that would only absorb it", percent(absorbed));
         return load("Both", why);
     }
     let emitters = info.lines.from_emitters;
     // Lights without a surface may shine on backs.
     let only_surfaces = info.sources.len() == usize::from(emitters.is_some());
-    let hidden = |fates: Fates| fates.back < NONE && fates.absorbed < NONE;
+    let hidden = |fates: Fates| fates.back < NEGLIGIBLE && fates.absorbed < NEGLIGIBLE;
     let seldom = hidden(fronts) && emitters.is_none_or(hidden) && fronts.escaped < 0.5;
     if two_sided && only_surfaces && seldom {
         return load(
             "Front",
-            "no light gets from a front to a back: the same result from half as many sides".into(),
+            "no light travels from a front to a back; half as many sides give the same result".into(),
         );
     }
     None
@@ -179,11 +177,11 @@ fn light(info: &Info) -> Vec<Setting> {
     if !info.sources.is_empty() {
         return Vec::new();
     }
-    // The outsides of walls do not count, so the light of interest is that which has met something.
+    // The outer sides of walls do not count, so the light of interest is the light after its first hit.
     let escaped = info.lines.reflected.unwrap_or(info.lines.from_fronts).escaped;
     let outward = looks_outward(info);
     let mut lights = Vec::new();
-    if escaped > SOME {
+    if escaped > SIGNIFICANT {
         let up = if DVec3::from(info.up) == DVec3::Z { "up: (0, 0, 1), " } else { "" };
         lights.push(Setting {
             set: format!("Light([Sky({up}model: Overcast, horizontal: 10_000, ground: 500)])"),
@@ -201,7 +199,7 @@ fn light(info: &Info) -> Vec<Setting> {
             },
         });
     }
-    if escaped <= SOME || outward {
+    if escaped <= SIGNIFICANT || outward {
         lights.push(Setting {
             set: panel(info),
             why: match outward {
@@ -213,11 +211,11 @@ fn light(info: &Info) -> Vec<Setting> {
     lights
 }
 
-/// A lamp of a quarter of the room's length and width, at nine tenths of its height.
+/// Returns a `Light` stage with a panel of a quarter of the room's length and width, at nine tenths of its height.
 fn panel(info: &Info) -> String {
     let room = info.dominant.as_ref().map_or(info.extent, |dominant| dominant.rest);
     let (size, up) = (room.size(), DVec3::from(info.up));
-    // Their cross product points down.
+    // The cross product of `a` and `b` points down.
     let (a, b) = if up == DVec3::Z { (DVec3::Y, DVec3::X) } else { (DVec3::X, DVec3::Z) };
     let (a, b) = (0.25 * a * size, 0.25 * b * size);
     let corner = room.center() + 0.4 * up * size - 0.5 * (a + b);
@@ -226,11 +224,11 @@ fn panel(info: &Info) -> String {
     format!("Light([Panel(corner: {corner}, edges: ({a}, {b}), power: 1000)])")
 }
 
-/// A box around all but what dwarfs it.
+/// Returns a focus on the box around everything except the dominant part.
 fn focus(info: &Info) -> Option<Setting> {
     let dominant = info.dominant.as_ref()?;
     let rest = dominant.rest;
-    // Rounded outwards to a thousandth or so of the size.
+    // Rounded outward, to about a thousandth of the size.
     let digits = 3 - rest.size().max_element().log10().floor() as i32;
     let step = 10f64.powi(-digits);
     let corner = |corner: [f64; 3], round: fn(f64) -> f64| {
@@ -243,7 +241,7 @@ fn focus(info: &Info) -> Option<Setting> {
     let (min, max) = (corner(rest.min, f64::floor), corner(rest.max, f64::ceil));
     Some(Setting {
         set: format!("Focus(min: {min}, max: {max})"),
-        why: format!("lines and patches go where they matter, and not to {}", dominant.what),
+        why: format!("concentrates lines and patches on the rest of the scene, and not on {}", dominant.what),
     })
 }
 
@@ -252,13 +250,13 @@ fn patches(info: &Info) -> Option<Setting> {
         return None;
     }
     let patches = (2 * info.triangles).max(20_000);
-    // To one digit: it is a suggestion.
+    // Rounded up to one digit, because it is only a suggestion.
     let unit = 10usize.pow(patches.ilog10());
     let patches = patches.div_ceil(unit) * unit;
     Some(Setting {
         set: format!("Subdivide(patches: {})", grouped(patches as u64)),
         why: format!(
-            "the largest triangle has {} of the area, and light is constant on a patch; these have edges of about {} m",
+            "the largest triangle has {} of the area, and light is constant on a patch; these patches have edges of about {} m",
             percent(info.largest_triangle),
             length((2.0 * info.area / patches as f64).sqrt())
         ),

@@ -1,42 +1,42 @@
-//! What is in a scene, as numbers.
+//! The contents of a scene, as numbers and names.
 
 use serde::Serialize;
 
 use crate::info::lines::Lines;
 use crate::info::shape::{Dominant, Extent, Twins};
 
-/// What is in a scene file.
+/// Contents of a scene file.
 #[derive(Clone, Debug, Serialize)]
 pub struct Info {
-    /// Version of the JSON text.
+    /// Version of the JSON layout.
     pub version: u32,
     /// Name and version of the program.
     pub program: &'static str,
-    /// The file.
+    /// Path of the file.
     pub scene: String,
-    /// What the reader changed or left out.
+    /// Warnings of the reader: what it changed or left out.
     pub warnings: Vec<String>,
-    /// Triangles that have an area.
+    /// Number of triangles that have an area.
     pub triangles: usize,
-    /// Triangles without an area, or with coordinates that are not finite.
+    /// Number of triangles without an area, or with non-finite coordinates.
     pub dropped_triangles: u64,
-    /// Different positions.
+    /// Number of distinct positions.
     pub vertices: usize,
-    /// Polygons that the triangles are parts of.
+    /// Number of polygons that the triangles belong to.
     pub polygons: usize,
-    /// Images that materials use.
+    /// Images that materials use, and their triangles.
     pub textures: Textures,
     /// Area of all triangles, one side each \[m²\].
     pub area: f64,
-    /// Share of the area that the largest triangle has.
+    /// Area of the largest triangle as a share of `area`.
     pub largest_triangle: f64,
-    /// Where the scene is \[m\].
+    /// Bounding box of the scene \[m\].
     pub extent: Extent,
-    /// Distance of its center from the origin \[m\].
+    /// Distance of the box's center from the origin \[m\].
     pub distance_from_origin: f64,
-    /// Upwards: +y in glTF, guessed in OBJ.
+    /// Up direction: +y in glTF, guessed in OBJ.
     pub up: [f64; 3],
-    /// Materials that a triangle has, the largest area first.
+    /// Materials that triangles have, largest area first.
     pub materials: Vec<MaterialInfo>,
     /// Named parts, in file order.
     pub groups: Vec<Group>,
@@ -46,35 +46,36 @@ pub struct Info {
     pub cameras: Vec<String>,
     /// Triangles with the same corners.
     pub twins: Twins,
-    /// What dwarfs the rest.
+    /// Part that dwarfs the rest of the scene, if there is one.
     pub dominant: Option<Dominant>,
-    /// What random lines have found.
+    /// Statistics of random lines.
     pub lines: Lines,
-    /// What is strange.
+    /// Notes about likely mistakes.
     pub findings: Vec<String>,
-    /// What to set in a pipeline.
+    /// Suggested pipeline settings.
     pub settings: Vec<Setting>,
 }
 
-/// Images, and what has them.
+/// Images, and the triangles that they affect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Textures {
-    /// Those that could be read and are not of a single color.
+    /// Number of images that could be read and have more than one color.
     pub images: usize,
-    /// Texels of all together.
+    /// Number of texels of all images together.
     pub texels: usize,
-    /// Triangles that differ from their material or from place to place, because of a texture or colors at their corners.
+    /// Number of triangles whose appearance differs from their material's or varies over the triangle, because of a
+    /// texture or vertex colors.
     pub triangles: usize,
 }
 
 /// A material.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MaterialInfo {
-    /// Its name.
+    /// Name of the material.
     pub name: String,
-    /// Triangles that have it.
+    /// Number of triangles that have it.
     pub triangles: usize,
-    /// Their area \[m²\].
+    /// Area of these triangles \[m²\].
     pub area: f64,
     /// Reflectance per band.
     pub reflectance: [f64; 3],
@@ -82,35 +83,35 @@ pub struct MaterialInfo {
     pub exitance: [f64; 3],
     /// Emitted power per band, by both sides if both emit \[W\].
     pub power: [f64; 3],
-    /// Whether both sides reflect.
+    /// True if both sides reflect.
     pub two_sided: bool,
 }
 
 /// A named part of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Group {
-    /// Its name.
+    /// Name of the part.
     pub name: String,
-    /// Its triangles.
+    /// Number of its triangles.
     pub triangles: usize,
-    /// Their area \[m²\].
+    /// Area of these triangles \[m²\].
     pub area: f64,
 }
 
 /// All light sources of a kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Lights {
-    /// How many of which kind.
+    /// Number and kind of the sources.
     pub what: String,
-    /// Their power per band \[W\].
+    /// Power of the sources per band \[W\].
     pub power: [f64; 3],
 }
 
-/// Something to write into a pipeline.
+/// Suggested stage of a pipeline.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Setting {
-    /// The stage, as it is written in the pipeline.
+    /// Text of the stage in a pipeline file.
     pub set: String,
-    /// The reason.
+    /// Reason for the suggestion.
     pub why: String,
 }

@@ -1,4 +1,4 @@
-//! Finding out what is in a scene.
+//! Inspection of a scene file.
 
 use std::mem::discriminant;
 use std::path::Path;
@@ -18,14 +18,14 @@ use crate::info::shape::{Extent, sums};
 use crate::prepare::prepared::up;
 use crate::prepare::sources::kinds;
 
-/// Version of the JSON text.
+/// Version of the JSON layout.
 const VERSION: u32 = 1;
 
-/// Reads a scene file and finds out what is in it.
+/// Reads a scene file and returns its contents, with notes and suggested settings.
 ///
 /// # Errors
 ///
-/// If the file cannot be read, as [`sir_geom::load`].
+/// If the file cannot be read; see [`sir_geom::load`].
 pub fn inspect(path: &Path) -> Result<Info, Error> {
     let built = sir_geom::load(path, &LoadOptions::default())?;
     let scene = &built.scene;
@@ -47,7 +47,7 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         triangles: scene.triangles().len(),
         dropped_triangles: dropped.sum(),
         vertices: scene.vertices().len(),
-        // The triangles of a polygon follow each other.
+        // The triangles of a polygon are consecutive.
         polygons: scene.triangles().chunk_by(|a, b| a.face == b.face).count(),
         textures: Textures {
             images: scene.textures().len(),

@@ -1,6 +1,7 @@
-//! What random lines tell about a scene: whether it is closed, and which sides of its surfaces face each other.
+//! Statistics of random lines in a scene: they show whether it is closed, and which sides of its surfaces face each
+//! other.
 //!
-//! The lines are the same every time.
+//! The random numbers are the same every time.
 
 use serde::Serialize;
 use sir_accel::{Accel, Hit, Ray};
@@ -8,61 +9,61 @@ use sir_geom::{Barycentric, Line, Scene, Side, TriangleId};
 use sir_lines::{Allocation, Domain, Purpose, Streams, cosine_direction, point_on_triangle};
 use sir_radiosity::{Emitter, Source};
 
-/// Lines of each kind.
+/// Number of lines of each kind.
 pub(super) const LINES: u64 = 100_000;
 
-/// Lines that are traced together.
+/// Number of lines that are traced together.
 const BLOCK: u64 = 1 << 12;
 
-/// Distance in radii of the scene within which two parallel surfaces count as coincident.
+/// Largest distance of two parallel surfaces that count as coincident, in radii of the scene.
 const CONTACT: f64 = 1e-6;
 
-/// What all these lines have found.
+/// Statistics of all random lines.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Lines {
-    /// Lines of each kind.
+    /// Number of lines of each kind.
     pub lines_of_each_kind: u64,
-    /// Lines through the whole scene.
+    /// Uniform global lines.
     pub global: Global,
     /// Lines from the fronts of all surfaces.
     pub from_fronts: Fates,
-    /// Lines from the backs of all surfaces, those that only absorb included.
+    /// Lines from the backs of all surfaces, including those that only absorb.
     pub from_backs: Fates,
     /// Lines from emitting surfaces; `None` if there are none.
     pub from_emitters: Option<Fates>,
-    /// Lines from where those from emitting surfaces have met a side that reflects, or else those from fronts: light after its first
-    /// reflection. `None` if they met none.
+    /// Light after its first reflection: lines from the points where lines from emitting surfaces hit a reflecting
+    /// side, or where lines from fronts did if nothing emits. `None` if there are no such points.
     pub reflected: Option<Fates>,
 }
 
-/// What uniform lines through the convex hull cross.
+/// Crossings of uniform lines through the convex hull.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Global {
-    /// Lines that cross something.
+    /// Number of lines that cross something.
     pub met: u64,
-    /// Of these, the share that crosses an odd number of triangles: zero if all surfaces are closed.
+    /// Share of these lines that cross an odd number of triangles; zero if all surfaces are closed.
     pub odd: f64,
-    /// Of the stretches between neighboring crossings, the share with a front at one end and a back at the other: zero if the
+    /// Share of segments (between neighboring crossings) with a front at one end and a back at the other; zero if the
     /// winding of closed surfaces is consistent.
     pub mixed: f64,
-    /// Of the crossings, the share that coincides with the next one, on a parallel triangle with other corners.
+    /// Share of crossings that coincide with the next one, on a parallel triangle with other corners.
     pub coincident: f64,
 }
 
-/// What diffuse lines from surfaces meet first, as shares that add up to 1.
+/// First hits of diffuse lines from surfaces, as shares that add up to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fates {
-    /// A front.
+    /// Share that hits a front.
     pub front: f64,
-    /// A back that reflects.
+    /// Share that hits a back that reflects.
     pub back: f64,
-    /// The back of a one-sided surface, which absorbs.
+    /// Share that hits the back of a one-sided surface, which absorbs.
     pub absorbed: f64,
-    /// Nothing: they leave the scene.
+    /// Share that hits nothing and leaves the scene.
     pub escaped: f64,
 }
 
-/// Traces all lines.
+/// Traces lines of all kinds.
 pub(super) fn trace(scene: &Scene, accel: &Accel, sources: &[Source]) -> Lines {
     let from = |side: Side, kind| {
         let sides: Vec<_> = scene.triangle_ids().map(|id| (id, side, scene.area(id))).collect();
@@ -97,7 +98,7 @@ fn emitting_side(source: &Source) -> Option<(TriangleId, Side, f64)> {
 fn global(scene: &Scene, accel: &Accel) -> Global {
     let (domain, streams) = (Domain::hull(scene.vertices()), Streams::new(0, Purpose::PROBE));
     let contact = CONTACT * scene.bounding_sphere().radius;
-    let (mut met, mut odd, mut stretches, mut mixed, mut crossings, mut coincident) = (0, 0, 0, 0, 0, 0);
+    let (mut met, mut odd, mut segments, mut mixed, mut crossings, mut coincident) = (0, 0, 0, 0, 0, 0);
     let mut tracer = accel.tracer();
     for first in (0..LINES).step_by(BLOCK as usize) {
         let block = first..LINES.min(first + BLOCK);
@@ -109,8 +110,9 @@ fn global(scene: &Scene, accel: &Accel) -> Global {
                 odd += u64::from(hits.len() % 2 == 1);
                 crossings += hits.len() as u64;
                 for pair in hits.windows(2) {
-                    stretches += 1;
-                    // A line that meets a front leaves by the back, and the next hit shows the side that faces it.
+                    segments += 1;
+                    // A line that hits a front leaves through the back, and the next hit names the side that faces that
+                    // back.
                     mixed += u64::from(pair[0].side == pair[1].side);
                     coincident += u64::from(pair[1].t - pair[0].t <= contact && coincide(scene, pair));
                 }
@@ -120,12 +122,12 @@ fn global(scene: &Scene, accel: &Accel) -> Global {
     Global {
         met,
         odd: share(odd, met),
-        mixed: share(mixed, stretches),
+        mixed: share(mixed, segments),
         coincident: share(coincident, crossings),
     }
 }
 
-/// Whether two triangles that are met in the same place lie in the same plane, and are not just twins with the same corners.
+/// Returns true if two triangles hit at the same point lie in the same plane and do not have the same corners.
 fn coincide(scene: &Scene, hits: &[Hit]) -> bool {
     let corners = |hit: &Hit| {
         let mut corners = scene.triangle(hit.triangle).vertices;
@@ -137,7 +139,7 @@ fn coincide(scene: &Scene, hits: &[Hit]) -> bool {
     sine < 1e-3 && corners(a) != corners(b)
 }
 
-/// Where a diffuse line starts: a point on a side.
+/// Origin of a diffuse line: a point on a side.
 #[derive(Clone, Copy)]
 struct Start {
     triangle: TriangleId,
@@ -145,11 +147,11 @@ struct Start {
     point: Barycentric,
 }
 
-/// Random points on sides, in proportion to their weights. `kind` numbers the kinds of lines.
+/// Returns random points on sides, distributed in proportion to the weights. `kind` is the number of the kind of lines.
 fn starts(sides: &[(TriangleId, Side, f64)], kind: u64) -> Vec<Start> {
     let weights: Vec<f64> = sides.iter().map(|side| side.2).collect();
     let allocation = Allocation::new(&weights, LINES, 0.5);
-    // Other numbers than those of the directions.
+    // A stream different from that of the directions.
     let streams = Streams::new(kind + 10, Purpose::PROBE);
     let owners = allocation.owners(0).zip(0..LINES);
     owners
@@ -160,7 +162,7 @@ fn starts(sides: &[(TriangleId, Side, f64)], kind: u64) -> Vec<Start> {
         .collect()
 }
 
-/// Traces a diffuse line from each start; returns what they met, and where they met a side that reflects.
+/// Traces a diffuse line from each start. Returns the shares of first hits, and the points hit on reflecting sides.
 fn local(scene: &Scene, accel: &Accel, starts: &[Start], kind: u64) -> (Fates, Vec<Start>) {
     let streams = Streams::new(kind, Purpose::PROBE);
     let [mut front, mut back, mut absorbed, mut escaped] = [0; 4];
@@ -178,7 +180,7 @@ fn local(scene: &Scene, accel: &Accel, starts: &[Start], kind: u64) -> (Fates, V
             Ray::leaving(line, start.triangle)
         });
         let rays: Vec<Ray> = rays.collect();
-        // Hits come in any order, but the lines that start at them shall be the same every time.
+        // Hits arrive in any order, but the lines that start at them must be the same every time.
         let mut hits = vec![None; rays.len()];
         tracer.closest_each(&rays, |i, hit| hits[i] = hit);
         for hit in hits {

@@ -1,4 +1,4 @@
-//! What is in a scene, and what a pipeline should set to light it.
+//! The contents of a scene, and suggested pipeline settings to light it.
 
 pub(crate) mod advice;
 pub(crate) mod facts;

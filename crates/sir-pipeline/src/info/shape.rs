@@ -1,16 +1,16 @@
-//! Size, doubled triangles, and whether one part dwarfs the rest.
+//! The size of a scene, duplicate triangles, and a part that dwarfs the rest.
 
 use glam::DVec3;
 use serde::Serialize;
 use sir_geom::{BoundingBox, Scene, Triangle, TriangleId};
 
-/// Share of the area from which a part may dominate.
+/// Share of the area above which a part may dominate.
 const DOMINANT_AREA: f64 = 0.5;
 
-/// Extent of everything else, relative to the whole, below which it does.
+/// Extent of everything else, relative to the whole scene, below which such a part dominates.
 const SMALL_REST: f64 = 0.2;
 
-/// A box along the axes \[m\].
+/// Axis-aligned box \[m\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Extent {
     /// Smallest coordinates.
@@ -20,13 +20,13 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Edges of the box \[m\].
+    /// Returns the lengths of the edges \[m\].
     #[must_use]
     pub fn size(&self) -> DVec3 {
         DVec3::from(self.max) - DVec3::from(self.min)
     }
 
-    /// Its center \[m\].
+    /// Returns the center of the box \[m\].
     #[must_use]
     pub fn center(&self) -> DVec3 {
         DVec3::from(self.min).midpoint(self.max.into())
@@ -39,27 +39,27 @@ impl From<BoundingBox> for Extent {
     }
 }
 
-/// Triangles with the same three corners.
+/// Counts of triangles with the same three corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Twins {
-    /// Triangles with the corners of an earlier one.
+    /// Number of triangles with the corners of an earlier one.
     pub twins: usize,
-    /// Those of them that also face the way of an earlier one: one of the two is never seen.
+    /// Number of these that also face the same way as an earlier one, so that one of the two is never visible.
     pub alike: usize,
 }
 
-/// A part of the scene that has most of the area, and is much larger than all the rest.
+/// Part of the scene that has most of the area and is much larger than everything else.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Dominant {
-    /// What it is, with its name.
+    /// Description of the part, with its name.
     pub what: String,
-    /// Its share of the area.
+    /// Share of the part in the area.
     pub share: f64,
-    /// Where the rest is \[m\].
+    /// Bounding box of everything else \[m\].
     pub rest: Extent,
 }
 
-/// Finds triangles with the same corners.
+/// Counts triangles with the same corners.
 pub(super) fn twins(scene: &Scene) -> Twins {
     let mut keys: Vec<_> = scene.triangles().iter().map(key).collect();
     keys.sort_unstable();
@@ -67,7 +67,7 @@ pub(super) fn twins(scene: &Scene) -> Twins {
     Twins { twins: same(|a, b| a.0 == b.0), alike: same(|a, b| a == b) }
 }
 
-/// Corners in ascending order, and whether that changes the winding.
+/// Corners in ascending order, and true if sorting reverses the winding.
 type Key = ([u32; 3], bool);
 
 fn key(triangle: &Triangle) -> Key {
@@ -78,7 +78,7 @@ fn key(triangle: &Triangle) -> Key {
     (sorted, turned)
 }
 
-/// A polygon, named part or material beside which all the rest is small.
+/// Returns the polygon, named part or material that dwarfs everything else.
 pub(super) fn dominant(scene: &Scene) -> Option<Dominant> {
     let material = |t: &Triangle| t.material.index();
     let group = |t: &Triangle| t.group.index();
@@ -96,7 +96,8 @@ pub(super) fn dominant(scene: &Scene) -> Option<Dominant> {
         .map(|(what, share, rest)| Dominant { what, share, rest })
 }
 
-/// Of the parts that `of` numbers, the one with the largest area, if it dominates.
+/// Returns the number, share of the area and bounding box of the rest for the part with the largest area, if it
+/// dominates. `of` returns the part of a triangle.
 fn largest(scene: &Scene, of: impl Fn(&Triangle) -> usize) -> Option<(usize, f64, Extent)> {
     let areas = sums(scene, &of, |id| scene.area(id));
     let (part, area) = areas.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
@@ -110,7 +111,7 @@ fn largest(scene: &Scene, of: impl Fn(&Triangle) -> usize) -> Option<(usize, f64
     small.then(|| (part, share, rest.into()))
 }
 
-/// Sums of `what` over the triangles of each part that `of` numbers.
+/// Returns the sum of `what` over the triangles of each part. `of` returns the part of a triangle.
 pub(super) fn sums<T: Clone + Default + std::ops::AddAssign>(
     scene: &Scene,
     of: impl Fn(&Triangle) -> usize,

@@ -8,18 +8,18 @@ use crate::text::formats::{Vector, number};
 use crate::text::reader::{Fields, Reader};
 use crate::text::record::record;
 
-/// The largest share: what is not in the focus must get lines, too.
+/// Largest share: the rest of the scene must get lines, too.
 const MAX_SHARE: f64 = 0.95;
 
 record! {
-    /// Says which part of the scene matters.
+    /// Box of interest, which gets a larger share of the lines.
     pub struct Focus, check Focus::check {
-        /// The corner of the box with the smallest coordinates.
+        /// Corner of the box with the smallest coordinates.
         pub min: DVec3 = Vector([0.0; 3]).required().unit("m");
-        /// The opposite corner.
+        /// Opposite corner.
         pub max: DVec3 = Vector([5.0, 3.0, 4.0]).required().unit("m");
-        /// About this share of the lines of `FirstShot` and of `Multipath` goes through the box, if it is more than without. Lines
-        /// in the box are at most 4,096 times as dense as elsewhere.
+        /// Approximate share of the lines of `FirstShot` and `Multipath` that goes through the box, if that is more
+        /// than without a focus. Lines in the box are at most 4,096 times as dense as elsewhere.
         pub share: f64 = number(0.75).with_range(|x| (0.0..=MAX_SHARE).contains(&x), "from 0 to 0.95").or(0.75);
     }
 }
@@ -33,7 +33,7 @@ impl Focus {
 
     fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
         if !self.min.cmple(self.max).all() {
-            let message = "`min` must not be larger than `max` in any coordinate";
+            let message = "`min` must not exceed `max` in any coordinate";
             let help = "give the corner with the smallest coordinates as `min`";
             reader.problem(fields.place, message, help);
         }

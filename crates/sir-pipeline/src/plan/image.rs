@@ -1,4 +1,4 @@
-//! Pictures of the solution.
+//! Images of the solution.
 
 use std::path::PathBuf;
 
@@ -14,22 +14,24 @@ use crate::text::ron_tree::{Node, Value};
 use crate::text::span::{Spanned, WithSpan};
 
 record! {
-    /// A picture of the solution.
+    /// Image of the solution.
     pub struct Image {
-        /// `.png`: 8 bits per channel, for looking at. `.exr`: linear radiance in W/(m² sr), 32-bit floats, without exposure and tone
-        /// curve, in the channels `R`, `G`, `B`; its standard error is in `error.R`, `error.G`, `error.B`.
+        /// `.png`: 8 bits per channel, for viewing. `.exr`: linear radiance in W/(m² sr), 32-bit floats, without
+        /// exposure and tone curve, in the channels `R`, `G`, `B`; its standard error is in `error.R`, `error.G`,
+        /// `error.B`.
         pub path: PathBuf = OutputFile { extensions: &["png", "exr"], example: "view.png" }.required();
-        /// Width of the picture.
+        /// Width of the image.
         pub width: u32 = pixels(800).or(800).unit("pixels");
-        /// Height of the picture. If left out: as the shape of the scene's camera asks for, or three quarters of the width.
+        /// Height of the image. If omitted, it follows from the aspect ratio of the scene's camera, or is three
+        /// quarters of the width.
         pub height: Option<u32> = pixels(600).optional("from the camera").unit("pixels");
-        /// Rays per pixel along each edge: 4 means 16 rays.
+        /// Number of rays per pixel along each edge: 4 means 16 rays.
         pub samples: u32 = count(1, 64, 4).or(4);
-        /// Of PNG pictures: what radiance is multiplied by. `Auto` makes the typical brightness of the picture a middle gray.
+        /// Factor on the radiance in PNG images. `Auto` maps the typical brightness of the image to middle gray.
         pub exposure: Exposure = ExposureFormat.or(Exposure::Auto);
-        /// Whether noise is taken out of a PNG picture, see below. EXR pictures, tables and lit scenes always show what was computed.
+        /// True to denoise a PNG image, see below. EXR images, tables and lit scenes are never denoised.
         pub denoise: bool = Flag.or(true);
-        /// From where the picture is taken, see below. A scene without cameras is looked at from a place that shows much of it.
+        /// Point of view, see below. If the scene has no camera, a point of view that shows much of it is chosen.
         pub camera: Option<Spanned<CameraChoice>> = WithSpan(CameraFormat).optional("the scene's first");
     }
 }
@@ -38,34 +40,34 @@ fn pixels(example: u64) -> Count<u32> {
     count(1, 16_384, example)
 }
 
-/// The point of view of a picture.
+/// Point of view of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraChoice {
-    /// A camera of the scene by its number, from 0.
+    /// Number of a camera of the scene, from 0.
     Number(u32),
-    /// A camera of the scene by its name.
+    /// Name of a camera of the scene.
     Name(String),
-    /// A camera that the pipeline describes.
+    /// Camera described by the pipeline.
     Own(Camera),
 }
 
 record! {
-    /// A camera that a pipeline describes.
+    /// Camera described by a pipeline.
     pub struct Camera, check Camera::check {
-        /// Where the eye is.
+        /// Position of the eye.
         pub eye: DVec3 = Vector([1.0, 2.0, 5.0]).required().unit("m");
-        /// What is in the middle of the picture.
+        /// Point in the center of the image.
         pub target: DVec3 = Vector([1.0, 1.0, 0.0]).required().unit("m");
-        /// What is up in the picture.
+        /// Direction that is up in the image.
         pub up: DVec3 = Direction([0.0, 1.0, 0.0]).or(DVec3::Y);
-        /// Full vertical opening angle.
+        /// Full vertical field of view.
         pub fov: f64 =
             positive(45.0).with_range(|x| 0.0 < x && x < 180.0, "above 0 and below 180").or(45.0).unit("degrees");
     }
 }
 
 impl Camera {
-    /// Returns the camera; `None` if `eye` and `target` coincide, or `up` points along the view.
+    /// Returns the camera, or `None` if `eye` and `target` coincide, or `up` points along the view.
     #[must_use]
     pub fn to_scene(&self) -> Option<sir_geom::Camera> {
         sir_geom::Camera::looking_at(self.eye, self.target, self.up, self.fov.to_radians())
@@ -81,7 +83,7 @@ impl Camera {
     }
 }
 
-/// `Auto`, or a factor.
+/// Format of an exposure: `Auto`, or a factor.
 #[derive(Clone, Copy)]
 struct ExposureFormat;
 
@@ -116,7 +118,7 @@ impl Format for ExposureFormat {
     }
 }
 
-/// The number or the name of a camera of the scene, or a description.
+/// Format of a camera: the number or the name of a camera of the scene, or a description.
 #[derive(Clone, Copy)]
 struct CameraFormat;
 
@@ -152,7 +154,7 @@ impl Format for CameraFormat {
     }
 
     fn describe(&self) -> String {
-        "number, text or `Camera(…)`".into()
+        "number, string or `Camera(…)`".into()
     }
 
     fn example(&self) -> String {

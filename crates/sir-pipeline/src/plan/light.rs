@@ -13,25 +13,25 @@ use crate::text::reader::Reader;
 use crate::text::record::{Body, Choose as _, choice, list_items, record, write_list};
 use crate::text::ron_tree::Node;
 
-/// Adds lights to the scene.
+/// Stage that adds lights to the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// The lights, at least one; at most one sky.
+    /// Lights: at least one, of which at most one is a sky.
     pub lamps: Vec<Lamp>,
 }
 
 choice! {
-    /// A light that a pipeline adds to its scene.
+    /// Light that a pipeline adds to its scene.
     pub enum Lamp as "light" {
-        /// Light from a point.
+        /// Point light.
         Point(Point),
         /// Parallel light.
         Distant(Distant),
-        /// A parallelogram that emits.
+        /// Emitting parallelogram.
         Panel(Panel),
-        /// A hemisphere of light.
+        /// Sky above a ground.
         Sky(Sky),
-        /// The same light from everywhere.
+        /// Uniform light from all directions.
         Environment(Environment),
     }
 }
@@ -39,15 +39,16 @@ choice! {
 record! {
     /// Parallel light.
     pub struct Distant {
-        /// In which the light travels: that of the sun has a negative `y`, if `y` is up.
+        /// Direction in which the light travels. That of sunlight has a negative `y`, if `y` is up.
         pub direction: DVec3 = Direction([0.0, -1.0, 0.0]).required();
-        /// Of a surface that faces the light.
+        /// Irradiance of a surface that faces the light.
         pub irradiance: Rgb = Color(1000.0).required().unit("W/m²");
     }
 }
 
 impl Lamp {
-    /// Returns the light as a scene takes it; `None` if its numbers are impossible together, which those of a file are not.
+    /// Converts the light for a scene. Returns `None` if its numbers contradict each other; those read from a file do
+    /// not.
     #[must_use]
     pub fn to_scene(&self) -> Option<SceneLight> {
         match self {

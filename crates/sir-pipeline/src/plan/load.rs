@@ -16,12 +16,13 @@ const SIDES: Choice<SidesPolicy> = Choice(&[
 ]);
 
 record! {
-    /// Reads a scene.
+    /// Stage that reads a scene.
     pub struct Load {
-        /// The scene: a `.gltf`, `.glb` or `.obj` file. Relative to the folder of the pipeline file.
+        /// Scene file: `.gltf`, `.glb` or `.obj`. The path is relative to the folder of the pipeline file.
         pub path: PathBuf = SceneFile.required();
-        /// Which sides of surfaces reflect: those that the file says (`doubleSided` in glTF; both in OBJ, which cannot say), both
-        /// sides of all, or only the fronts. The back of a one-sided surface absorbs what falls on it.
+        /// Sides of surfaces that reflect: those that the file specifies (`doubleSided` in glTF; both in OBJ, which
+        /// cannot specify them), both sides of all surfaces, or only the fronts. The back of a one-sided surface
+        /// absorbs all light.
         pub sides: SidesPolicy = SIDES.or(SidesPolicy::default());
     }
 }

@@ -1,5 +1,5 @@
-//! What a pipeline says, with every default filled in. Each file declares the fields of a stage, or of a part of one: from this it is
-//! read, written and documented.
+//! Contents of a pipeline, with every default filled in. Each file declares the fields of a stage, or of a part of one.
+//! The reader, the writer and the documentation follow from the declaration.
 
 pub(crate) mod focus;
 pub(crate) mod image;

@@ -1,4 +1,4 @@
-//! The stage `Multipath`: how global lines are drawn, and how they pass on light.
+//! The stage `Multipath`: domain and transport of global lines.
 
 use sir_geom::Scene;
 use sir_lines::{Domain, Focus, GlobalLines};
@@ -11,54 +11,55 @@ use crate::text::formats::{Choice, count};
 use crate::text::reader::{Fields, Reader};
 use crate::text::record::{choice, named, record};
 
-/// Most replicas: a table of them must fit into memory.
+/// Largest number of replicas: a table of them must fit into memory.
 const MAX_REPLICAS: u64 = 1_000_000;
 
 const DOMAINS: Choice<DomainKind> =
     Choice(&[("Hull", DomainKind::Hull), ("Box", DomainKind::Box), ("Sphere", DomainKind::Sphere)]);
 
 record! {
-    /// Distributes the reflected light along global lines.
+    /// Stage that distributes the reflected light along global lines.
     pub struct Multipath, check Multipath::check {
-        /// Lines in all.
+        /// Total number of lines.
         pub lines: u64 = line_count().required();
-        /// How the lines pass on the light, see below.
+        /// Method by which the lines transport light, see below.
         pub transport: Transport = named("Batches").or(Transport::Batches);
-        /// The convex body around the scene from whose surface the lines are drawn: its convex hull, its axis-aligned box, or a
-        /// sphere.
+        /// Convex body through which the lines are drawn: convex hull, axis-aligned bounding box or bounding sphere of
+        /// the scene.
         pub domain: DomainKind = DOMAINS.or(DomainKind::Hull);
     }
 }
 
 choice! {
-    /// How global lines pass on the light.
+    /// Method by which global lines transport light.
     pub enum Transport as "transport" {
-        /// In batches: with the lines of a batch, what the batch before has brought.
+        /// Batches: the lines of a batch pass on the power that the lines of the previous batch brought.
         Batches,
-        /// In independent replicas, one line after the other, as Martínez, Forés and Martín (2009) published it.
+        /// Independent replicas, each with one line after the other, as published by Martínez, Forés and Martín (2009).
         Replicas(Replicas),
     }
 }
 
 record! {
-    /// Independent transports that share the lines.
+    /// Independent replicas that share the lines.
     pub struct Replicas {
-        /// How many replicas; not more than there are lines.
+        /// Number of replicas; at most the number of lines.
         pub count: u64 = count(1, MAX_REPLICAS, 8).or(1);
-        /// How many of the lines, at the ends of the replicas, only pass on what has been reflected, so that little is left over
-        /// (`unshot` in `result.json`); fewer than there are lines. With `0`, the method is as published.
+        /// Number of lines, at the ends of the replicas, that only pass on reflected power, so that little remains
+        /// unshot (`unshot` in `result.json`); less than the total number of lines. With `0`, the method is as
+        /// published.
         pub tail: Option<u64> = count(0, MAX_LINES, 100_000).optional("a tenth of the lines");
     }
 }
 
-/// The convex body around the scene from whose surface global lines are drawn.
+/// Kind of convex body around the scene through which global lines are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DomainKind {
-    /// The bounding sphere.
+    /// Bounding sphere.
     Sphere,
-    /// The axis-aligned bounding box.
+    /// Axis-aligned bounding box.
     Box,
-    /// The convex hull, which wastes the fewest lines. Default.
+    /// Convex hull, which wastes the fewest lines. Default.
     #[default]
     Hull,
 }
@@ -74,7 +75,7 @@ impl DomainKind {
         }
     }
 
-    /// Returns the lines through the body around a scene, and maybe a focus.
+    /// Returns the global lines through the body around a scene, with an optional focus.
     #[must_use]
     pub fn lines_around(self, scene: &Scene, focus: Option<Focus>) -> GlobalLines {
         let domain = self.around(scene);
@@ -86,7 +87,7 @@ impl DomainKind {
 }
 
 impl Replicas {
-    /// Returns how many of `lines` lines only pass on what has been reflected.
+    /// Returns the number of lines, of `lines` in total, that only pass on reflected power.
     #[must_use]
     pub fn tail_of(&self, lines: u64) -> u64 {
         self.tail.unwrap_or(lines / 10)
@@ -98,18 +99,17 @@ impl Multipath {
         let Transport::Replicas(replicas) = &self.transport else { return };
         let (place, lines) = (fields.place_of("transport"), self.lines);
         if replicas.count > lines {
-            let message = format!("there are {} replicas, but {lines} lines", replicas.count);
-            reader.problem(place, message, "each replica needs a line: ask for fewer, or for more lines");
+            let message = format!("there are {} replicas, but only {lines} lines", replicas.count);
+            reader.problem(place, message, "each replica needs a line; use fewer replicas or more lines");
         }
         if replicas.tail_of(lines) >= lines {
             let message = format!("all of the {lines} lines are in the `tail`");
-            let help =
-                "leave `tail` out, or make it smaller: lines before the tail bring the light of the sources";
+            let help = "leave `tail` out, or make it smaller; only lines before the tail send the light of the sources";
             reader.problem(place, message, help);
         }
     }
 
-    /// Runs the transport over global lines.
+    /// Runs the transport along global lines.
     pub(crate) fn run(
         &self,
         model: &Model,
@@ -124,7 +124,7 @@ impl Multipath {
                 executor.run::<Batches<'_>>(BatchSettings { model, domain, lines, seed }, start)
             }
             Transport::Replicas(replicas) => {
-                // A pipeline with a focus has none of these.
+                // Pipelines with a focus cannot have replicas.
                 let (domain, tail) = (domain.domain().clone(), replicas.tail_of(lines));
                 let settings =
                     MultipathSettings { model, domain, lines, tail, replicas: replicas.count, seed };
@@ -133,7 +133,7 @@ impl Multipath {
         }
     }
 
-    /// Says what else than more lines makes less light remain unshot.
+    /// Returns the settings that reduce the unshot power, for a warning.
     pub(crate) fn advice_on_unshot(&self) -> &'static str {
         match self.transport {
             Transport::Batches => "more lines",
@@ -141,7 +141,7 @@ impl Multipath {
         }
     }
 
-    /// Returns true if what is unshot at the end is extrapolated, as far as anything was received.
+    /// Returns true if the power that is unshot at the end is extrapolated, provided that any was received.
     pub(crate) fn extrapolates(&self) -> bool {
         self.transport == Transport::Batches
     }

@@ -1,12 +1,12 @@
-//! Which stage may follow which: every stage needs what an earlier one has made.
+//! Checks the order of stages: every stage needs the output of earlier ones.
 
 use crate::text::reader::Reader;
 
-/// The name of a stage, and its place in the file.
+/// Name of a stage, and its text in the file.
 pub(crate) type Named<'a> = (&'static str, &'a str);
 
-/// Notes a problem for every stage, given by name and place, whose inputs nothing before it has made. What has
-/// been missed once is not reported again.
+/// Reports every stage, given by name and text, whose input no earlier stage provides. A missing input is reported
+/// once.
 pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &str) {
     let Some(&(_, last)) = stages.last() else {
         reader.problem(list, "the pipeline has no stages", "begin with `Load(path: \"scene.gltf\")`");
@@ -22,9 +22,9 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
             let help = match name {
                 "Load" => "a pipeline has one scene: keep one `Load`",
                 "Light" => "keep one, with all the lights",
-                "Focus" => "keep one, with a box around all that matters",
+                "Focus" => "keep one, with a box around everything of interest",
                 "Subdivide" => "keep one of the two",
-                "Repeat" => "keep one, with as many repeats as both together",
+                "Repeat" => "keep one, with the repeats of both",
                 _ => "keep one, with all the lines",
             };
             reader.problem(place, format!("a second `{name}`; the first is in line {line}"), help);
@@ -37,7 +37,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
             continue;
         }
         if let (Some((_, repeat)), "FirstShot" | "SecondShot" | "Multipath") = (repeat, name) {
-            let message = format!("`{name}` beside the `Repeat` in line {}", reader.line(repeat));
+            let message = format!("`{name}` outside of the `Repeat` in line {}", reader.line(repeat));
             reader.problem(place, message, format!("move `{name}` into the `stages` of `Repeat`"));
             continue;
         }
@@ -46,8 +46,8 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
             "Light" | "Subdivide" | "Focus" if first_shot => {
                 let light = if repeat.is_some() { "Repeat" } else { "FirstShot" };
                 let why = match name {
-                    "Light" | "Focus" => "light has been sent without it",
-                    _ => "light has been computed on the patches as they were",
+                    "Light" | "Focus" => "light has already been sent without it",
+                    _ => "light has already been computed on the existing patches",
                 };
                 reader.problem(
                     place,
@@ -84,7 +84,8 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
     }
 }
 
-/// Notes a problem for every stage of a `Repeat`, given by name and place, that does not stand where it would stand by itself.
+/// Reports every stage of a `Repeat`, given by name and text, that is out of order. The order is that of stages outside
+/// of a `Repeat`.
 pub(crate) fn check_repeated(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &str) {
     let help = "begin the `stages` of `Repeat` with `FirstShot(lines: 1_000_000)`";
     match stages.first() {

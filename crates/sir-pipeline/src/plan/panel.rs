@@ -1,4 +1,4 @@
-//! A parallelogram that emits.
+//! Emitting parallelograms.
 
 use glam::DVec3;
 use sir_geom::Rgb;
@@ -11,18 +11,18 @@ use crate::text::record::record;
 use crate::text::ron_tree::{Node, Value};
 
 record! {
-    /// A black parallelogram that emits on the side from which its edges, in their order, run counterclockwise.
+    /// Black parallelogram that emits on the side from which its edges, in their order, run counterclockwise.
     pub struct Panel {
         /// One of its corners.
         pub corner: DVec3 = Vector([1.0, 3.0, 2.0]).required().unit("m");
-        /// From there to the two corners next to it.
+        /// Vectors from the corner to the two adjacent ones.
         pub edges: [DVec3; 2] = Edges.required().unit("m");
-        /// How much light it sends.
+        /// Emitted exitance or power.
         pub strength: PanelStrength = strength();
     }
 }
 
-/// How much light a panel sends.
+/// Emitted exitance or power of a panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PanelStrength {
     /// Emitted exitance per band \[W/m²\].
@@ -33,16 +33,23 @@ pub enum PanelStrength {
 
 fn strength() -> OneOf<PanelStrength> {
     OneOf::new()
-        .field("exitance", Color(100.0), "W/m²", "Emitted per area.", PanelStrength::Exitance, |strength| {
-            if let PanelStrength::Exitance(color) = strength { Some(*color) } else { None }
-        })
-        .field("power", Color(100.0), "W", "Emitted in all.", PanelStrength::Power, |strength| {
+        .field(
+            "exitance",
+            Color(100.0),
+            "W/m²",
+            "Emitted power per area.",
+            PanelStrength::Exitance,
+            |strength| {
+                if let PanelStrength::Exitance(color) = strength { Some(*color) } else { None }
+            },
+        )
+        .field("power", Color(100.0), "W", "Total emitted power.", PanelStrength::Power, |strength| {
             if let PanelStrength::Power(color) = strength { Some(*color) } else { None }
         })
 }
 
 impl Panel {
-    /// Returns the panel as a scene takes it.
+    /// Converts the panel for a scene.
     pub(crate) fn to_scene(&self) -> SceneLight {
         let Self { corner, edges, strength } = *self;
         let exitance = match strength {
@@ -53,7 +60,7 @@ impl Panel {
     }
 }
 
-/// Two vectors that span an area.
+/// Format of two vectors that span an area.
 #[derive(Clone, Copy)]
 struct Edges;
 

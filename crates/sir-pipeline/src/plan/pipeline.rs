@@ -1,4 +1,4 @@
-//! What a pipeline file says, with every default filled in.
+//! Contents of a pipeline file, with every default filled in.
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -15,21 +15,22 @@ use crate::text::ron_tree;
 use crate::text::ron_tree::Value;
 use crate::units::Units;
 
-/// The most bytes of a pipeline file. Thousands of outputs fit in.
+/// Maximum size of a pipeline file \[bytes\]: enough for thousands of outputs.
 const MAX_BYTES: u64 = 1 << 18;
 
 const UNITS: Choice<Units> =
     Choice(&[("Radiometric", Units::Radiometric), ("Photometric", Units::Photometric)]);
 
 record! {
-    /// What a pipeline file says.
+    /// Contents of a pipeline file.
     pub(crate) struct Content as "Pipeline" {
-        /// Seed of all random numbers. Runs with different seeds are independent; `--seed` on the command line takes precedence.
+        /// Seed of all random numbers. Runs with different seeds are independent; `--seed` on the command line takes
+        /// precedence.
         pub seed: u64 = count(0, u64::MAX, 1).or(1);
-        /// What the numbers are: watts, or what the eye sees of them. Photometric ones read lumens (lm) for W, lux (lx) for W/m²,
-        /// candelas for W/sr and cd/m² for W/(m² sr); nothing is converted.
+        /// Radiometric or photometric units. With the latter, read lumens (lm) for W, lux (lx) for W/m², candelas for
+        /// W/sr and cd/m² for W/(m² sr); nothing is converted.
         pub units: Units = UNITS.or(Units::Radiometric);
-        /// In the order in which they run.
+        /// Stages, in the order in which they run.
         pub stages: Vec<Stage> = StageList::ALL.required();
     }
 }
@@ -37,15 +38,15 @@ record! {
 /// A valid pipeline: its stages are in a possible order, its numbers are in range and its inputs exist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pipeline {
-    /// The file, as it was named.
+    /// Path of the file, as given.
     pub path: PathBuf,
-    /// The text of the file.
+    /// Text of the file.
     pub text: String,
     /// Seed of all random numbers. Default 1.
     pub seed: u64,
-    /// What its numbers are measured in. Default radiometric.
+    /// Units of its numbers. Default radiometric.
     pub units: Units,
-    /// The stages, in the order in which they run.
+    /// Stages, in the order in which they run.
     pub stages: Vec<Stage>,
 }
 
@@ -54,10 +55,10 @@ impl Pipeline {
     ///
     /// # Errors
     ///
-    /// All problems of the file, or why it cannot be read.
+    /// Returns all problems of the file, or the reason why it cannot be read.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let mut bytes = Vec::new();
-        // Also what never ends can be given as a file.
+        // The file may be endless, such as /dev/zero.
         std::fs::File::open(path)
             .and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
             .map_err(|source| Error::ReadPipeline { path: path.to_owned(), source })?;
@@ -68,13 +69,14 @@ impl Pipeline {
         Ok(Self::parse(&text, path)?)
     }
 
-    /// Reads the text of a pipeline file. Paths in it are relative to the folder of `path`.
+    /// Parses the text of a pipeline file. Paths in it are relative to the folder of `path`.
     ///
     /// # Errors
     ///
-    /// All problems of the text, each with its place and what to write instead. A missing input file is one.
+    /// Returns all problems of the text, each with its position and a suggested fix. A missing input file is a problem,
+    /// too.
     pub fn parse(text: &str, path: &Path) -> Result<Self, Diagnostics> {
-        // A comment in the last line must end before the file does, or `ron` refuses it.
+        // `ron` rejects a comment in the last line unless a line break follows.
         let source = format!("{text}\n");
         let mut reader = Reader::new(&source, path.parent().unwrap_or(Path::new("")));
         let content = match ron_tree::parse(&source) {
@@ -85,7 +87,7 @@ impl Pipeline {
                 Content::read(&mut reader, &root)
             }
             Ok(root) => {
-                let message = format!("the file must hold `Pipeline(…)`, but it holds {}", root.kind());
+                let message = format!("the file must contain `Pipeline(…)`, but it contains {}", root.kind());
                 reader.problem(root.text, message, "write `Pipeline(stages: […])`");
                 None
             }
@@ -102,8 +104,8 @@ impl Pipeline {
         }
     }
 
-    /// Returns the text of a file that says the same as this pipeline, whatever its own text is. Input paths are written as they are
-    /// here: joined to the folder of the file.
+    /// Writes the pipeline as RON, independent of its original text. Input paths are written as they are stored: joined
+    /// to the folder of the file.
     #[must_use]
     pub fn to_ron(&self) -> String {
         let content = Content { seed: self.seed, units: self.units, stages: self.stages.clone() };
@@ -112,18 +114,18 @@ impl Pipeline {
         format!("{}(\n{fields})\n", Content::NAME)
     }
 
-    /// Returns problems of this pipeline, ready to be shown.
+    /// Returns problems of this pipeline in displayable form.
     #[must_use]
     pub fn diagnostics(&self, problems: Vec<Diagnostic>) -> Diagnostics {
         Diagnostics::new(&self.path, &self.text, problems)
     }
 
-    /// Returns all stages, with those of a `Repeat`, once, in its place.
+    /// Returns all stages. The stages of a `Repeat` replace it, once.
     pub fn flat_stages(&self) -> impl Iterator<Item = &Stage> {
         self.stages.iter().flat_map(Stage::flat)
     }
 
-    /// Returns all files that the pipeline asks for, in the order of the file.
+    /// Returns all outputs of `Save` stages, in the order of the file.
     pub fn outputs(&self) -> impl Iterator<Item = &Output> {
         self.stages.iter().flat_map(|stage| match &stage.action {
             Action::Save(Save { outputs }) => outputs.as_slice(),
@@ -131,7 +133,7 @@ impl Pipeline {
         })
     }
 
-    /// Returns the scene file.
+    /// Returns the path of the scene file.
     #[must_use]
     pub fn scene_path(&self) -> &Path {
         let path = self.stages.iter().find_map(|stage| match &stage.action {

@@ -1,4 +1,4 @@
-//! Light from a point.
+//! Point lights.
 
 use glam::DVec3;
 use sir_geom::{LightKind, Rgb};
@@ -10,18 +10,18 @@ use crate::text::reader::{Fields, Reader};
 use crate::text::record::{choice, named, record};
 
 record! {
-    /// Light from a point.
+    /// Point light.
     pub struct Point {
-        /// Where it is.
+        /// Position of the light.
         pub position: DVec3 = Vector([1.0, 2.0, 3.0]).required().unit("m");
-        /// How much light it sends.
+        /// Intensity or power.
         pub strength: PointStrength = strength();
-        /// Where the light goes, see below.
+        /// Angular distribution of the light, see below.
         pub spread: Spread = named("Isotropic").or(Spread::Isotropic);
     }
 }
 
-/// How much light a point sends.
+/// Intensity or power of a point light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointStrength {
     /// Radiant intensity per band in the direction where it is largest \[W/sr\].
@@ -36,50 +36,50 @@ fn strength() -> OneOf<PointStrength> {
             "intensity",
             Color(100.0),
             "W/sr",
-            "In the direction where it is largest.",
+            "Intensity in the direction where it is largest.",
             PointStrength::Intensity,
             |strength| if let PointStrength::Intensity(color) = strength { Some(*color) } else { None },
         )
-        .field("power", Color(100.0), "W", "In all directions together.", PointStrength::Power, |strength| {
+        .field("power", Color(100.0), "W", "Total power.", PointStrength::Power, |strength| {
             if let PointStrength::Power(color) = strength { Some(*color) } else { None }
         })
 }
 
 choice! {
-    /// Where the light of a point goes.
+    /// Angular distribution of a point light.
     pub enum Spread as "spread" {
-        /// Everywhere alike.
+        /// Equal intensity in all directions.
         Isotropic,
-        /// As the cosine of the angle to an axis, nothing behind.
+        /// Intensity proportional to the cosine of the angle to an axis, zero behind.
         Lambertian(Lambertian),
-        /// In a cone.
+        /// Cone.
         Spot(Spot),
     }
 }
 
 record! {
-    /// Light as that of a small diffuse surface.
+    /// Angular distribution of a small diffuse surface.
     pub struct Lambertian {
-        /// Where most of the light goes.
+        /// Direction of the largest intensity.
         pub axis: DVec3 = Direction([0.0, -1.0, 0.0]).required();
     }
 }
 
 record! {
-    /// A cone of light. Between its two angles light falls off as glTF recommends.
+    /// Cone of light. Between its two angles the intensity falls off as glTF recommends.
     pub struct Spot, check Spot::check {
-        /// The middle of the cone.
+        /// Axis of the cone.
         pub axis: DVec3 = Direction([0.0, -1.0, 0.0]).required();
-        /// Full up to this angle from the axis.
+        /// Angle from the axis up to which the intensity is full.
         pub inner: f64 = number(20.0).with_range(|x| x >= 0.0, "from 0").or(0.0).unit("degrees");
-        /// Nothing beyond this angle, which is not below `inner`.
+        /// Angle from the axis beyond which there is no light; not less than `inner`.
         pub outer: f64 =
             number(30.0).with_range(|x| (0.01..=180.0).contains(&x), "from 0.01 to 180").required().unit("degrees");
     }
 }
 
 impl Point {
-    /// Returns the light as a scene takes it; `None` if its numbers are impossible together.
+    /// Converts the light for a scene. Returns `None` if its numbers contradict each other.
     pub(crate) fn to_scene(&self) -> Option<SceneLight> {
         let spread = self.spread.to_scene()?;
         let intensity = match self.strength {
@@ -113,8 +113,8 @@ impl Spot {
         if self.to_scene().is_none() {
             let Self { inner, outer, .. } = self;
             let message =
-                format!("a spot cannot be full up to {inner} and end at {outer} degrees from its axis");
-            reader.problem(fields.place, message, "choose an `outer` that is not below `inner`");
+                format!("the `inner` angle of the spot, {inner}°, exceeds its `outer` angle, {outer}°");
+            reader.problem(fields.place, message, "choose an `outer` that is not less than `inner`");
         }
     }
 }

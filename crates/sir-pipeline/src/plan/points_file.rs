@@ -1,4 +1,4 @@
-//! Files of points: six numbers a line, as `rtrace` of Radiance reads them.
+//! Files of points: six numbers per line, the input format of Radiance's `rtrace`.
 
 use std::path::PathBuf;
 
@@ -10,12 +10,12 @@ use crate::text::reader::Reader;
 use crate::text::record::Body;
 use crate::text::ron_tree::{Node, Value};
 
-/// A file of points, which is read with the pipeline: what is wrong with it is a problem of the pipeline.
+/// File of points. It is read together with the pipeline, so that its errors are reported as problems of the pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointsFile {
-    /// The file: the path in the pipeline, joined to the folder of its file.
+    /// Path of the file: the path in the pipeline, joined to the folder of the pipeline file.
     pub path: PathBuf,
-    /// The points in it, at least one.
+    /// Points in the file, at least one.
     pub sensors: Vec<Sensor>,
 }
 
@@ -36,8 +36,8 @@ impl Body for PointsFile {
         match std::fs::read_to_string(&path).map(|text| parse(&text)) {
             Ok(Ok(sensors)) => Some(Self { path, sensors }),
             Ok(Err((line, why))) => {
-                let message = format!("{}:{line} is no point: {why}", path.display());
-                let help = "write `x y z dx dy dz` in a line each; `#` begins a comment";
+                let message = format!("{}:{line} is not a point: {why}", path.display());
+                let help = "write one point `x y z dx dy dz` per line; `#` begins a comment";
                 reader.problem(node.text, message, help);
                 None
             }
@@ -54,9 +54,9 @@ impl Body for PointsFile {
     }
 }
 
-/// Reads points, `x y z dx dy dz` in a line each; what follows a `#` is a comment.
+/// Parses points, one `x y z dx dy dz` per line. `#` begins a comment.
 ///
-/// The error says which line is wrong, and why.
+/// The error has the number of the invalid line, and the reason.
 fn parse(text: &str) -> Result<Vec<Sensor>, (usize, String)> {
     let mut sensors = Vec::new();
     for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
@@ -74,10 +74,10 @@ fn parse(text: &str) -> Result<Vec<Sensor>, (usize, String)> {
             return Err(wrong(format!("it has {} numbers, but a point has six", numbers.len())));
         };
         let sensor = Sensor::new(DVec3::new(x, y, z), DVec3::new(dx, dy, dz));
-        sensors.push(sensor.ok_or_else(|| wrong("its direction has no length".into()))?);
+        sensors.push(sensor.ok_or_else(|| wrong("the length of its direction is zero".into()))?);
     }
     if sensors.is_empty() {
-        return Err((1, "there are no points in it".into()));
+        return Err((1, "the file has no points".into()));
     }
     Ok(sensors)
 }
@@ -100,7 +100,7 @@ mod tests {
         for (text, line, why) in [
             ("1 2 3 0 0 1\n\n1 2 3 0 0\n", 3, "5 numbers"),
             ("# nothing\n", 1, "no points"),
-            ("1 2 3 0 0 0", 1, "no length"),
+            ("1 2 3 0 0 0", 1, "is zero"),
             ("1 2 3 0 0 one", 1, "\"one\""),
             ("1 2 3 0 0 inf", 1, "\"inf\""),
         ] {

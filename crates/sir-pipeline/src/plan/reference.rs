@@ -1,4 +1,4 @@
-//! The fields of a pipeline file, as the reference shows them.
+//! Tables of the fields of a pipeline file, for the reference.
 
 use crate::plan::focus::Focus;
 use crate::plan::image::{Camera, Image};
@@ -17,7 +17,7 @@ use crate::plan::subdivide::Subdivide;
 use crate::text::field::Row;
 use crate::text::record::Record;
 
-/// Returns a Markdown table of fields for each thing that has some, by its name in a pipeline file.
+/// Returns a Markdown table of fields for each record, with its name in a pipeline file.
 #[must_use]
 pub fn field_tables() -> Vec<(&'static str, String)> {
     vec![

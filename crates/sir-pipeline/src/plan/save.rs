@@ -9,19 +9,19 @@ use crate::text::reader::Reader;
 use crate::text::record::{Body, Choose as _, choice, list_items, record, write_list};
 use crate::text::ron_tree::Node;
 
-/// Writes files.
+/// Stage that writes files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Save {
-    /// The files, at least one.
+    /// Files, at least one.
     pub outputs: Vec<Output>,
 }
 
 choice! {
-    /// A file to write.
+    /// File to write.
     pub enum Output as "output" {
-        /// A picture.
+        /// Image, as PNG or EXR.
         Image(Image),
-        /// The lit mesh, as binary glTF.
+        /// Lit mesh, as binary glTF.
         Gltf(Gltf),
         /// Radiosity, irradiance and error of every patch, as CSV or NPY.
         Table(Table),
@@ -29,10 +29,10 @@ choice! {
 }
 
 record! {
-    /// The lit mesh.
+    /// Lit mesh.
     pub struct Gltf {
-        /// `.glb`: the scene with its light as vertex colors, for viewers and modeling programs; the radiosity in W/m² is in the
-        /// attribute `_RADIOSITY`.
+        /// `.glb`: the scene with its light as vertex colors, for viewers and modeling programs; the radiosity in W/m²
+        /// is in the attribute `_RADIOSITY`.
         pub path: PathBuf = OutputFile { extensions: &["glb"], example: "result.glb" }.required();
     }
 }
@@ -40,7 +40,7 @@ record! {
 record! {
     /// Radiosity, irradiance and error of every patch.
     pub struct Table {
-        /// `.csv`: text; `.npy`: the same as a structured array for NumPy, smaller and faster.
+        /// `.csv`: text; `.npy`: the same data as a structured array for NumPy, smaller and faster.
         pub path: PathBuf = OutputFile { extensions: &["csv", "npy"], example: "patches.csv" }.required();
     }
 }

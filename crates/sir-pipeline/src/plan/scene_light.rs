@@ -1,28 +1,28 @@
-//! Lights as a scene takes them.
+//! Lights of a pipeline, converted for a scene.
 
 use glam::DVec3;
 use sir_geom::{Light, Material, Rgb, SceneBuilder, Sky, shapes};
 
-/// A light as it is added to a scene.
+/// Light to be added to a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneLight {
-    /// A light without a surface.
+    /// Light without a surface.
     Light(Light),
-    /// A black parallelogram that emits on the side from which its edges, in their order, run counterclockwise.
+    /// Black parallelogram that emits on the side from which its edges, in their order, run counterclockwise.
     Panel {
         /// One of its corners \[m\].
         corner: DVec3,
-        /// From there to the two next ones \[m\].
+        /// Vectors from the corner to the two adjacent ones \[m\].
         edges: [DVec3; 2],
         /// Emitted exitance per band \[W/m²\].
         exitance: Rgb,
     },
-    /// What is seen where there is no surface.
+    /// Sky: the light from outside of the scene.
     Sky(Sky),
 }
 
 impl SceneLight {
-    /// Adds it to a scene; a sky replaces the one before.
+    /// Adds the light to a scene. A sky replaces an existing one.
     pub(crate) fn add_to(&self, builder: &mut SceneBuilder) {
         match self {
             Self::Light(light) => builder.add_light(light.clone()),

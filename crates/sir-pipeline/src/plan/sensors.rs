@@ -14,97 +14,97 @@ use crate::text::ron_tree::Node;
 use crate::text::span::{Spanned, WithSpan};
 
 const DEFAULT_RAYS: u64 = 16_384;
-/// Most rays of a sensor: all patches that they meet are remembered for the error.
+/// Largest number of rays of a sensor: all patches that they hit are stored to compute the error.
 const MAX_RAYS: u64 = 10_000_000;
 
 record! {
-    /// Measures irradiance at points.
+    /// Stage that measures irradiance at points.
     pub struct Sensors, check Sensors::claim_outputs {
-        /// What they are called, and the names of their files in the run directory.
+        /// Name of the sensors, and of their files in the run directory.
         pub name: String = Text("desk").required();
-        /// Where they are.
+        /// Positions of the sensors.
         pub at: Spanned<Place> = WithSpan(named("Plane(height: 0.75, spacing: 0.25)")).required();
-        /// Rays of each sensor over its hemisphere, rounded up to a multiple of 32; as many are aimed at emitting surfaces, if there
-        /// are any.
+        /// Number of rays of each sensor over its hemisphere, rounded up to a multiple of 32. The same number is aimed
+        /// at emitting surfaces, if there are any.
         pub rays: u64 = count(1, MAX_RAYS, DEFAULT_RAYS).or(DEFAULT_RAYS);
-        /// Relative standard error at which a sensor is done with fewer rays, from 2,048 on; `0.005` is half a per cent. The errors
-        /// of patches do not count.
+        /// Relative standard error at which a sensor stops early, after at least 2,048 rays; `0.005` is 0.5 %. The
+        /// errors of patches are ignored.
         pub error: Option<f64> = positive(0.005).optional("none");
     }
 }
 
 choice! {
-    /// Where sensors are.
+    /// Positions of sensors.
     pub enum Place as "place" {
-        /// At points that the pipeline lists.
+        /// Points listed in the pipeline.
         Points(Points),
-        /// At points that a file lists.
+        /// Points listed in a file.
         File(PointsFile),
-        /// In the middle of the cells of a parallelogram.
+        /// Centers of the cells of a parallelogram.
         Grid(Grid),
-        /// In the middle of the cells of a horizontal plane through a room.
+        /// Centers of the cells of a horizontal plane through a room.
         Plane(Plane),
     }
 }
 
-/// Points that the pipeline lists: at least one.
+/// Points listed in the pipeline, at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Points(pub Vec<SensorPoint>);
 
 record! {
-    /// A point at which irradiance is measured.
+    /// Point at which irradiance is measured.
     pub struct SensorPoint as "Points" {
-        /// Where it is.
+        /// Position of the sensor.
         pub position: DVec3 = Vector([1.0, 0.75, 2.0]).required().unit("m");
-        /// The normal of the surface whose irradiance is measured.
+        /// Normal of the surface whose irradiance is measured.
         pub direction: DVec3 = Direction([0.0, 1.0, 0.0]).required();
     }
 }
 
 record! {
-    /// A parallelogram, cut into cells.
+    /// Parallelogram, divided into cells.
     pub struct Grid, check Grid::check {
         /// One of its corners.
         pub corner: DVec3 = Vector([0.0, 0.75, 2.0]).required().unit("m");
-        /// The edge from there that is shown from left to right.
+        /// Edge from the corner that is shown from left to right.
         pub along: DVec3 = Vector([2.0, 0.0, 0.0]).required().unit("m");
-        /// The edge from there that is shown from the bottom to the top.
+        /// Edge from the corner that is shown from bottom to top.
         pub across: DVec3 = Vector([0.0, 0.0, -1.0]).required().unit("m");
-        /// About the distance of neighboring sensors: edges are cut into whole cells.
+        /// Approximate distance of neighboring sensors: edges are divided into whole cells.
         pub spacing: f64 = positive(0.25).required().unit("m");
-        /// Where the sensors look.
+        /// Direction in which the sensors look.
         pub direction: Option<DVec3> = Direction([0.0, 1.0, 0.0]).optional("the normal `along × across`");
     }
 }
 
 record! {
-    /// The work plane of a room.
+    /// Work plane of a room.
     pub struct Plane {
         /// Height above the lowest point of the scene.
         pub height: f64 = number(0.75).required().unit("m");
-        /// About the distance of neighboring sensors: edges are cut into whole cells.
+        /// Approximate distance of neighboring sensors: edges are divided into whole cells.
         pub spacing: f64 = positive(0.25).required().unit("m");
-        /// Distance that is kept from the outline of the scene. EN 12464-1 recommends 0.5.
+        /// Width of the border along the outline of the scene without sensors. EN 12464-1 recommends 0.5.
         pub border: f64 = number(0.5).with_range(|x| x >= 0.0, "from 0").or(0.0).unit("m");
-        /// Which way is up, where the sensors look.
-        pub up: Option<DVec3> = Direction([0.0, 1.0, 0.0]).optional("what is up in the scene");
+        /// Up direction, in which the sensors look.
+        pub up: Option<DVec3> = Direction([0.0, 1.0, 0.0]).optional("the up direction of the scene");
     }
 }
 
 impl Sensors {
-    /// Returns the table of the sensors, in the run directory.
+    /// Returns the path of the table of the sensors in the run directory.
     #[must_use]
     pub fn table(&self) -> PathBuf {
         self.output("csv")
     }
 
-    /// Returns the picture in false colors, in the run directory, if the sensors are on a grid.
+    /// Returns the path of the false-color image in the run directory, if the sensors are on a grid.
     #[must_use]
     pub fn map(&self) -> Option<PathBuf> {
         matches!(self.at.value, Place::Grid(_) | Place::Plane(_)).then(|| self.output("png"))
     }
 
-    /// Returns how carefully is measured.
+    /// Returns the number of rays and the target error.
     #[must_use]
     pub fn settings(&self) -> SensorSettings {
         SensorSettings { rays: self.rays, error: self.error.unwrap_or(0.0) }
@@ -124,7 +124,7 @@ impl Sensors {
 }
 
 impl Place {
-    /// Returns the points that the pipeline or a file lists.
+    /// Returns the points that the pipeline or a file lists, or `None` for a grid or a plane.
     #[must_use]
     pub fn listed(&self) -> Option<Vec<Sensor>> {
         match self {
@@ -153,7 +153,7 @@ impl Body for Points {
 impl Grid {
     fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
         if self.along.cross(self.across).try_normalize().is_none() {
-            let help = "make `along` and `across` edges of different directions, each with a length";
+            let help = "give `along` and `across` different directions and nonzero lengths";
             reader.problem(fields.place, "this grid has no area", help);
         }
     }

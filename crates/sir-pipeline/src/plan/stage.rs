@@ -1,4 +1,4 @@
-//! Stages: all there are, and those that are repeated.
+//! Stages of a pipeline, and those in a `Repeat`.
 
 use crate::plan::focus::Focus;
 use crate::plan::light::Light;
@@ -18,17 +18,17 @@ use crate::text::ron_tree::{Node, Value};
 use crate::text::span::Span;
 use crate::text::suggest::resembling;
 
-/// A stage, and where the file asks for it.
+/// Stage with its position in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
-    /// What to do.
+    /// Action of the stage.
     pub action: Action,
-    /// Where the file asks for it.
+    /// Position of the name of the stage in the file.
     pub span: Span,
 }
 
 impl Stage {
-    /// Returns the stages of a `Repeat`, or else the stage itself.
+    /// Returns the stages of a `Repeat`, or the stage itself if it is another one.
     pub fn flat(&self) -> impl Iterator<Item = &Self> {
         match &self.action {
             Action::Repeat(Repeat { stages, .. }) => stages.iter(),
@@ -38,23 +38,23 @@ impl Stage {
 }
 
 choice! {
-    /// What a stage does.
+    /// Action of a stage.
     pub enum Action as "stage" {
         /// Reads a scene.
         Load(Load),
         /// Adds lights to the scene.
         Light(Light),
-        /// Cuts the triangles into patches.
+        /// Divides the triangles into patches.
         Subdivide(Subdivide),
-        /// Says which part of the scene matters.
+        /// Gives a box of interest a larger share of the lines.
         Focus(Focus),
         /// Sends the power of the light sources along local lines.
         FirstShot(FirstShot),
-        /// Lets the brightest patches send what they reflect along local lines, too.
+        /// Sends the power reflected by the brightest patches along local lines.
         SecondShot(SecondShot),
         /// Distributes the reflected light along global lines.
         Multipath(Multipath),
-        /// Runs stages of lines again and again, for the mean of independent results.
+        /// Runs stages of lines repeatedly, and averages the independent results.
         Repeat(Repeat),
         /// Measures irradiance at points.
         Sensors(Sensors),
@@ -70,7 +70,7 @@ impl Action {
         Choose::name(self)
     }
 
-    /// Returns how many lines it has, those of a `Repeat` once.
+    /// Returns the number of lines of the stage, for a `Repeat` that of one repeat.
     #[must_use]
     pub fn lines(&self) -> u64 {
         match self {
@@ -89,31 +89,31 @@ impl Action {
 }
 
 record! {
-    /// Stages that are run again and again.
+    /// Stages that are run repeatedly.
     pub struct Repeat {
-        /// How often.
+        /// Target at which to stop.
         pub until: Until = until();
-        /// Not more often than this. A warning says if a target was not reached.
+        /// Maximum number of repeats. A warning reports that a target was not reached.
         pub at_most: Option<u64> = count(1, MAX_LINES, 100).optional("no limit");
-        /// `FirstShot`, and what may follow it except `Sensors` and `Save`.
+        /// `FirstShot` and the stages that may follow it, except `Sensors` and `Save`.
         pub stages: Vec<Stage> = StageList::REPEATED.required();
     }
 }
 
-/// When there have been enough repeats.
+/// Target of a `Repeat`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Until {
-    /// After so many: at least 1.
+    /// Number of repeats, at least 1.
     Times(u64),
-    /// When the relative error of the mean is not above this, in any band: above 0.
+    /// Upper limit of the relative error of the mean in all bands, above 0.
     RelativeError(f64),
-    /// When another one would end later than after so many seconds: above 0.
+    /// Time limit \[s\], above 0. A repeat that would end later is not begun.
     Seconds(f64),
 }
 
 fn until() -> OneOf<Until> {
     OneOf::new()
-        .field("times", count(1, MAX_LINES, 16), "", "How often.", Until::Times, |until| match until {
+        .field("times", count(1, MAX_LINES, 16), "", "Number of repeats.", Until::Times, |until| match until {
             Until::Times(times) => Some(*times),
             _ => None,
         })
@@ -121,15 +121,15 @@ fn until() -> OneOf<Until> {
             "until",
             Target,
             "",
-            "`RelativeError(e)`: until the `relative_error` of the mean, as in `result.json`, is at most `e` in every band: 0.01 is \
-             1 %. `Seconds(s)`: as long as it takes at most `s` seconds, one run at least. A repeat that would end later is not begun, \
-             if it takes as long as those before did on average. Time before a run was resumed counts.",
+            "`RelativeError(e)`: repeats until the `relative_error` of the mean, as in `result.json`, is at most `e` in every band; \
+             0.01 is 1 %. `Seconds(s)`: repeats for at most `s` seconds, but at least once. A repeat is not begun if it would end \
+             later, assuming the mean duration of those before. Time before a run was resumed counts.",
             |until| until,
             |until| (!matches!(until, Until::Times(_))).then_some(*until),
         )
 }
 
-/// A target that is not a number of repeats.
+/// Format of a target that is not a number of repeats.
 #[derive(Clone, Copy)]
 struct Target;
 
@@ -177,14 +177,15 @@ impl Format for Target {
     }
 }
 
-/// Notes a problem with all replicas, because there is a focus: a line of a replica takes along all that a side holds, and so must not be aimed.
+/// Reports all stages with replicas, because there is a focus. A line of a replica takes all unshot power of a side, so
+/// the density of lines must be uniform.
 fn refuse_replicas<'s>(reader: &mut Reader<'_>, stages: impl Iterator<Item = &'s Stage>) {
     for stage in stages.flat_map(Stage::flat) {
         if let Action::Multipath(Multipath { transport: Transport::Replicas(_), .. }) = stage.action {
             reader.problems.push(Diagnostic {
                 span: stage.span.0.clone(),
-                message: "the transport `Replicas` cannot have a `Focus`: each line takes along all that a surface holds, so \
-                          lines must be the same everywhere"
+                message: "the transport `Replicas` cannot be combined with a `Focus`: each line takes all unshot power of a \
+                          surface, so the density of lines must be uniform"
                     .into(),
                 help: "write `transport: Batches`, or leave `Focus` out".into(),
             });
@@ -192,17 +193,17 @@ fn refuse_replicas<'s>(reader: &mut Reader<'_>, stages: impl Iterator<Item = &'s
     }
 }
 
-/// A list of stages in a possible order.
+/// Format of a list of stages in a valid order.
 #[derive(Clone, Copy)]
 pub(crate) struct StageList {
-    /// What they are called.
+    /// Noun for an element of the list.
     what: &'static str,
-    /// Those that may be in it.
+    /// Valid stages.
     known: &'static [&'static str],
-    /// Notes what is wrong with their order.
+    /// Function that reports problems of the order.
     check_order: fn(&mut Reader<'_>, &[Named<'_>], &str),
     example: &'static str,
-    /// What is written before each of them, and at the end.
+    /// White space before each stage, and at the end.
     breaks: [&'static str; 2],
 }
 
@@ -216,7 +217,7 @@ impl StageList {
         breaks: ["\n        ", "\n    "],
     };
 
-    /// Those in a `Repeat`.
+    /// Stages of a `Repeat`.
     const REPEATED: Self = Self {
         what: "repeated stage",
         known: &["FirstShot", "SecondShot", "Multipath"],
@@ -236,7 +237,8 @@ impl Format for StageList {
             return None;
         };
         let mut stages = Vec::new();
-        // The order is checked if all stages are known, or nearly: what an unknown stage would have made is not known.
+        // The order is checked only if all names are valid or resemble a valid one: the output of an unknown stage is
+        // not known.
         let (mut order, mut all_known) = (Vec::new(), true);
         for node in nodes {
             let place = node.name();

@@ -9,9 +9,9 @@ use crate::text::record::record;
 use crate::text::ron_tree::{Node, Value};
 
 record! {
-    /// Cuts the triangles into patches.
+    /// Stage that divides the triangles into patches.
     pub struct Subdivide {
-        /// How finely.
+        /// Size or number of patches.
         pub how: Subdivision = how();
     }
 }
@@ -22,7 +22,7 @@ fn how() -> OneOf<Subdivision> {
             "patches",
             count::<u32>(1, u64::from(u32::MAX), 20_000),
             "",
-            "About this many patches in all, of areas as equal as possible; never fewer than there are triangles.",
+            "Approximate number of patches, of areas as equal as possible; never less than the number of triangles.",
             |n| Subdivision::Patches(n.into()),
             |how| if let Subdivision::Patches(n) = how { u32::try_from(*n).ok() } else { None },
         )
@@ -30,7 +30,7 @@ fn how() -> OneOf<Subdivision> {
             "max_area",
             positive(0.01),
             "m²",
-            "No patch is larger.",
+            "Maximum area of a patch.",
             Subdivision::MaxArea,
             |how| if let Subdivision::MaxArea(area) = how { Some(*area) } else { None },
         )
@@ -38,7 +38,7 @@ fn how() -> OneOf<Subdivision> {
             "max_edge",
             positive(0.1),
             "m",
-            "No edge of a patch is longer.",
+            "Maximum edge length of a patch.",
             Subdivision::MaxEdge,
             |how| if let Subdivision::MaxEdge(edge) = how { Some(*edge) } else { None },
         )
@@ -46,14 +46,14 @@ fn how() -> OneOf<Subdivision> {
             "per_face",
             True,
             "",
-            "One patch for every flat polygon of the file, whatever the number of triangles it was cut into; bent ones are cut into \
-             their triangles.",
+            "One patch for every flat polygon of the file, regardless of its number of triangles; polygons that are not flat are \
+             divided into their triangles.",
             |()| Subdivision::PerFace,
             |how| (*how == Subdivision::PerFace).then_some(()),
         )
 }
 
-/// `true`, and nothing else.
+/// Format that accepts only `true`.
 #[derive(Clone, Copy)]
 struct True;
 

@@ -1,4 +1,4 @@
-//! The cameras of pictures.
+//! Cameras of images.
 
 use sir_geom::{Camera, Scene};
 
@@ -6,7 +6,7 @@ use crate::plan::{CameraChoice, Image, Output, Pipeline};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::suggest::did_you_mean;
 
-/// Cameras that pictures ask for and the scene does not have.
+/// Returns a problem for each camera that an image refers to and the scene does not have.
 pub(crate) fn camera_problems(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
     let names: Vec<&str> = scene.cameras().iter().map(|c| c.name.as_str()).collect();
     let known = match names.len() {
@@ -35,7 +35,8 @@ pub(crate) fn camera_problems(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnos
     problems
 }
 
-/// The camera of the scene or the pipeline that is meant; `None` if the scene has none and nothing was asked for.
+/// Returns the camera of an image, from the scene or the pipeline. Returns `None` if the image specifies none and the
+/// scene has none.
 #[must_use]
 pub(crate) fn chosen_camera(image: &Image, scene: &Scene) -> Option<Camera> {
     let cameras = scene.cameras();

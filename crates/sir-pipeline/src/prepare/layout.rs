@@ -1,4 +1,4 @@
-//! Where the sensors of a grid or of a work plane are.
+//! Positions of the sensors of a grid or a work plane.
 
 use glam::{DVec2, DVec3};
 use sir_accel::{Ray, Tracer};
@@ -7,33 +7,33 @@ use sir_radiosity::{Model, SENSOR_OFFSET, Sensor};
 
 use crate::plan::{Grid, Place, Plane};
 
-/// Most cells of a grid.
-const MOST: f64 = 1e6;
+/// Maximum number of cells of a grid.
+const MAX_CELLS: f64 = 1e6;
 
-/// Sensors in their order.
+/// Sensors of a stage, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// The sensors, at least one.
+    /// Sensors, at least one.
     pub sensors: Vec<Sensor>,
-    /// The cells in which they are, if they are on a grid.
+    /// Cells of the sensors, if they are on a grid.
     pub cells: Option<Cells>,
 }
 
-/// Cells of a grid, row by row from the lower left.
+/// Cells of a grid, numbered row by row from the lower left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cells {
-    /// Cells in a row.
+    /// Number of cells in a row.
     pub columns: usize,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// Width and height of all cells together \[m\].
+    /// Width and height of the grid \[m\].
     pub size: DVec2,
-    /// The number of the cell of each sensor; cells without one are outside of the room.
+    /// Number of the cell of each sensor. Cells without a sensor are outside of the room.
     pub of: Vec<usize>,
 }
 
 impl Layout {
-    /// The sensors of a place; an error says why there are none, and what to do.
+    /// Places the sensors. The error has a message, which says why there are none, and a suggested fix.
     pub(crate) fn new(place: &Place, model: &Model, up: DVec3) -> Result<Self, (String, String)> {
         match place {
             Place::Points(_) | Place::File(_) => {
@@ -46,13 +46,13 @@ impl Layout {
 }
 
 impl Grid {
-    /// A sensor in the middle of every cell that is `wanted`.
+    /// Places a sensor at the center of every cell for which `wanted` returns true.
     fn layout(&self, wanted: &mut dyn FnMut(&Sensor) -> bool) -> Result<Layout, (String, String)> {
         let Self { corner, along, across, spacing, direction } = *self;
         let direction = direction.unwrap_or_else(|| along.cross(across));
         let size = DVec2::new(along.length(), across.length());
         let counts = (size / spacing).round().max(DVec2::ONE);
-        if counts.x * counts.y > MOST {
+        if counts.x * counts.y > MAX_CELLS {
             let message = format!("a grid of {:.0} by {:.0} sensors is too fine", counts.x, counts.y);
             return Err((message, "choose a larger `spacing`".into()));
         }
@@ -74,7 +74,7 @@ impl Grid {
 impl Plane {
     fn layout(&self, model: &Model, scene_up: DVec3) -> Result<Layout, (String, String)> {
         let up = self.up.unwrap_or(scene_up).normalize();
-        // Seen from above, with x from left to right unless that is up.
+        // The plane as seen from above, with x from left to right unless x is up.
         let guide = if up.x.abs() < 0.9 { DVec3::X } else { DVec3::Y };
         let along = guide.reject_from_normalized(up).normalize();
         let across = up.cross(along);
@@ -83,7 +83,7 @@ impl Plane {
         let size = DVec2::new(right - left, top - bottom) - 2.0 * self.border;
         if size.min_element() <= 0.0 {
             let message = format!(
-                "nothing is left of the scene, {:.3} by {:.3} m, without a border of {} m",
+                "nothing is left of the scene, {:.3} by {:.3} m, inside a border of {} m",
                 right - left,
                 top - bottom,
                 self.border
@@ -99,25 +99,25 @@ impl Plane {
         if layout.sensors.is_empty() {
             let message =
                 format!("no point of the plane at the height {} m lies inside the room", self.height);
-            let help = "choose another `height`, above the lowest point of the scene, or `up`; where backs of surfaces are \
-                        seen is outside";
+            let help = "choose another `height`, above the lowest point of the scene, or `up`; points from which backs of \
+                        surfaces are seen are outside";
             return Err((message, help.into()));
         }
         Ok(layout)
     }
 }
 
-/// The least and the largest coordinate of a scene in a direction.
+/// Returns the smallest and the largest coordinate of a scene along a direction.
 fn extent(scene: &Scene, axis: DVec3) -> [f64; 2] {
     let coordinates = scene.vertices().iter().map(|vertex| vertex.dot(axis));
     coordinates.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [least.min(x), most.max(x)])
 }
 
-/// Whether a point is in the room, and not in a piece of furniture: there is something below it, and what is seen first above and below
-/// is not the back of a one-sided surface. (The sky may be above.)
+/// Returns true if a point is in the room, and not inside of a piece of furniture. There must be a surface below the
+/// point, and the first surfaces below and above must not show the back of a one-sided surface. (The sky may be above.)
 fn is_inside(sensor: &Sensor, model: &Model, tracer: &mut Tracer<'_>) -> bool {
     let up = sensor.direction();
-    // As sensors are lifted: one that lies on a desk is above it.
+    // Offset as when measuring: a sensor that lies on a desk counts as above it.
     let origin = sensor.position() + SENSOR_OFFSET * model.scene.bounding_sphere().radius * up;
     let mut sees = |direction| {
         let hit = tracer.closest(&Ray::from(Line { origin, direction }));
@@ -163,7 +163,7 @@ mod tests {
     fn a_plane_stays_in_the_room_and_out_of_the_furniture() {
         let (model, plane) = (room(), Plane { height: 0.3, spacing: 0.1, border: 0.0, up: None });
         let count = |plane: &Plane| plane.layout(&model, DVec3::Y).map(|layout| layout.sensors.len());
-        // 8 m² without the square meter of the table; on and above its top, all.
+        // 8 m² without the square meter of the table; all 8 m² on and above its top.
         assert_eq!(count(&plane), Ok(700));
         assert_eq!(count(&Plane { height: 0.7, ..plane }), Ok(800));
         assert_eq!(count(&Plane { height: 1.0, ..plane }), Ok(800));

@@ -1,4 +1,4 @@
-//! Everything that must work before the first line is traced.
+//! Preparation of a run: everything that must succeed before the first line is traced.
 
 pub(crate) mod cameras;
 pub(crate) mod layout;

@@ -1,4 +1,4 @@
-//! Everything that must work before the first line is traced.
+//! Reads the scene of a pipeline, makes its patches, and checks the pipeline against the scene.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,40 +19,40 @@ use crate::prepare::layout::Layout;
 use crate::progress::Progress;
 use crate::stopwatch::Stopwatch;
 
-/// A pipeline's scene, ready for lines.
+/// Scene of a pipeline, ready for tracing.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// Scene, patches and acceleration structure.
     pub model: Model,
-    /// Which way is up: known of glTF files, guessed of others.
+    /// Up direction: known for glTF files, guessed for others.
     pub up: DVec3,
-    /// What the reader of the scene changed or left out.
+    /// Warnings of the scene reader about what it changed or left out.
     pub warnings: Vec<String>,
-    /// The light sources: at least one.
+    /// Light sources, at least one.
     pub sources: Vec<Source>,
-    /// What matters, if not everything does.
+    /// Focus, if there is one.
     pub focus: Option<Focus>,
-    /// The sides in it.
+    /// Sides in the focus.
     pub inside: FocusSides,
-    /// Where the sensors of each stage `Sensors` are, by the number of the stage.
+    /// Sensors of each stage `Sensors`, by the number of the stage.
     pub layouts: BTreeMap<usize, Layout>,
-    /// Seconds to read the scene.
+    /// Time to read the scene \[s\].
     pub load_seconds: f64,
-    /// Seconds to make patches and the acceleration structure.
+    /// Time to make the patches and the acceleration structure \[s\].
     pub build_seconds: f64,
 }
 
-/// Reads the scene of a pipeline, makes its patches, and checks what the pipeline says about the scene.
+/// Reads the scene of a pipeline, makes its patches, and checks the references of the pipeline to the scene.
 ///
 /// # Errors
 ///
-/// If the scene cannot be read, emits no light, has none of the cameras that pictures ask for, has no room for sensors, or cannot be
-/// cut as the pipeline says; the latter three are shown with their place in the pipeline.
+/// If the scene cannot be read, emits no light, lacks a camera that an image refers to, has no room for sensors, or
+/// cannot be divided into patches as specified. The latter three are shown with their position in the pipeline.
 pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared, Error> {
     let mut options = LoadOptions::default();
     let mut lights: Vec<SceneLight> = Vec::new();
     let mut subdivision = (Subdivision::PerTriangle, 0..0);
-    let mut asked = None;
+    let mut requested_focus = None;
     for stage in &pipeline.stages {
         match &stage.action {
             Action::Load(load) => options.sides = load.sides,
@@ -64,14 +64,14 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 }
             }
             Action::Subdivide(subdivide) => subdivision = (subdivide.how, stage.span.0.clone()),
-            Action::Focus(focus) => asked = Some((focus.bounds(), focus.share)),
+            Action::Focus(focus) => requested_focus = Some((focus.bounds(), focus.share)),
             _ => {}
         }
     }
     let watch = Stopwatch::start();
     let built = sir_geom::load_with(pipeline.scene_path(), &options, |builder| {
         lights.iter().for_each(|light| light.add_to(builder));
-        asked.iter().for_each(|(bounds, _)| builder.split_at(bounds));
+        requested_focus.iter().for_each(|(bounds, _)| builder.split_at(bounds));
     })?;
     let load_seconds = watch.seconds();
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
@@ -83,7 +83,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     let mut problems = camera_problems(pipeline, &built.scene);
     let watch = Stopwatch::start();
     let (how, span) = subdivision;
-    let focus = asked.map(|(bounds, share)| {
+    let focus = requested_focus.map(|(bounds, share)| {
         let focus = Focus::new(bounds, share, built.scene.bounding_box(), built.scene.bounding_sphere());
         focus.ok_or_else(|| pipeline.diagnostics(nothing_inside(pipeline, &built.scene)))
     });
@@ -110,16 +110,18 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     }
 }
 
-/// What is wrong with a light that was not read from a file.
+/// Returns the problem of a light with contradictory numbers, which can only come from a pipeline that was not read
+/// from a file.
 fn impossible_light(stage: &Stage) -> Diagnostic {
     Diagnostic {
         span: stage.span.0.clone(),
-        message: "a light of this stage is impossible".into(),
-        help: "give directions a length, a spot an `outer` not below its `inner`, and colors that are not negative".into(),
+        message: "a light of this stage has contradictory numbers".into(),
+        help: "use directions of nonzero length, an `outer` that is not less than `inner`, and colors that are not negative"
+            .into(),
     }
 }
 
-/// That nothing is in the focus, said at its stage.
+/// Returns the problem that no patch is in the focus, at the stage `Focus`.
 fn nothing_inside(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
     let around = scene.bounding_box();
     let is_focus = |stage: &&Stage| matches!(stage.action, Action::Focus(_));
@@ -128,12 +130,15 @@ fn nothing_inside(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
         .map(|stage| Diagnostic {
             span: stage.span.0.clone(),
             message: "no patch of the scene lies in the box of `Focus`".into(),
-            help: format!("the scene reaches from {:.4} to {:.4}, in its own units", around.min, around.max),
+            help: format!(
+                "choose a box in the scene, which extends from {:.4} to {:.4} in its own units",
+                around.min, around.max
+            ),
         })
         .collect()
 }
 
-/// Where all sensors are, or why they cannot be where they should.
+/// Places all sensors. The error has a problem for each stage whose sensors cannot be placed.
 fn layouts(
     pipeline: &Pipeline,
     model: &Model,
@@ -153,14 +158,14 @@ fn layouts(
 }
 
 pub(crate) fn up(path: &Path, scene: &Scene) -> DVec3 {
-    // By the standard, +y is up in glTF; OBJ does not say.
+    // The glTF standard defines +y as up; OBJ does not define it.
     let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
     if is_obj { guess_up(scene) } else { DVec3::Y }
 }
 
 fn model_problem(error: ModelError, span: std::ops::Range<usize>) -> Diagnostic {
     let help = match error {
-        ModelError::Mesh(_) => "ask for fewer or larger patches",
+        ModelError::Mesh(_) => "use fewer or larger patches",
         ModelError::Accel(_) => "change the scene",
     };
     Diagnostic { span, message: error.to_string(), help: help.into() }

@@ -1,10 +1,10 @@
-//! The light sources of a scene, counted by kind.
+//! Counts the light sources of a scene by kind.
 
 use sir_radiosity::{Emitter, Source};
 
 use crate::format::grouped;
 
-/// How many sources there are of which kind.
+/// Lists the number of sources of each kind, as text.
 #[must_use]
 pub fn kinds(sources: &[Source]) -> String {
     let count = |is: fn(&Emitter) -> bool| sources.iter().filter(|s| is(&s.emitter)).count();

@@ -1,4 +1,4 @@
-//! Comparing the results of two runs.
+//! Compares the results of two runs.
 
 use std::path::{Path, PathBuf};
 
@@ -7,11 +7,12 @@ use sir_view::{Comparison, Table};
 use crate::error::Error;
 use crate::run::execute::read_report;
 
-/// Compares two results, each a table or a run directory with one. A run's last table counts.
+/// Compares two results, each a table or a run directory with a table. Of several tables of a run, the last one is
+/// used.
 ///
 /// # Errors
 ///
-/// If there is no table, it cannot be read, or the two are not of the same patches.
+/// If there is no table, it cannot be read, or the tables have different patches.
 pub fn compare(a: &Path, b: &Path) -> Result<Comparison, Error> {
     let read = |path: &Path| -> Result<Table, Error> { Ok(Table::read(&table_of(path)?)?) };
     Ok(sir_view::compare(&read(a)?, &read(b)?)?)

@@ -1,4 +1,4 @@
-//! How good the light so far is.
+//! Report of the light so far, and its error.
 
 use sir_geom::Rgb;
 use sir_radiosity::{FocusSides, Model, Solution};
@@ -6,7 +6,7 @@ use sir_radiosity::{FocusSides, Model, Solution};
 use crate::report::result::{ErrorsReport, LightReport};
 
 impl LightReport {
-    /// `tally_hash` is that of the power of which the solution was made.
+    /// Creates the report. `tally_hash` is the hash of the received power from which the solution was made.
     pub(crate) fn new(
         model: &Model,
         inside: &FocusSides,
@@ -18,7 +18,7 @@ impl LightReport {
     }
 }
 
-/// See [`LightReport::relative_error`].
+/// Returns [`LightReport::relative_error`].
 pub(crate) fn relative_error(model: &Model, inside: &FocusSides, solution: &Solution) -> [f64; 3] {
     let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
     model.mesh.for_each_side(|triangle, _, _, side| {

@@ -1,4 +1,4 @@
-//! What the lines of a stage did.
+//! Report of the lines of a stage.
 
 use sir_lines::GlobalLines;
 use sir_parallel::StageTime;
@@ -6,7 +6,7 @@ use sir_radiosity::{Balance, Counts, PowerUnit, Quanta};
 
 use crate::report::result::{BalanceReport, DomainReport, LinesReport, Time};
 
-/// What is known of the lines of a stage when it is done.
+/// Energy balance and counts of a finished stage with lines.
 #[derive(Clone, Debug)]
 pub(crate) struct Facts {
     pub(crate) balance: Balance,
@@ -25,7 +25,7 @@ impl DomainReport {
 }
 
 impl LinesReport {
-    /// `unit` is that of the power.
+    /// Creates the report, with powers converted from quanta to watts by `unit`.
     pub(crate) fn new(facts: Facts, unit: PowerUnit) -> Self {
         let Facts { balance, counts, batches, extrapolated, domain } = facts;
         let watts = |quanta: Quanta| unit.watts(quanta).to_array();
@@ -49,7 +49,7 @@ impl LinesReport {
 }
 
 impl Time {
-    /// The time of a stage of so many lines.
+    /// Returns the time report of a stage with `lines` lines.
     pub(crate) fn of_lines(time: StageTime, lines: u64) -> Self {
         let seconds = time.total.as_secs_f64();
         Self {

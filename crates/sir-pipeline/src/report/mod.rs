@@ -1,4 +1,4 @@
-//! `result.json`: what a run did, for people and programs.
+//! `result.json`: report of a run, for people and programs.
 
 pub(crate) mod compare;
 pub(crate) mod light;

@@ -1,29 +1,30 @@
-//! What sensors have measured, in short.
+//! Summary of the measurements of sensors.
 
 use serde::{Deserialize, Serialize};
 use sir_radiosity::Measurement;
 
 use crate::units::Units;
 
-/// What sensors have measured, in short.
+/// Summary of the measurements of sensors. All irradiances are weighted for luminance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SensorsReport {
-    /// What they are called.
+    /// Name of the sensors.
     pub name: String,
-    /// How many there are.
+    /// Number of sensors.
     pub points: usize,
-    /// Rays over the hemispheres of all of them. As many have been aimed at emitting surfaces, if there are any.
+    /// Number of rays over the hemispheres of all sensors. The same number was aimed at emitting surfaces, if there are
+    /// any.
     pub rays: u64,
-    /// Mean irradiance, weighted for luminance as all numbers here \[W/m²\].
+    /// Mean irradiance \[W/m²\].
     pub mean: f64,
-    /// Standard error of the mean \[W/m²\]: by the choice of rays, independent from sensor to sensor, and by the errors of patches, which
-    /// are taken to be the same for all.
+    /// Standard error of the mean \[W/m²\]. It combines the sampling errors, which are independent between sensors, and
+    /// the errors of patches, which are assumed to be the same for all sensors.
     pub mean_error: f64,
-    /// The smallest irradiance \[W/m²\].
+    /// Smallest irradiance \[W/m²\].
     pub minimum: f64,
-    /// The largest irradiance \[W/m²\].
+    /// Largest irradiance \[W/m²\].
     pub maximum: f64,
-    /// Smallest over mean irradiance, the *uniformity* of EN 12464-1; zero in the dark.
+    /// Ratio of smallest to mean irradiance, the *uniformity* of EN 12464-1; zero in the dark.
     pub uniformity: f64,
 }
 
@@ -47,7 +48,7 @@ impl SensorsReport {
         }
     }
 
-    /// The numbers in a line.
+    /// Returns the numbers in one line.
     #[must_use]
     pub fn in_short(&self, units: Units) -> String {
         let Self { mean, mean_error, minimum, maximum, uniformity, .. } = *self;
@@ -57,18 +58,18 @@ impl SensorsReport {
             units.irradiance(),
             significant(minimum),
             significant(maximum),
-            // Standards have two decimals; a small one is not nothing.
+            // Standards state two decimals; a small value would round to zero.
             if uniformity < 0.1 { format!("{uniformity:.1e}") } else { format!("{uniformity:.2}") },
         )
     }
 }
 
-/// Decimals that show two digits of an error.
+/// Returns the number of decimals that shows two digits of an error.
 fn decimals(error: f64) -> usize {
     if error > 0.0 { (1.0 - error.log10().floor()).clamp(0.0, 9.0) as usize } else { 3 }
 }
 
-/// A number with four digits.
+/// Formats a number with four significant digits.
 fn significant(x: f64) -> String {
     let before = if x == 0.0 { 0.0 } else { x.abs().log10().floor() };
     format!("{x:.0$}", (3.0 - before).clamp(0.0, 9.0) as usize)

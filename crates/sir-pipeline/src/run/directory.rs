@@ -1,4 +1,4 @@
-//! Where the files of a run go.
+//! Run directories.
 
 use std::fs;
 use std::io;
@@ -8,7 +8,8 @@ use crate::error::Error;
 use crate::report::result::FILE_NAME;
 use crate::run::resume::CHECKPOINT;
 
-/// The name of a pipeline's runs: the stem of its file, or the name of its folder if the file is called `pipeline`.
+/// Returns the name for runs of a pipeline: the stem of its file, or the name of its folder if the file is called
+/// `pipeline`.
 #[must_use]
 pub fn run_name(pipeline: &Path) -> String {
     let stem = pipeline.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -20,13 +21,13 @@ pub fn run_name(pipeline: &Path) -> String {
     folder.map_or(stem, |name| name.to_string_lossy().into_owned())
 }
 
-/// The path from the root of the file system, as far as that can be told.
+/// Returns the absolute path, or the path itself if the absolute one cannot be determined.
 #[must_use]
 pub fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Makes the directory that the user asked for, and removes the report of an older run in it.
+/// Creates the requested run directory, and removes the report of an older run in it.
 pub(crate) fn make_given(directory: &Path, force: bool) -> Result<(), Error> {
     check_given(directory, force)?;
     fs::create_dir_all(directory).map_err(Error::directory(directory))?;
@@ -36,7 +37,7 @@ pub(crate) fn make_given(directory: &Path, force: bool) -> Result<(), Error> {
     }
 }
 
-/// Refuses to overwrite a result, or what an interrupted run needs to go on, unless forced to.
+/// Returns an error if the directory holds a result, or the checkpoint of an interrupted run, unless `force` is true.
 pub(crate) fn check_given(directory: &Path, force: bool) -> Result<(), Error> {
     if !force && directory.join(FILE_NAME).exists() {
         return Err(Error::Exists { directory: directory.to_owned() });
@@ -47,8 +48,8 @@ pub(crate) fn check_given(directory: &Path, force: bool) -> Result<(), Error> {
     Ok(())
 }
 
-/// Makes a new directory `base/name`, or `base/name-2`, `-3`, … if there is something in it already. Two runs that
-/// start at the same time get different ones.
+/// Creates a new directory `base/name`, or `base/name-2`, `-3`, … if that exists already. Two runs that start at the
+/// same time get different directories.
 pub fn make_new(base: &Path, name: &str) -> Result<PathBuf, Error> {
     fs::create_dir_all(base).map_err(Error::directory(base))?;
     let mut number = 1u32;

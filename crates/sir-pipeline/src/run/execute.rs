@@ -1,4 +1,4 @@
-//! Running a pipeline, or going on with one.
+//! Runs a pipeline, or resumes a run.
 
 use std::fs;
 use std::io::Write as _;
@@ -28,24 +28,24 @@ use crate::run::resume as saved_run;
 use crate::run::resume::{CHECKPOINT, Head};
 use crate::stopwatch::Stopwatch;
 
-/// How to run a pipeline. None of this changes the result, but for the seed.
+/// Options of a run. Only the seed changes the result.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
-    /// The run directory; `None` for a new one in `results`.
+    /// Run directory, or `None` for a new one in `results`.
     pub out: Option<PathBuf>,
-    /// Where new run directories are made. Default `results`.
+    /// Parent of new run directories. Default `results`.
     pub results: PathBuf,
-    /// Whether to replace a result in `out`.
+    /// True to replace a result in `out`.
     pub force: bool,
-    /// Seed instead of the pipeline's.
+    /// Seed that replaces the pipeline's.
     pub seed: Option<u64>,
-    /// Threads; `None` for one per processor core.
+    /// Number of threads, or `None` for one per processor core.
     pub threads: Option<NonZeroUsize>,
-    /// Time from one checkpoint to the next. Default five minutes.
+    /// Time between two checkpoints. Default five minutes.
     pub checkpoint_every: Duration,
-    /// When this becomes true, the run saves a checkpoint and ends.
+    /// Stop flag: when it becomes true, the run saves a checkpoint and ends.
     pub stop: Arc<AtomicBool>,
-    /// Who is told how far the run is. Default nobody.
+    /// Observer of the run. Default none.
     pub progress: Arc<dyn Progress>,
 }
 
@@ -67,36 +67,37 @@ impl Default for RunOptions {
 /// A finished run.
 #[derive(Clone, Debug)]
 pub struct RunResult {
-    /// Where its files are.
+    /// Run directory.
     pub directory: PathBuf,
-    /// What `result.json` says.
+    /// Contents of `result.json`.
     pub report: Report,
 }
 
-/// Runs the pipeline in the file `path`, and writes its files and `result.json`. Nothing is written before the scene has been
-/// read.
+/// Runs the pipeline in the file `path`, and writes its files and `result.json`. Nothing is written before the scene
+/// has been read.
 ///
 /// # Errors
 ///
-/// If the pipeline has mistakes, the scene cannot be read, the light cannot be computed, or a file cannot be written.
+/// If the pipeline is invalid, the scene cannot be read, the light cannot be computed, or a file cannot be written.
 pub fn run(path: &Path, options: &RunOptions) -> Result<RunResult, Error> {
     run_together(Pipeline::read(path), options, &SingleProcess)
 }
 
-/// As [`run`], with a pipeline that has been read.
+/// Runs a pipeline, like [`run`].
 ///
 /// # Errors
 ///
-/// As [`run`].
+/// Same as [`run`].
 pub fn run_pipeline(pipeline: &Pipeline, options: &RunOptions) -> Result<RunResult, Error> {
     run_together(Ok(pipeline.clone()), options, &SingleProcess)
 }
 
-/// As [`run`], by several ranks that have all read the pipeline. The first one writes; all return the same report.
+/// Runs a pipeline on several ranks, each of which has read it, like [`run`]. Rank 0 writes the files; all ranks return
+/// the same report.
 ///
 /// # Errors
 ///
-/// As [`run`], or if the ranks have not read the same pipeline and scene. If one of them fails, all do.
+/// If [`run`] would fail, or the ranks have not read the same pipeline and scene. If one rank fails, all do.
 pub fn run_together(
     pipeline: Result<Pipeline, Error>,
     options: &RunOptions,
@@ -145,24 +146,25 @@ pub fn run_together(
         report,
     };
     let (pipeline, prepared) = (&pipeline, &prepared);
-    Run { pipeline, prepared, directory, options, comm, progress, watch, earlier: 0.0, head }.finish(None)
+    Run { pipeline, prepared, directory, options, comm, progress, watch, seconds_before: 0.0, head }
+        .finish(None)
 }
 
-/// Goes on with the run in `directory`, which was interrupted.
+/// Resumes the interrupted run in `directory`.
 ///
 /// # Errors
 ///
-/// As [`resume_together`].
+/// Same as [`resume_together`].
 pub fn resume(directory: &Path, options: &RunOptions) -> Result<RunResult, Error> {
     resume_together(directory, options, &SingleProcess)
 }
 
-/// As [`resume`], by several ranks. Of the options, those that say where to write, and the
-/// seed, have no effect: they are those of the run.
+/// Resumes an interrupted run on several ranks. The options for the run directory and the seed are ignored: those of
+/// the interrupted run apply.
 ///
 /// # Errors
 ///
-/// If there is no checkpoint, it is of another program, pipeline or scene, or as [`run_together`].
+/// If there is no checkpoint, or it belongs to another program, pipeline or scene, or if [`run_together`] would fail.
 pub fn resume_together(
     directory: &Path,
     options: &RunOptions,
@@ -173,7 +175,7 @@ pub fn resume_together(
     let (saved, head) = saved_run::open(directory, comm)?;
     let pipeline = agree(comm, saved_run::pipeline(directory, &head))?;
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
-    // The warnings have been shown when the run began.
+    // The warnings were shown when the run began.
     let prepared = agree(comm, prepare(&pipeline, &NoProgress))?;
     agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
     let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared.model);
@@ -182,13 +184,13 @@ pub fn resume_together(
         saved_run::clean_up(directory);
     }
     let directory = directory.to_owned();
-    // A run that had not begun a stage begins with the first.
+    // A run that had not begun a stage with lines starts with the first stage.
     let saved = (head.stage > 0).then_some(saved);
-    let (pipeline, prepared, earlier) = (&pipeline, &prepared, head.report.time.seconds);
-    Run { pipeline, prepared, directory, options, comm, progress, watch, earlier, head }.finish(saved)
+    let (pipeline, prepared, seconds_before) = (&pipeline, &prepared, head.report.time.seconds);
+    Run { pipeline, prepared, directory, options, comm, progress, watch, seconds_before, head }.finish(saved)
 }
 
-/// A run that is under way.
+/// A run in progress.
 pub(crate) struct Run<'a> {
     pub(crate) pipeline: &'a Pipeline,
     pub(crate) prepared: &'a Prepared,
@@ -197,9 +199,9 @@ pub(crate) struct Run<'a> {
     pub(crate) comm: &'a dyn Communicator,
     pub(crate) progress: &'a dyn Progress,
     pub(crate) watch: Stopwatch,
-    /// Seconds before it was resumed.
-    pub(crate) earlier: f64,
-    /// How far it is.
+    /// Time before the run was resumed \[s\].
+    pub(crate) seconds_before: f64,
+    /// Progress of the run, as stored in checkpoints.
     pub(crate) head: Head,
 }
 
@@ -226,13 +228,13 @@ impl Run<'_> {
         Ok(RunResult { directory, report: head.report })
     }
 
-    /// Seconds so far.
+    /// Returns the time so far \[s\].
     pub(crate) fn seconds(&self) -> f64 {
-        self.earlier + self.watch.seconds()
+        self.seconds_before + self.watch.seconds()
     }
 }
 
-/// Says where a run that was not finished can be resumed.
+/// Adds the run directory to the error of a run that can be resumed.
 fn name_directory(error: Error, directory: &Path) -> Error {
     let directory = directory.to_owned();
     match error {
@@ -266,7 +268,7 @@ fn write_report(directory: &Path, report: &Report) -> Result<(), Error> {
 ///
 /// # Errors
 ///
-/// If there is none, or it has another version.
+/// If there is no report, it is invalid, or it has another version.
 pub fn read_report(directory: &Path) -> Result<Report, Error> {
     let no_result = |why: String| Error::NoResult { directory: directory.to_owned(), why };
     let text = fs::read_to_string(directory.join(FILE_NAME)).map_err(|e| no_result(e.to_string()))?;

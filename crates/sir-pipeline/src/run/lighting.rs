@@ -1,4 +1,4 @@
-//! The light of a run, and the stages of lines that add to it.
+//! Light of a run, and the stages with lines that add to it.
 
 use sir_lines::{Focus, GlobalLines, LocalLines};
 use sir_parallel::{Executor, RunError, Saved, StageRun, StageTime, Start};
@@ -12,42 +12,42 @@ use crate::prepare::prepared::Prepared;
 use crate::report::lines::Facts;
 use crate::report::result::{DomainReport, ErrorsReport, LightReport};
 
-/// Runs stages of lines, one after the other, and keeps the light that they have brought so far.
+/// Runs stages with lines, one after the other, and keeps the light computed so far.
 pub(crate) struct Lighting<'m> {
     model: &'m Model,
     light: Light,
     focus: Option<Focus>,
     inside: &'m FocusSides,
-    /// The global lines of the last stage that had some.
+    /// Global lines of the last stage that used them.
     global: Option<(DomainKind, GlobalLines)>,
 }
 
-/// All light so far.
+/// Light computed so far.
 enum Light {
-    /// None yet, or it has been handed out.
+    /// No light yet, or it has been passed on.
     None,
-    /// That of the shots, which leave to global lines what is reflected of it.
+    /// Light of the shots, whose reflected power remains for global lines.
     Direct(Shot),
-    /// That of the shots and of global lines.
+    /// Light of the shots and of global lines.
     All(Transported),
 }
 
-/// What a stage of lines has done, but for the light.
+/// Outcome of a stage with lines, without the light.
 pub(crate) struct Done {
     pub(crate) facts: Facts,
-    /// The size of a quantum.
+    /// Size of a quantum.
     pub(crate) unit: PowerUnit,
     pub(crate) time: StageTime,
 }
 
 impl<'m> Lighting<'m> {
-    /// Darkness.
+    /// Creates a lighting without light.
     pub(crate) fn new(prepared: &'m Prepared) -> Self {
         let Prepared { model, focus, inside, .. } = prepared;
         Self { model, light: Light::None, focus: *focus, inside, global: None }
     }
 
-    /// Runs a stage, or goes on with one that was saved. `None` if it is not a stage of lines.
+    /// Runs a stage, or resumes a saved one. Returns `None` if it is not a stage with lines.
     pub(crate) fn run(
         &mut self,
         action: &Action,
@@ -79,8 +79,8 @@ impl<'m> Lighting<'m> {
         Ok(Some(done))
     }
 
-    /// Returns what a stage after a shot starts from: the state that was saved, or the light of the shots so far. `None` if there is
-    /// neither, which the order of stages forbids.
+    /// Returns the start of a stage after a shot: the saved state, or the light of the shots so far. Returns `None` if
+    /// there is neither, which the order of stages excludes.
     fn start(&mut self, saved: Option<Saved>) -> Option<Start<Shot>> {
         match (saved, std::mem::replace(&mut self.light, Light::None)) {
             (Some(saved), _) => Some(Start::Resumed(saved)),
@@ -89,7 +89,7 @@ impl<'m> Lighting<'m> {
         }
     }
 
-    /// Returns the lines through a domain, which takes time to make for a large scene.
+    /// Returns the global lines through a domain. Reuses those of the last stage, because a large scene takes time.
     fn global_lines(&mut self, domain: DomainKind) -> GlobalLines {
         let known = self.global.take().filter(|(of, _)| *of == domain);
         let lines = || (domain, domain.lines_around(&self.model.scene, self.focus));
@@ -113,7 +113,7 @@ impl<'m> Lighting<'m> {
         Done { facts, unit, time }
     }
 
-    /// Power received so far; `None` if no stage has run.
+    /// Returns the power received so far, or `None` if no stage has run.
     pub(crate) fn received(&self) -> Option<&Received> {
         match &self.light {
             Light::None => None,
@@ -122,7 +122,8 @@ impl<'m> Lighting<'m> {
         }
     }
 
-    /// The result so far, and what to report of it. After global lines, which no stage can follow, nothing else is kept.
+    /// Returns the result so far, and its report. After global lines, which are the last stage with lines, the light is
+    /// not kept.
     pub(crate) fn result(&mut self, errors: ErrorsReport) -> Option<(LightReport, Solution)> {
         let hash = self.received()?.hash();
         let solution = match std::mem::replace(&mut self.light, Light::None) {

@@ -1,8 +1,8 @@
-//! Running a pipeline: its stages in order, checkpoints, files and the report.
+//! Runs a pipeline: its stages in order, checkpoints, files and the report.
 //!
-//! * `execute`: starts a run or goes on with one; `resume`: what a checkpoint says; `directory`: where files go.
+//! * `execute`: starts or resumes a run; `resume`: contents of a checkpoint; `directory`: run directories.
 //! * `stages`: one stage after the other; `lighting`: the light so far; `repeat`: the stage `Repeat`.
-//! * `save`: pictures, lit scenes and tables; `sensor_files`: what sensors write.
+//! * `save`: images, lit scenes and tables; `sensor_files`: files of sensors.
 
 pub(crate) mod directory;
 pub(crate) mod execute;

@@ -1,4 +1,4 @@
-//! A `Repeat`: its stages are run again and again, and the result is the mean.
+//! The stage `Repeat`: runs its stages repeatedly. The result is the mean.
 
 use std::time::{Duration, Instant};
 
@@ -22,7 +22,7 @@ use crate::run::lighting::{Done, Lighting};
 use crate::run::stages::unshot_warning;
 
 impl Run<'_> {
-    /// Runs a `Repeat`, or goes on with one of which `saved` is a stage of a repeat. Returns what to report, and the mean.
+    /// Runs a `Repeat`, or resumes one at `saved`, the state of a stage in a repeat. Returns the report and the mean.
     pub(crate) fn repeat(
         &mut self,
         number: usize,
@@ -36,7 +36,7 @@ impl Run<'_> {
         let mut repeats = Repeating::new(settings, model);
         let (mut repeat, mut first) =
             if saved.is_some() { (self.head.repeat, self.head.part) } else { (0, 0) };
-        let mut said = Instant::now();
+        let mut last_message = Instant::now();
         let lines = settings.stages.iter().map(|stage| stage.action.lines()).sum();
         self.progress.note(&format!("Repeat: {} lines each time", grouped(lines)));
         loop {
@@ -51,48 +51,48 @@ impl Run<'_> {
                 let done = lighting.run(&stage.action, seed, &mut executor, saved.take());
                 drop(executor);
                 if let Some(done) = agree(self.comm, done.map_err(Error::from))? {
-                    repeats.book(part, done);
+                    repeats.add(part, done);
                 }
             }
             if let Some(received) = lighting.received() {
                 repeats.sums.add(received);
             }
-            if !repeats.go_on(model, inside, self.comm) {
+            if !repeats.wants_more(model, inside, self.comm) {
                 break;
             }
             (repeat, first) = (repeat + 1, 0);
-            if said.elapsed() >= PAUSE {
-                said = Instant::now();
+            if last_message.elapsed() >= PAUSE {
+                last_message = Instant::now();
                 self.progress.note(&repeats.title());
             }
         }
         let (report, solution) = repeats.finish(model, inside);
-        self.progress.note(&format!("Repeat: {} times after {}", repeat + 1, duration(report.time.seconds)));
+        self.progress.note(&format!("Repeat: {} times in {}", repeat + 1, duration(report.time.seconds)));
         for (stage, report) in settings.stages.iter().zip(&report.stages) {
             self.progress.warn(
                 &report.lines.iter().flat_map(|l| unshot_warning(&stage.action, l)).collect::<Vec<_>>(),
             );
         }
-        self.progress.warn(&missed(settings, &report));
+        self.progress.warn(&missed_target_warning(settings, &report));
         Ok((report, solution))
     }
 }
 
-/// What is known of all repeats so far: a checkpoint has it beside the state of the stage under way.
+/// Sums over all repeats so far. A checkpoint has them in addition to the state of the current stage.
 struct Repeating<'a> {
     settings: &'a Repeat,
     sums: Repeats,
     parts: Vec<StageSums>,
-    /// The size of a quantum, once a stage has run.
+    /// Size of a quantum, after a stage has run.
     unit: Option<PowerUnit>,
-    /// The relative error of the mean in the worst band, if that is the target.
+    /// Relative error of the mean in the worst band, if that is the target.
     error: Option<f64>,
-    /// Time before `since`.
+    /// Time spent before `since`.
     spent: Duration,
     since: Instant,
 }
 
-/// One stage in all repeats so far.
+/// Sums of one stage over all repeats so far.
 #[derive(Clone, Default)]
 struct StageSums {
     totals: RepeatedTotals,
@@ -114,7 +114,7 @@ impl<'a> Repeating<'a> {
         }
     }
 
-    /// Shows everything that a resumed run needs to a visitor.
+    /// Visits the state that a resumed run needs.
     fn visit(&mut self, visitor: &mut dyn Visitor) {
         let mut time = [self.elapsed().as_micros() as i64];
         visitor.same(&mut time);
@@ -129,13 +129,13 @@ impl<'a> Repeating<'a> {
         }
     }
 
-    /// Time of the whole `Repeat` so far, also before it was resumed.
+    /// Returns the time of the whole `Repeat` so far, including that before it was resumed.
     fn elapsed(&self) -> Duration {
         self.spent + self.since.elapsed()
     }
 
-    /// Notes what a stage of a repeat has done.
-    fn book(&mut self, part: usize, done: Done) {
+    /// Adds the outcome of a stage of a repeat.
+    fn add(&mut self, part: usize, done: Done) {
         let Done { facts: Facts { balance, counts, batches, extrapolated, domain }, unit, time } = done;
         self.unit = Some(unit);
         let part = &mut self.parts[part];
@@ -145,8 +145,8 @@ impl<'a> Repeating<'a> {
         part.domain = domain;
     }
 
-    /// Whether there is to be another repeat. The first rank decides, because clocks differ.
-    fn go_on(&mut self, model: &Model, inside: &FocusSides, comm: &dyn Communicator) -> bool {
+    /// Returns true if another repeat should run. Rank 0 decides, because clocks differ.
+    fn wants_more(&mut self, model: &Model, inside: &FocusSides, comm: &dyn Communicator) -> bool {
         if let Until::RelativeError(_) = self.settings.until {
             let (_, solution) = self.mean(model);
             self.error = Some(relative_error(model, inside, &solution).into_iter().fold(0.0, f64::max));
@@ -159,20 +159,20 @@ impl<'a> Repeating<'a> {
         decision[0] > 0
     }
 
-    /// The mean of all repeats: the hash of its tallies, and the light.
+    /// Returns the mean of all repeats: the hash of its tallies, and the light.
     fn mean(&self, model: &Model) -> (String, Solution) {
         let mean = self.sums.mean();
         let unit = self.unit.unwrap_or_else(|| PowerUnit::for_total(1.0, 0.0));
         (mean.hash(), Solution::new(model, &mean, unit))
     }
 
-    /// How many repeats there will be in all, as far as that can be foreseen.
-    fn foreseen(&self) -> Option<f64> {
+    /// Returns the expected total number of repeats, if it can be estimated.
+    fn expected_repeats(&self) -> Option<f64> {
         let done = self.sums.count() as f64;
         let (error, seconds) = (self.error, self.elapsed().as_secs_f64());
         let wanted = match self.settings.until {
             Until::Times(times) => Some(times as f64),
-            // The error falls with the square root of the number.
+            // The error falls with the square root of the number of repeats.
             Until::RelativeError(target) => {
                 error.map(|error| (done * (error / target) * (error / target)).ceil())
             }
@@ -182,25 +182,25 @@ impl<'a> Repeating<'a> {
         wanted.map(|wanted| wanted.max(done + 1.0).min(most))
     }
 
-    /// What is being done: the number of the repeat, how near the target is, and how much time is left.
+    /// Returns the title of the current repeat: its number, the error and its target, and the remaining time.
     fn title(&self) -> String {
         let done = self.sums.count();
         let mut title = format!("Repeat {}", done + 1);
-        let foreseen = self.foreseen();
-        if let (Until::Times(_), Some(times)) = (self.settings.until, foreseen) {
+        let expected = self.expected_repeats();
+        if let (Until::Times(_), Some(times)) = (self.settings.until, expected) {
             title += &format!(" of {times}");
         }
         if let (Until::RelativeError(target), Some(error)) = (self.settings.until, self.error) {
             title += &format!(", relative error {:.3} % (target {} %)", 100.0 * error, 100.0 * target);
         }
-        if let (Some(foreseen), 1..) = (foreseen, done) {
+        if let (Some(expected), 1..) = (expected, done) {
             let spent = self.elapsed().as_secs_f64();
-            title += &format!(", {} left", duration((foreseen / done as f64 - 1.0).max(0.0) * spent));
+            title += &format!(", {} left", duration((expected / done as f64 - 1.0).max(0.0) * spent));
         }
         title
     }
 
-    /// What to report, and the mean.
+    /// Returns the report and the mean.
     fn finish(self, model: &Model, inside: &FocusSides) -> (StageReport, Solution) {
         let (hash, solution) = self.mean(model);
         let (count, total) = (self.sums.count(), self.elapsed());
@@ -229,8 +229,8 @@ impl<'a> Repeating<'a> {
 }
 
 impl Until {
-    /// Whether there should be another repeat after some, of which at least one is `done`, with this relative error of the mean and
-    /// in so many seconds.
+    /// Returns true if another repeat should run after `done` repeats, at least one, which took `seconds` and whose
+    /// mean has the relative error `error`.
     fn wants_more(self, done: u64, error: Option<f64>, seconds: f64) -> bool {
         match self {
             Self::Times(times) => done < times,
@@ -240,20 +240,20 @@ impl Until {
     }
 }
 
-/// What to say if the target was not reached.
-fn missed(settings: &Repeat, report: &StageReport) -> Vec<String> {
+/// Returns a warning if the target was not reached.
+fn missed_target_warning(settings: &Repeat, report: &StageReport) -> Vec<String> {
     let repeats = report.repeats.unwrap_or_default();
     let error =
         report.light.as_ref().map_or(0.0, |light| light.relative_error.into_iter().fold(0.0, f64::max));
     match settings.until {
         Until::Times(times) if repeats < times => {
-            vec![format!("`at_most` ended `Repeat` after {repeats} of {times} times")]
+            vec![format!("`at_most` limited `Repeat` to {repeats} of {times} repeats")]
         }
         Until::RelativeError(target) if error > target => {
             let wanted = (repeats as f64 * (error / target) * (error / target)).ceil();
             vec![format!(
-                "after {repeats} repeats the relative error is {:.3} %, and not {} %; let there be more with `at_most` (about \
-                 {wanted} in all), or give the stages more lines",
+                "after {repeats} repeats the relative error is {:.3} %, not {} %; increase `at_most` to about {wanted}, or give \
+                 the stages more lines",
                 100.0 * error,
                 100.0 * target
             )]
@@ -261,7 +261,7 @@ fn missed(settings: &Repeat, report: &StageReport) -> Vec<String> {
         Until::Seconds(budget) if repeats == 1 && report.time.seconds > budget => {
             let took = duration(report.time.seconds);
             vec![format!(
-                "a single repeat took {took}, more than {}; give the stages fewer lines",
+                "a single repeat took {took}, more than the limit of {}; give the stages fewer lines",
                 duration(budget)
             )]
         }
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn a_repeat_that_would_end_too_late_is_not_begun() {
         let budget = Until::Seconds(60.0);
-        // Five of ten seconds each, and a sixth one would end just in time.
+        // Five repeats of ten seconds each; a sixth would end just in time.
         assert!(budget.wants_more(5, None, 50.0));
         assert!(!budget.wants_more(5, None, 50.1));
         assert!(!budget.wants_more(1, None, 31.0));

@@ -1,4 +1,4 @@
-//! What a checkpoint says about its run, and whether the run can go on.
+//! Metadata of a checkpoint, and checks that its run can be resumed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,30 +13,30 @@ use crate::plan::Pipeline;
 use crate::ranks::{agree, broadcast_text};
 use crate::report::result::{FILE_NAME, Report};
 
-/// Name of the checkpoint in a run directory. A finished run has none.
+/// File name of the checkpoint in a run directory. A finished run has no checkpoint.
 pub const CHECKPOINT: &str = "checkpoint";
 
-/// What the checkpoint of a run says beside the state of its stage.
+/// Metadata of a checkpoint, in addition to the state of its stage.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Head {
-    /// Of everything that decides the result.
+    /// Fingerprint of everything that determines the result.
     pub(crate) fingerprint: String,
-    /// The pipeline file, by its absolute path.
+    /// Absolute path of the pipeline file.
     pub(crate) pipeline: PathBuf,
-    /// Number of the stage whose state this is. 0, which is no stage with lines, stands for a run that has only begun.
+    /// Number of the saved stage. 0, which is not a stage with lines, means that the run has not reached one.
     pub(crate) stage: usize,
-    /// In a `Repeat`: which repeat this is of, from 0,
+    /// Number of the repeat in a `Repeat`, from 0.
     pub(crate) repeat: u64,
-    /// and which of its stages.
+    /// Number of the stage in a `Repeat`, from 0.
     pub(crate) part: usize,
-    /// What the stages before it did.
+    /// Report of the stages before the saved one.
     pub(crate) report: Report,
 }
 
 impl Head {
-    /// As one line of text.
+    /// Returns the metadata as one line of JSON.
     pub(crate) fn to_line(&self) -> String {
-        // Serialising a tree of plain structs fails only for keys that are not text, of which there are none.
+        // Serializing a tree of plain structs fails only for keys that are not strings; there are none.
         serde_json::to_string(self).unwrap_or_default()
     }
 }
@@ -45,7 +45,7 @@ fn refuse(directory: &Path, why: impl Into<String>) -> Error {
     Error::CannotResume { directory: directory.to_owned(), why: why.into() }
 }
 
-/// Opens the checkpoint of a run directory. The first rank reads, and tells the others.
+/// Opens the checkpoint of a run directory. Rank 0 reads it and broadcasts the metadata.
 pub(crate) fn open(directory: &Path, comm: &dyn Communicator) -> Result<(Saved, Head), Error> {
     let opened = if comm.is_first() { find(directory) } else { Ok(Saved::elsewhere()) };
     let saved = agree(comm, opened)?;
@@ -55,10 +55,14 @@ pub(crate) fn open(directory: &Path, comm: &dyn Communicator) -> Result<(Saved, 
         .and_then(|head| Some(head.get("report")?.get("program")?.as_str()?.to_owned()));
     let head = match program {
         Some(program) if program != PROGRAM => {
-            Err(refuse(directory, format!("{program} wrote its checkpoint, but this is {PROGRAM}")))
+            let why = format!(
+                "{program} wrote its checkpoint, but this is {PROGRAM}; use that version, or start a new run"
+            );
+            Err(refuse(directory, why))
         }
-        _ => serde_json::from_str(&line)
-            .map_err(|error| refuse(directory, format!("its checkpoint makes no sense ({error})"))),
+        _ => serde_json::from_str(&line).map_err(|error| {
+            refuse(directory, format!("its checkpoint is invalid ({error}); start a new run"))
+        }),
     };
     Ok((saved, agree(comm, head)?))
 }
@@ -67,7 +71,7 @@ fn find(directory: &Path) -> Result<Saved, Error> {
     let path = directory.join(CHECKPOINT);
     if !path.exists() {
         return Err(if directory.join(FILE_NAME).exists() {
-            refuse(directory, "the run is finished: its result is there")
+            refuse(directory, "the run is finished; see its result.json")
         } else if directory.is_dir() {
             refuse(directory, "it holds no checkpoint; start a new run")
         } else {
@@ -75,27 +79,27 @@ fn find(directory: &Path) -> Result<Saved, Error> {
         });
     }
     Saved::open(&path).map_err(|error| match error {
-        // The error names the file; there is nothing to do but to start a new run.
+        // The error of this crate names the directory. The only remedy is a new run.
         CheckpointError::Unfit { why, .. } => refuse(directory, format!("{why}; start a new run")),
         other => RunError::from(other).into(),
     })
 }
 
-/// The pipeline of the run, if its file still says what it said.
+/// Returns the pipeline of the run, or an error if its file has changed.
 pub(crate) fn pipeline(directory: &Path, head: &Head) -> Result<Pipeline, Error> {
     let text = &head.report.pipeline.text;
-    // If the file is gone, the checkpoint knows what it said.
+    // If the file no longer exists, the text in the checkpoint is used.
     if fs::read_to_string(&head.pipeline).is_ok_and(|now| now != *text) {
         let file = head.pipeline.display();
         return Err(refuse(
             directory,
-            format!("the pipeline {file} has changed; put it back, or start a new run"),
+            format!("the pipeline {file} has changed; restore it, or start a new run"),
         ));
     }
     Ok(Pipeline::parse(text, &head.pipeline)?)
 }
 
-/// Whether the scene is still the same.
+/// Returns an error if the scene has changed since the checkpoint.
 pub(crate) fn check_fingerprint(directory: &Path, head: &Head, now: Fingerprint) -> Result<(), Error> {
     if fingerprint::hex(now) == head.fingerprint {
         return Ok(());
@@ -104,12 +108,12 @@ pub(crate) fn check_fingerprint(directory: &Path, head: &Head, now: Fingerprint)
     Err(refuse(
         directory,
         format!(
-            "the scene {scene} has changed; put it back, or start a new run (a file of points counts as part of it)"
+            "the scene {scene} has changed; restore it, or start a new run (files of points count as part of the scene)"
         ),
     ))
 }
 
-/// Removes what was half written when the run was killed.
+/// Removes partially written files of a run that was killed.
 pub(crate) fn clean_up(directory: &Path) {
     let Ok(entries) = fs::read_dir(directory) else { return };
     for entry in entries.flatten() {
@@ -118,7 +122,7 @@ pub(crate) fn clean_up(directory: &Path) {
         if path.is_dir() {
             clean_up(&path);
         } else if name.starts_with('.') && name.ends_with(".part") {
-            // If it cannot be removed, it does no harm.
+            // A file that cannot be removed is harmless.
             let _ = fs::remove_file(path);
         }
     }

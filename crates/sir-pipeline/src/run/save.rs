@@ -1,4 +1,4 @@
-//! Writing what a `Save` stage asks for.
+//! Writes the outputs of a stage `Save`.
 
 use std::fs;
 use std::path::Path;
@@ -15,10 +15,10 @@ use crate::prepare::prepared::Prepared;
 use crate::progress::Progress;
 use crate::report::result::OutputReport;
 
-/// Height of a picture whose camera does not say what shape it has, as a share of its width.
+/// Ratio of height to width of an image whose camera has no aspect ratio.
 const DEFAULT_SHAPE: f64 = 0.75;
 
-/// Writes the outputs of a stage into a directory, one after the other, as long as `written` wants another one.
+/// Writes the outputs of a stage into a directory, one after the other, as long as `written` returns true.
 pub(crate) fn save(
     prepared: &Prepared,
     solution: &Solution,
@@ -40,7 +40,7 @@ pub(crate) fn save(
         .iter()
         .any(|o| matches!(o, Output::Image(_)) && has_extension(o.path(), "exr"))
         .then(|| DisplayMesh::of_errors(scene, mesh, &solution.error));
-    let mut studio = display.as_ref().map(|display| Studio {
+    let mut renderer = display.as_ref().map(|display| Renderer {
         prepared,
         display,
         denoise: denoise.as_ref(),
@@ -54,9 +54,10 @@ pub(crate) fn save(
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(Error::directory(parent))?;
         }
-        let kind = match (output, &mut studio) {
-            (Output::Image(image), Some(studio)) => {
-                let Taken { camera, settings, picture, .. } = studio.take(image, is_denoised(output))?;
+        let kind = match (output, &mut renderer) {
+            (Output::Image(image), Some(renderer)) => {
+                let Rendered { camera, settings, picture, .. } =
+                    renderer.render(image, is_denoised(output))?;
                 match &errors {
                     Some(errors) if has_extension(&path, "exr") => {
                         let errors = render(errors, accel, camera, *settings)?;
@@ -66,8 +67,8 @@ pub(crate) fn save(
                 }
                 "image"
             }
-            (Output::Gltf(_), Some(studio)) => {
-                write_glb(&path, studio.display, Exposure::Auto, scene.cameras(), prepared.up)?;
+            (Output::Gltf(_), Some(renderer)) => {
+                write_glb(&path, renderer.display, Exposure::Auto, scene.cameras(), prepared.up)?;
                 "gltf"
             }
             _ => {
@@ -89,32 +90,32 @@ pub(crate) fn save(
     Ok(())
 }
 
-/// Takes pictures. The last one is kept, because the same is often wanted as PNG and as EXR.
-struct Studio<'a> {
+/// Renders images. Keeps the last one, because the same image is often requested as PNG and as EXR.
+struct Renderer<'a> {
     prepared: &'a Prepared,
     display: &'a DisplayMesh<'a>,
-    /// The same without noise, if a picture is to be without.
+    /// Denoised display mesh, if an image needs it.
     denoise: Option<&'a DisplayMesh<'a>>,
     threads: usize,
-    last: Option<Taken>,
+    last: Option<Rendered>,
     default: Option<Camera>,
 }
 
-/// A picture, and how it was taken.
-struct Taken {
+/// An image with its camera and settings.
+struct Rendered {
     camera: Camera,
     settings: PictureSettings,
     is_denoised: bool,
     picture: Picture,
 }
 
-impl Studio<'_> {
-    fn take(&mut self, image: &Image, is_denoised: bool) -> Result<&Taken, Error> {
+impl Renderer<'_> {
+    fn render(&mut self, image: &Image, is_denoised: bool) -> Result<&Rendered, Error> {
         let Model { scene, accel, .. } = &self.prepared.model;
         let chosen = chosen_camera(image, scene);
         let settings = settings(image, chosen.as_ref(), self.threads);
         let camera = chosen.unwrap_or_else(|| self.default_camera());
-        let taken = match self.last.take() {
+        let rendered = match self.last.take() {
             Some(last)
                 if (&last.camera, last.settings, last.is_denoised) == (&camera, settings, is_denoised) =>
             {
@@ -122,20 +123,25 @@ impl Studio<'_> {
             }
             _ => {
                 let display = self.denoise.filter(|_| is_denoised).unwrap_or(self.display);
-                Taken { picture: render(display, accel, &camera, settings)?, camera, settings, is_denoised }
+                Rendered {
+                    picture: render(display, accel, &camera, settings)?,
+                    camera,
+                    settings,
+                    is_denoised,
+                }
             }
         };
-        Ok(self.last.insert(taken))
+        Ok(self.last.insert(rendered))
     }
 
-    /// The camera of a scene that has none, which takes a while to find.
+    /// Returns the camera for a scene without cameras. Keeps it, because finding it takes time.
     fn default_camera(&mut self) -> Camera {
         let Prepared { model, up, .. } = self.prepared;
         self.default.get_or_insert_with(|| default_camera(self.display, &model.accel, *up)).clone()
     }
 }
 
-/// The size of a picture, and how it is made.
+/// Returns the render settings of an image.
 pub(crate) fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -> PictureSettings {
     let shape = camera.and_then(|c| c.aspect).map_or(DEFAULT_SHAPE, |aspect| 1.0 / aspect);
     let height = (f64::from(image.width) * shape).round().clamp(1.0, 16_384.0);
@@ -147,7 +153,7 @@ pub(crate) fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -
     }
 }
 
-/// Whether an output is a picture without noise. Those for measuring show what was computed.
+/// Returns true if an output is a denoised image. EXR images are never denoised.
 pub(crate) fn is_denoised(output: &Output) -> bool {
     matches!(output, Output::Image(image) if image.denoise) && !has_extension(output.path(), "exr")
 }

@@ -1,4 +1,4 @@
-//! What sensors write: a table, and a picture in false colors.
+//! Files of sensors: a table, and a false-color image.
 
 use std::fs;
 use std::io::{self, Write};
@@ -18,7 +18,7 @@ use crate::units::Units;
 const COLUMNS: [&str; 15] =
     ["x", "y", "z", "dx", "dy", "dz", "E_r", "E_g", "E_b", "E", "E_direct", "se_r", "se_g", "se_b", "se"];
 
-/// Writes the files of sensors into a directory.
+/// Writes the files of a stage `Sensors` into a directory.
 pub(crate) fn write(
     sensors: &Sensors,
     layout: &Layout,

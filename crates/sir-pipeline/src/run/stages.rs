@@ -1,4 +1,4 @@
-//! The stages of a run, one after the other.
+//! Runs the stages of a pipeline, one after the other.
 
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -17,7 +17,7 @@ use crate::run::sensor_files;
 use crate::stopwatch::Stopwatch;
 
 impl Run<'_> {
-    /// Runs all stages, or those from the one that `saved` is of.
+    /// Runs all stages, or those from the stage of `saved` on.
     pub(crate) fn stages(
         &mut self,
         checkpoints: &mut Checkpoints,
@@ -46,7 +46,7 @@ impl Run<'_> {
                     report
                 }
                 Action::FirstShot(_) | Action::SecondShot(_) | Action::Multipath(_) => {
-                    // The light so far has been saved if it was wanted, and takes much memory.
+                    // The previous solution is no longer needed, and takes much memory.
                     drop(solution.take());
                     let (report, light) =
                         self.lines(number, stage, &mut lighting, checkpoints, saved.take())?;
@@ -59,7 +59,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Runs a stage of lines.
+    /// Runs a stage with lines.
     fn lines(
         &mut self,
         number: usize,
@@ -87,7 +87,8 @@ impl Run<'_> {
         Ok((report, solution))
     }
 
-    /// Notes for checkpoints that a stage of lines begins; `repeat` says which repeat it belongs to, and which of its stages it is.
+    /// Sets the metadata of checkpoints for a stage with lines that begins. `repeat` has the number of the repeat, and
+    /// that of the stage in it.
     pub(crate) fn begin(&mut self, number: usize, repeat: (u64, usize), checkpoints: &mut Checkpoints) {
         self.head.stage = number;
         (self.head.repeat, self.head.part) = repeat;
@@ -95,18 +96,18 @@ impl Run<'_> {
         checkpoints.set_head(self.head.to_line());
     }
 
-    /// The workers of this run, who save their state.
+    /// Returns an executor with checkpoints.
     pub(crate) fn executor<'c>(&self, checkpoints: &'c mut Checkpoints) -> Executor<'c>
     where
         Self: 'c,
     {
-        let mut executor = self.workers();
+        let mut executor = self.executor_without_checkpoints();
         executor.checkpoints = Some(checkpoints);
         executor
     }
 
-    /// The workers of this run.
-    fn workers<'c>(&self) -> Executor<'c>
+    /// Returns an executor without checkpoints.
+    fn executor_without_checkpoints<'c>(&self) -> Executor<'c>
     where
         Self: 'c,
     {
@@ -115,7 +116,7 @@ impl Run<'_> {
         executor
     }
 
-    /// Measures at sensors, and writes what they have measured.
+    /// Measures at the sensors of a stage, and writes its files.
     fn measure(
         &mut self,
         number: usize,
@@ -124,10 +125,10 @@ impl Run<'_> {
     ) -> Result<StageReport, Error> {
         let mut report = StageReport::of("Sensors", Time::of(0.0));
         let Some(layout) = self.prepared.layouts.get(&number) else { return Ok(report) };
-        let mut executor = self.workers();
+        let mut executor = self.executor_without_checkpoints();
         let total = sensors.rays * layout.sensors.len() as u64;
         executor.observer = Box::new(self.progress.stage("Sensors", total, &self.options.stop));
-        // Each stage has its own random numbers.
+        // Each stage `Sensors` has independent random numbers.
         let seed = self.head.report.seed.wrapping_add((number as u64) << 48);
         let model = &self.prepared.model;
         let settings = sensors.settings();
@@ -147,7 +148,7 @@ impl Run<'_> {
         Ok(report)
     }
 
-    /// Sensors have no checkpoint of their own.
+    /// Converts the error of an interrupted measurement. Sensors have no checkpoints of their own.
     fn interrupted_measuring(&self, error: RunError) -> Error {
         match error {
             RunError::Interrupted { .. } => Error::InterruptedMeasuring { directory: self.directory.clone() },
@@ -155,7 +156,7 @@ impl Run<'_> {
         }
     }
 
-    /// Writes the outputs of a `Save`: the first rank, if there is any light.
+    /// Writes the outputs of a `Save` on rank 0, if there is any light.
     fn save(&mut self, solution: Option<&Solution>, outputs: &[Output]) -> Result<(), Error> {
         let saved = match solution {
             Some(solution) if self.comm.is_first() => self.write(solution, outputs),
@@ -165,7 +166,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Writes outputs, unless the run is to be stopped.
+    /// Writes outputs until the run is asked to stop.
     fn write(&self, solution: &Solution, outputs: &[Output]) -> Result<Vec<OutputReport>, Error> {
         let mut reports = Vec::new();
         let threads = self.options.threads.unwrap_or_else(cores).get();
@@ -180,7 +181,7 @@ impl Run<'_> {
     }
 }
 
-/// What to say if so much light was not sent on that the result is visibly wrong.
+/// Returns a warning if the unshot power is so large that the result is visibly wrong.
 pub(crate) fn unshot_warning(action: &Action, lines: &LinesReport) -> Vec<String> {
     let Action::Multipath(multipath) = action else { return Vec::new() };
     let balance = &lines.balance;
@@ -193,8 +194,8 @@ pub(crate) fn unshot_warning(action: &Action, lines: &LinesReport) -> Vec<String
         && balance.unshot.iter().zip(&lines.extrapolated).all(|(unshot, more)| *unshot <= 0.0 || *more > 0.0);
     if extrapolated && unshot > 0.1 {
         return vec![format!(
-            "{:.0} % of the light that surfaces reflect was not sent on; it was made up for as if it spread like the \
-             light before it; give `Multipath` more lines, or make fewer patches",
+            "{:.0} % of the reflected light remained unshot and was extrapolated from the light sent before it; give `Multipath` \
+             more lines, or make fewer patches",
             100.0 * unshot
         )];
     }
@@ -202,8 +203,8 @@ pub(crate) fn unshot_warning(action: &Action, lines: &LinesReport) -> Vec<String
         return Vec::new();
     }
     vec![format!(
-        "{:.1} % of the light that surfaces reflect was not sent on and is missing from the result; give `Multipath` {}, \
-         or make fewer patches",
+        "{:.1} % of the reflected light remained unshot and is missing from the result; give `Multipath` {}, or make fewer \
+         patches",
         100.0 * unshot,
         multipath.advice_on_unshot()
     )]

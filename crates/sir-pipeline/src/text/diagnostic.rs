@@ -1,4 +1,4 @@
-//! Problems of a pipeline file, each with its place and what to write instead.
+//! Diagnostics of a pipeline file: each problem with its position and a suggested fix.
 
 use std::fmt;
 use std::ops::Range;
@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
-/// The most characters that are underlined.
-const MARKED: usize = 60;
+/// Maximum number of underlined characters.
+const MAX_UNDERLINED: usize = 60;
 
-/// The most characters of a message, which may quote the file.
-const MESSAGE: usize = 400;
+/// Maximum number of characters of a message, which may quote the file.
+const MAX_MESSAGE: usize = 400;
 
-/// The most problems that are shown.
-const SHOWN: usize = 30;
+/// Maximum number of problems that are shown.
+const MAX_SHOWN: usize = 30;
 
-/// A place in a text: line and column, both from 1, columns counted in characters.
+/// Position in a text: line and column, both from 1. Columns count characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Position {
     /// Line, from 1.
@@ -25,7 +25,7 @@ pub struct Position {
 }
 
 impl Position {
-    /// The place of a byte of `text`; bytes past its end are at its end.
+    /// Returns the position of a byte of `text`. Bytes past the end have the position of the end.
     #[must_use]
     pub fn of(text: &str, byte: usize) -> Self {
         let before = &text.as_bytes()[..byte.min(text.len())];
@@ -36,7 +36,7 @@ impl Position {
         }
     }
 
-    /// The byte of `text` at this place, or the end of `text` if it has no such place.
+    /// Returns the byte of `text` at this position, or the end of `text` if the position does not exist.
     #[must_use]
     pub fn byte_in(self, text: &str) -> usize {
         let line_start: usize = text.split_inclusive('\n').take(self.line - 1).map(str::len).sum();
@@ -48,16 +48,16 @@ impl Position {
 /// One problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// The bytes of the file that it is about.
+    /// Affected bytes of the file.
     pub span: Range<usize>,
-    /// What is wrong.
+    /// Description of the problem.
     pub message: String,
-    /// What to do about it.
+    /// Suggested fix.
     pub help: String,
 }
 
-/// All problems of one pipeline file, in the order of their places. Displayed as compilers do: file, line and
-/// column, the line itself with the culprit underlined, and what to write instead.
+/// All problems of one pipeline file, sorted by position. Displayed as by compilers: file, line and column, the line
+/// itself with the affected part underlined, and the suggested fix.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostics {
     path: PathBuf,
@@ -68,7 +68,7 @@ pub struct Diagnostics {
 impl std::error::Error for Diagnostics {}
 
 impl Diagnostics {
-    /// Problems of the file `path`, which says `text`.
+    /// Sorts and shortens the problems of the file `path`, whose content is `text`.
     #[must_use]
     pub fn new(path: &Path, text: &str, mut list: Vec<Diagnostic>) -> Self {
         let end = text.trim_end().len();
@@ -76,7 +76,7 @@ impl Diagnostics {
             shorten(message);
             shorten(help);
             *span = span.start.min(end)..span.end.min(end);
-            // The renderer takes no span that cuts a character.
+            // The renderer does not accept a span that splits a character.
             if text.get(span.clone()).is_none() {
                 *span = end..end;
             }
@@ -85,22 +85,22 @@ impl Diagnostics {
         Self { path: path.to_owned(), text: text.to_owned(), list }
     }
 
-    /// The problems, in the order of their places.
+    /// Returns the problems, sorted by position.
     #[must_use]
     pub fn list(&self) -> &[Diagnostic] {
         &self.list
     }
 
-    /// Where a problem begins.
+    /// Returns the start of a problem.
     #[must_use]
     pub fn position(&self, problem: &Diagnostic) -> Position {
         Position::of(&self.text, problem.span.start)
     }
 
-    /// The part of a span that is underlined: the beginning of its first line.
+    /// Returns the part of a span that is underlined: the beginning of its first line.
     fn mark(&self, span: &Range<usize>) -> Range<usize> {
         let line = self.text[span.clone()].lines().next().unwrap_or_default();
-        span.start..span.start + line.chars().take(MARKED).map(char::len_utf8).sum::<usize>()
+        span.start..span.start + line.chars().take(MAX_UNDERLINED).map(char::len_utf8).sum::<usize>()
     }
 }
 
@@ -108,9 +108,9 @@ impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut path = self.path.display().to_string();
         shorten(&mut path);
-        // The renderer replaces all other control characters. The substitute has as many bytes.
+        // The renderer replaces all other control characters. The substitute has the same number of bytes.
         let text = self.text.replace(|c| ('\u{80}'..='\u{9f}').contains(&c), "·");
-        for (i, problem) in self.list.iter().enumerate().take(SHOWN) {
+        for (i, problem) in self.list.iter().enumerate().take(MAX_SHOWN) {
             if i > 0 {
                 writeln!(f)?;
             }
@@ -121,18 +121,18 @@ impl fmt::Display for Diagnostics {
                 .element(Level::HELP.message(&problem.help));
             writeln!(f, "{}", Renderer::plain().render(&[error]))?;
         }
-        if self.list.len() > SHOWN {
-            writeln!(f, "\n{} more problems are not shown", self.list.len() - SHOWN)?;
+        if self.list.len() > MAX_SHOWN {
+            writeln!(f, "\n{} more problems are not shown", self.list.len() - MAX_SHOWN)?;
         }
         Ok(())
     }
 }
 
-/// Cuts off what is too long, and takes out what would play tricks on a terminal.
+/// Truncates a text that is too long, and replaces control characters, which could be terminal escape sequences.
 fn shorten(text: &mut String) {
-    if text.chars().nth(MESSAGE).is_some() || text.contains(char::is_control) {
-        let dots = if text.chars().nth(MESSAGE).is_some() { "…" } else { "" };
-        let plain = text.chars().take(MESSAGE).map(|c| if c.is_control() { '\u{fffd}' } else { c });
+    if text.chars().nth(MAX_MESSAGE).is_some() || text.contains(char::is_control) {
+        let dots = if text.chars().nth(MAX_MESSAGE).is_some() { "…" } else { "" };
+        let plain = text.chars().take(MAX_MESSAGE).map(|c| if c.is_control() { '\u{fffd}' } else { c });
         *text = plain.chain(dots.chars()).collect();
     }
 }
@@ -155,7 +155,7 @@ mod tests {
         assert_eq!(Position::of(text, 99), Position { line: 3, column: 5 });
     }
 
-    /// A problem of a file, as shown.
+    /// Returns the display of a problem of a file.
     fn shown(text: &str, span: Range<usize>) -> String {
         let problem = Diagnostic { span, message: "wrong\u{1b}[31m".into(), help: "write\n1".into() };
         Diagnostics::new(Path::new("x\u{1b}[31m.ron"), text, vec![problem]).to_string()

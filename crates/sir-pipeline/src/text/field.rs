@@ -1,78 +1,78 @@
-//! Fields: how a value is written, and what holds where it is left out.
+//! Fields: the syntax of a value, and its default.
 
 use crate::format::list;
 use crate::text::reader::{Fields, Reader};
 use crate::text::ron_tree::Node;
 
-/// How a value is written in a pipeline file.
+/// Syntax of a value in a pipeline file.
 pub(crate) trait Format: Sized {
-    /// The value.
+    /// Type of the value.
     type Value: Clone;
 
-    /// Reads the value of the field `name`, or notes what is wrong with it.
+    /// Reads the value of the field `name`. Reports problems to `reader` and returns `None` if it is invalid.
     fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<Self::Value>;
 
-    /// Writes a value as [`read`](Self::read) understands it.
+    /// Writes a value so that [`read`](Self::read) can read it.
     fn write(&self, value: &Self::Value) -> String;
 
-    /// Describes what may be written, for the reference.
+    /// Describes the valid values, for the reference.
     fn describe(&self) -> String;
 
-    /// Returns a value as it may be written.
+    /// Returns an example of a valid value.
     fn example(&self) -> String;
 
-    /// A field that must be given.
+    /// Returns a required field.
     fn required(self) -> Field<Self> {
         Field { format: self, unit: "", default: None }
     }
 
-    /// A field with a default.
+    /// Returns a field with a default.
     fn or(self, default: Self::Value) -> Field<Self> {
         Field { format: self, unit: "", default: Some(default) }
     }
 
-    /// A field that may be left out; `without` tells the reference what holds then.
+    /// Returns an optional field. `without` describes for the reference what applies if it is omitted.
     fn optional(self, without: &'static str) -> Optional<Self> {
         Optional { format: self, unit: "", without }
     }
 }
 
-/// A row of a table of fields in the reference.
+/// Row of a table of fields in the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
-    /// The name of the field.
+    /// Name of the field.
     pub(crate) name: &'static str,
-    /// What may be written.
+    /// Valid values.
     pub(crate) values: String,
-    /// The unit, or nothing.
+    /// Unit, or empty.
     pub(crate) unit: &'static str,
-    /// The default, or that there is none.
+    /// Default, or a remark that there is none.
     pub(crate) default: String,
-    /// What the field means.
+    /// Meaning of the field.
     pub(crate) meaning: &'static str,
 }
 
-/// A part of a record: one field, or several of which one is given.
+/// Part of a record: one field, or several fields of which exactly one is given.
 pub(crate) trait Part {
-    /// The value of the part.
+    /// Type of the value of the part.
     type Value;
 
-    /// Returns the rows of the reference for the part of this name and meaning.
+    /// Returns the rows of the reference for the part with this name and meaning.
     fn rows(&self, name: &'static str, meaning: &'static str) -> Vec<Row>;
 
-    /// Reads the part, or notes what is wrong with it.
+    /// Reads the part. Reports problems to `reader` and returns `None` if it is invalid.
     fn read<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>, name: &str) -> Option<Self::Value>;
 
-    /// Writes the part as a field: its name, and its value. `None` if it is left out.
+    /// Writes the part as a field: its name and its value. Returns `None` if it is omitted.
     fn write(&self, value: &Self::Value, name: &'static str) -> Option<(&'static str, String)>;
 }
 
-/// Returns a part as it is, and tells the compiler which values it has.
+/// Returns the part unchanged. Fixes the type of its value for type inference.
 pub(crate) fn part<T, P: Part<Value = T>>(part: P) -> P {
     part
 }
 
-/// A field that is required or has a default.
+/// Field that is required or has a default.
 pub(crate) struct Field<F: Format> {
     format: F,
     unit: &'static str,
@@ -80,7 +80,7 @@ pub(crate) struct Field<F: Format> {
 }
 
 impl<F: Format> Field<F> {
-    /// Names the unit.
+    /// Sets the unit.
     pub(crate) fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
@@ -116,7 +116,7 @@ impl<F: Format> Part for Field<F> {
     }
 }
 
-/// A field that may be left out.
+/// Optional field.
 pub(crate) struct Optional<F: Format> {
     format: F,
     unit: &'static str,
@@ -124,7 +124,7 @@ pub(crate) struct Optional<F: Format> {
 }
 
 impl<F: Format> Optional<F> {
-    /// Names the unit.
+    /// Sets the unit.
     pub(crate) fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
@@ -150,7 +150,7 @@ impl<F: Format> Part for Optional<F> {
     }
 }
 
-/// Several fields, exactly one of which is given.
+/// Several fields, of which exactly one is given.
 pub(crate) struct OneOf<T> {
     alternatives: Vec<Alternative<T>>,
 }
@@ -171,7 +171,7 @@ impl<T: 'static> OneOf<T> {
         Self { alternatives: Vec::new() }
     }
 
-    /// Adds a field: `wrap` makes its value that of the part, `unwrap` takes it out again if it is of this field.
+    /// Adds a field. `wrap` converts its value to that of the part; `unwrap` converts it back, if it is of this field.
     pub(crate) fn field<F: Format + Clone + 'static>(
         mut self,
         name: &'static str,

@@ -1,4 +1,4 @@
-//! How plain values are written in a pipeline file: numbers, texts, vectors, colors, names.
+//! Syntax of plain values in a pipeline file: numbers, strings, vectors, colors, names.
 
 use std::marker::PhantomData;
 
@@ -21,7 +21,7 @@ pub(crate) struct Count<T> {
     number: PhantomData<T>,
 }
 
-/// A whole number from `min` to `max`.
+/// Returns the format of a whole number from `min` to `max`.
 pub(crate) fn count<T>(min: u64, max: u64, example: u64) -> Count<T> {
     Count { min, max, example, number: PhantomData }
 }
@@ -69,28 +69,28 @@ fn superscript(digit: char) -> char {
 #[derive(Clone, Copy)]
 pub(crate) struct Number {
     allowed: fn(f64) -> bool,
-    /// The range in words, after "number".
+    /// Description of the range, appended to "number".
     range: &'static str,
     example: f64,
 }
 
-/// A finite number.
+/// Returns the format of a finite number.
 pub(crate) fn number(example: f64) -> Number {
     Number { allowed: |_| true, range: "", example }
 }
 
-/// A finite number above zero.
+/// Returns the format of a finite number above zero.
 pub(crate) fn positive(example: f64) -> Number {
     number(example).with_range(|x| x > 0.0, "above 0")
 }
 
 impl Number {
-    /// Restricts the number to a range, given in words that follow "number".
+    /// Restricts the number to a range. The description `range` is appended to "number".
     pub(crate) fn with_range(self, allowed: fn(f64) -> bool, range: &'static str) -> Self {
         Self { allowed, range, ..self }
     }
 
-    /// Returns the number of a node if it is in the range, or else what it must be.
+    /// Returns the number of a node if it is in the range, and otherwise a description of valid numbers.
     pub(crate) fn value(&self, node: &Node<'_>) -> Result<f64, String> {
         let number = read_number(node);
         let article = if number.is_some() { "a " } else { "a finite " };
@@ -133,12 +133,12 @@ pub(crate) fn write_number(x: f64) -> String {
         return format!("{x:?}");
     }
     let sign = if x.is_sign_negative() { "-" } else { "" };
-    // Four digits are easily read as they are.
+    // Numbers of up to four digits are readable without groups.
     let digits = if x.abs() < 1e4 { format!("{:.0}", x.abs()) } else { grouped(x.abs() as u64) };
     format!("{sign}{digits}")
 }
 
-/// A text that is not empty.
+/// A string that is not empty. The field is an example.
 #[derive(Clone, Copy)]
 pub(crate) struct Text(pub(crate) &'static str);
 
@@ -149,7 +149,7 @@ impl Format for Text {
         match &node.value {
             Value::Text(text) if !text.is_empty() => Some(text.clone()),
             Value::Text(_) => {
-                let message = format!("`{name}` must be a text in quotes, but it is empty");
+                let message = format!("`{name}` must be a string in quotes, but it is empty");
                 reader.problem(
                     node.text,
                     message,
@@ -158,7 +158,7 @@ impl Format for Text {
                 None
             }
             _ => {
-                reader.wrong_value(node, name, "a text in quotes", self.example());
+                reader.wrong_value(node, name, "a string in quotes", self.example());
                 None
             }
         }
@@ -169,7 +169,7 @@ impl Format for Text {
     }
 
     fn describe(&self) -> String {
-        "text".into()
+        "string".into()
     }
 
     fn example(&self) -> String {
@@ -177,9 +177,9 @@ impl Format for Text {
     }
 }
 
-/// Writes a text in quotes, with escapes as RON has them.
+/// Writes a string in quotes, with the escapes of RON.
 pub(crate) fn quoted(text: &str) -> String {
-    // Writing a text cannot fail.
+    // Serializing a string cannot fail.
     ron::to_string(text).unwrap_or_default()
 }
 
@@ -215,7 +215,7 @@ impl Format for Vector {
     }
 }
 
-/// Reads finite numbers, and notes all that are none.
+/// Reads finite numbers. Reports every node that is not one.
 fn read_numbers<'a>(
     reader: &mut Reader<'a>,
     nodes: &[Node<'a>],
@@ -239,7 +239,7 @@ fn write_numbers(numbers: [f64; 3]) -> String {
     format!("({})", numbers.map(write_number).join(", "))
 }
 
-/// A vector that is not zero. Its length does not matter.
+/// A nonzero vector. Its length does not matter.
 #[derive(Clone, Copy)]
 pub(crate) struct Direction(pub(crate) [f64; 3]);
 
@@ -249,7 +249,7 @@ impl Format for Direction {
     fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<DVec3> {
         let direction = Vector(self.0).read(reader, node, name)?;
         if direction.try_normalize().is_none() {
-            let message = format!("`{name}` must be a direction, but it has no length");
+            let message = format!("`{name}` must be a direction, but its length is zero");
             reader.problem(node.text, message, format!("write for instance `{name}: {}`", self.example()));
             return None;
         }

@@ -1,15 +1,15 @@
-//! Numbers as RON writes them.
+//! Number literals of RON.
 
-/// The number that a literal means, if it is whole and not negative: `1_000_000` and `1e6` are the same.
+/// Returns the value of a literal if it is a whole number that is not negative. `1_000_000` and `1e6` are equal.
 #[must_use]
 pub fn whole_number(literal: &str) -> Option<u64> {
     ron::from_str(literal).ok().or_else(|| {
-        // Up to 2⁵³ a float names one whole number.
+        // Up to 2⁵³, floats represent whole numbers exactly.
         float(literal).filter(|x| x.fract() == 0.0 && (0.0..9.0e15).contains(x)).map(|x| x as u64)
     })
 }
 
-/// The finite number that a literal means.
+/// Returns the value of a literal if it is a finite number.
 pub(crate) fn float(literal: &str) -> Option<f64> {
     let int = ron::from_str::<i64>(literal).ok().map(|i| i as f64);
     int.or_else(|| ron::from_str(literal).ok()).filter(|x: &f64| x.is_finite())

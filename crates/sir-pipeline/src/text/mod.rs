@@ -1,9 +1,10 @@
-//! Reading and writing RON text by declared types, with all mistakes at once, each at its place. Knows nothing of pipelines.
+//! Reads and writes RON text according to declared types. Reports all errors at once, each with its position.
+//! Independent of pipelines.
 //!
-//! * `ron_tree`: the text as a tree whose nodes know their places.
-//! * `reader`: what is known while a file is read; [`Diagnostics`]: what is wrong, where, and what to write instead.
-//! * `field`, `formats`, `paths`, `span`: how values are written, and what holds where they are left out.
-//! * `record`: types with named fields, and choices among them, declared once for reader, writer and reference.
+//! * `ron_tree`: the text as a tree whose nodes know their positions.
+//! * `reader`: the state while a file is read; [`Diagnostics`]: problems with positions and suggested fixes.
+//! * `field`, `formats`, `paths`, `span`: the syntax of values, and their defaults.
+//! * `record`: types with named fields, and choices among types, declared once for reader, writer and reference.
 
 pub(crate) mod diagnostic;
 pub(crate) mod field;

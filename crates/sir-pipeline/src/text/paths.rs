@@ -1,4 +1,4 @@
-//! How the paths of files are written in a pipeline file.
+//! Syntax of file paths in a pipeline file.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use crate::text::reader::Reader;
 use crate::text::ron_tree::Node;
 use crate::text::suggest::did_you_mean;
 
-/// A scene file, which must exist.
+/// Path of a scene file, which must exist.
 #[derive(Clone, Copy)]
 pub(crate) struct SceneFile;
 
@@ -24,8 +24,8 @@ impl Format for SceneFile {
         let text = Self::TEXT.read(reader, node, name)?;
         let path = reader.folder.join(&text);
         if !Self::EXTENSIONS.contains(&extension(&path).as_str()) {
-            let message = format!("\"{text}\" is not a scene file by its name");
-            reader.problem(node.text, message, "scenes are read from .gltf, .glb and .obj files");
+            let message = format!("the extension of \"{text}\" is not that of a scene file");
+            reader.problem(node.text, message, "use a .gltf, .glb or .obj file");
             return None;
         }
         if path.is_file() {
@@ -49,7 +49,7 @@ impl Format for SceneFile {
     }
 
     fn describe(&self) -> String {
-        "text".into()
+        "string".into()
     }
 
     fn example(&self) -> String {
@@ -57,12 +57,12 @@ impl Format for SceneFile {
     }
 }
 
-/// A file in the run directory, with one of these extensions, which no other output has.
+/// Path of a file in the run directory, with one of these extensions. No other output may have the same path.
 #[derive(Clone, Copy)]
 pub(crate) struct OutputFile {
-    /// What its name may end in.
+    /// Valid extensions, without the dot.
     pub(crate) extensions: &'static [&'static str],
-    /// A name.
+    /// Example of a path.
     pub(crate) example: &'static str,
 }
 
@@ -85,7 +85,7 @@ impl Format for OutputFile {
     }
 
     fn describe(&self) -> String {
-        "text".into()
+        "string".into()
     }
 
     fn example(&self) -> String {
@@ -93,7 +93,7 @@ impl Format for OutputFile {
     }
 }
 
-/// Returns the extension of a path in lower case, or an empty text.
+/// Returns the extension of a path in lower case, or an empty string.
 fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }

@@ -1,4 +1,4 @@
-//! What is known while a pipeline file is read: its text, its folder, and the problems so far.
+//! State while a pipeline file is read: its text, its folder, and the problems so far.
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -10,71 +10,71 @@ use crate::text::ron_tree;
 use crate::text::ron_tree::{Node, Value};
 use crate::text::suggest::did_you_mean;
 
-/// Reads a pipeline file. A problem is noted, and reading continues.
+/// Reader of a pipeline file. It collects problems and continues.
 pub(crate) struct Reader<'a> {
-    /// The text of the file.
+    /// Text of the file.
     pub(crate) source: &'a str,
-    /// The folder to which input paths are relative.
+    /// Folder to which input paths are relative.
     pub(crate) folder: &'a Path,
     /// All problems so far.
     pub(crate) problems: Vec<Diagnostic>,
-    /// The output paths so far, in lower case for file systems that ignore case, and where they are given.
+    /// Output paths so far, in lower case for file systems that ignore case, and the text that gives them.
     outputs: Vec<(PathBuf, &'a str)>,
 }
 
-/// The named fields of a node.
+/// Named fields of a node.
 pub(crate) struct Fields<'a> {
-    /// The name of their owner.
+    /// Name of the record.
     pub(crate) owner: &'static str,
-    /// The place at which a missing field is reported.
+    /// Text at which a missing field is reported.
     pub(crate) place: &'a str,
-    /// True if a problem has been noted that explains why fields are missing.
+    /// True if a reported problem already explains why fields are missing.
     pub(crate) excused: bool,
     fields: Vec<(&'a str, Node<'a>)>,
 }
 
 impl<'a> Fields<'a> {
-    /// Returns the value of a field; `None` also if the file says `None`.
+    /// Returns the value of a field, or `None` if it is missing or the file says `None`.
     pub(crate) fn get(&self, name: &str) -> Option<&Node<'a>> {
         let (_, node) = self.fields.iter().find(|(n, _)| *n == name)?;
         (node.value != Value::Nothing).then_some(node)
     }
 
-    /// Returns the text of a field, or else the place of its owner.
+    /// Returns the text of a field, or that of its record if the field is missing.
     pub(crate) fn place_of(&self, name: &str) -> &'a str {
         self.get(name).map_or(self.place, |node| node.text)
     }
 }
 
 impl<'a> Reader<'a> {
-    /// Makes a reader of a text whose input paths are relative to `folder`.
+    /// Creates a reader of a text whose input paths are relative to `folder`.
     pub(crate) fn new(source: &'a str, folder: &'a Path) -> Self {
         Self { source, folder, problems: Vec::new(), outputs: Vec::new() }
     }
 
-    /// Notes a problem with `part`, a slice of the source.
+    /// Reports a problem with `part`, a slice of the source.
     pub(crate) fn problem(&mut self, part: &str, message: impl Display, help: impl Display) {
         let span = self.span(part);
         self.problems.push(Diagnostic { span, message: message.to_string(), help: help.to_string() });
     }
 
-    /// Notes that the value of a field is not `what` it must be.
+    /// Reports that the value of a field is not `what`, a description of valid values.
     pub(crate) fn wrong_value(&mut self, node: &Node<'a>, name: &str, what: &str, example: impl Display) {
         let message = format!("`{name}` must be {what}, but it is {}", node.kind());
         self.problem(node.text, message, format!("write for instance `{name}: {example}`"));
     }
 
-    /// Returns the bytes of a slice of the source.
+    /// Returns the byte range of a slice of the source.
     pub(crate) fn span(&self, part: &str) -> Range<usize> {
         ron_tree::span(self.source, part)
     }
 
-    /// Returns the line of a slice of the source.
+    /// Returns the line number of a slice of the source.
     pub(crate) fn line(&self, part: &str) -> usize {
         Position::of(self.source, self.span(part).start).line
     }
 
-    /// Reads the named fields of `node`, which may have those in `allowed`.
+    /// Reads the named fields of `node`. Reports those that are not in `allowed`.
     pub(crate) fn fields(&mut self, node: &Node<'a>, owner: &'static str, allowed: &[&str]) -> Fields<'a> {
         let name = node.name();
         let place = if name.is_empty() { &node.text[..node.text.len().min(1)] } else { name };
@@ -111,7 +111,8 @@ impl<'a> Reader<'a> {
         Fields { owner, place, excused, fields }
     }
 
-    /// Finds which of the `known` things a node `Name(…)` is.
+    /// Returns the name of a node `Name(…)` if it is in `known`. Otherwise reports a problem; `what` is a noun for what
+    /// the names stand for.
     pub(crate) fn name_of(
         &mut self,
         node: &Node<'a>,
@@ -133,7 +134,8 @@ impl<'a> Reader<'a> {
         found
     }
 
-    /// Takes a path inside the run directory, which `node` asks for and nothing else may.
+    /// Reserves an output path inside the run directory for `node`. Reports a problem if the path is taken or leads
+    /// outside.
     pub(crate) fn claim_output(&mut self, node: &Node<'a>, text: &str) -> Option<PathBuf> {
         let given = Path::new(text);
         let stays_inside = given.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
@@ -166,14 +168,14 @@ fn has_fields(owner: &str, allowed: &[&str]) -> String {
     }
 }
 
-/// Fields that were written differently once: owner, old name, and what to write now.
+/// Renamed fields: record, old name, and the new syntax.
 const CHANGED: [(&str, &str, &str); 3] = [
-    ("Image", "calm", "the field is called `denoise` now"),
-    ("Multipath", "replicas", "write `transport: Replicas(count: …)` now"),
-    ("Multipath", "tail", "write `transport: Replicas(tail: …)` now"),
+    ("Image", "calm", "the field is now called `denoise`"),
+    ("Multipath", "replicas", "write `transport: Replicas(count: …)` instead"),
+    ("Multipath", "tail", "write `transport: Replicas(tail: …)` instead"),
 ];
 
-/// Says how a field is written today, if it was once written as `key`.
+/// Returns the new syntax of a renamed field, if `key` is its old name.
 fn new_form(key: &str, owner: &str) -> Option<String> {
     let (.., now) = CHANGED.iter().find(|(of, old, _)| (*of, *old) == (owner, key))?;
     Some((*now).to_owned())

@@ -1,7 +1,7 @@
-//! Records and choices: types that are declared once, and are read, written and documented from that.
+//! Records and choices: types whose single declaration generates the reader, the writer and the documentation.
 //!
-//! A *record* is `Name(field: value, …)`. `record!` declares its fields: for each of them a name, a type, a meaning, and how it is
-//! written. A *choice* is one of several things with a name each; `choice!` declares which.
+//! A *record* is `Name(field: value, …)`. `record!` declares its fields, each with a name, a type, a meaning and a
+//! syntax. A *choice* is one of several named variants; `choice!` declares them.
 
 use std::marker::PhantomData;
 
@@ -10,24 +10,24 @@ use crate::text::field::{Format, Row};
 use crate::text::reader::{Fields, Reader};
 use crate::text::ron_tree::{Node, Value};
 
-/// What may follow a name in a pipeline file: `Name(…)`.
+/// Content that may follow a name in a pipeline file: `Name(…)`.
 pub(crate) trait Body: Sized {
-    /// Reads it; `node` has the name, too.
+    /// Reads the content; `node` includes the name.
     fn read<'a>(reader: &mut Reader<'a>, node: &Node<'a>) -> Option<Self>;
 
-    /// Writes it after its name.
+    /// Writes the name and the content.
     fn write(&self, name: &str) -> String;
 }
 
-/// Named fields.
+/// Type with named fields.
 pub(crate) trait Record: Sized {
-    /// The name of the record in a file.
+    /// Name of the record in a file.
     const NAME: &'static str;
 
-    /// Returns the fields as the reference shows them.
+    /// Returns the rows of the fields in the reference.
     fn rows() -> Vec<Row>;
 
-    /// Reads all fields, or notes what is wrong with them.
+    /// Reads all fields. Reports problems to `reader` and returns `None` if any field is invalid.
     fn read_fields<'a>(reader: &mut Reader<'a>, fields: &Fields<'a>) -> Option<Self>;
 
     /// Writes all fields with their names.
@@ -51,11 +51,11 @@ impl<T: Record> Body for T {
     }
 }
 
-/// Declares a record: a struct whose fields are read, written and documented as they stand here.
+/// Declares a record: a struct whose fields are read, written and documented according to this declaration.
 ///
-/// The documentation of a field is its meaning in the reference. After `=` stands a [`Part`](crate::text::field::Part), which says how
-/// the field is written. `as` gives a record or a field another name in files. `check` names a function that notes what is wrong with
-/// all fields together.
+/// The documentation of a field is its meaning in the reference. A [`Part`](crate::text::field::Part) after `=` defines
+/// the syntax of the field. `as` gives a record or a field another name in files. `check` names a function that reports
+/// problems which concern several fields.
 macro_rules! record {
     (
         $(#[doc = $about:literal])*
@@ -115,7 +115,7 @@ macro_rules! record {
     };
 }
 
-/// The name of a field in files.
+/// Expands to the name of a record or a field in files.
 macro_rules! key {
     ($field:ident) => {
         stringify!($field)
@@ -125,31 +125,32 @@ macro_rules! key {
     };
 }
 
-/// One of several things, each with a name and what follows it.
+/// One of several named variants, each of which may have a content.
 pub(crate) trait Choose: Clone + Sized {
-    /// What they are called together, such as `light`.
+    /// Common noun for the variants, such as `light`.
     const WHAT: &'static str;
 
-    /// Their names.
+    /// Names of the variants.
     const NAMES: &'static [&'static str];
 
-    /// Returns the name of this one.
+    /// Returns the name of this variant.
     fn name(&self) -> &'static str;
 
-    /// Reads the one of this name.
+    /// Reads the variant with this name.
     fn read_named<'a>(name: &str, reader: &mut Reader<'a>, node: &Node<'a>) -> Option<Self>;
 
-    /// Writes it, with its name.
+    /// Writes this variant with its name.
     fn write(&self) -> String;
 
-    /// Reads one of them.
+    /// Reads a variant of any name.
     fn read<'a>(reader: &mut Reader<'a>, node: &Node<'a>) -> Option<Self> {
         let name = reader.name_of(node, Self::WHAT, Self::NAMES)?;
         Self::read_named(name, reader, node)
     }
 }
 
-/// Returns the elements of the list in `Owner([…])`, or the only element of it in `Owner(…)`; `example` is an element.
+/// Returns the elements of the list in `Owner([…])`, or the single element in `Owner(…)`. The help shows `example`, an
+/// element.
 pub(crate) fn list_items<'n, 'a>(
     reader: &mut Reader<'a>,
     node: &'n Node<'a>,
@@ -179,7 +180,7 @@ pub(crate) fn write_list<T: Choose>(owner: &str, all: &[T]) -> String {
     format!("{owner}([{}])", all.join(", "))
 }
 
-/// Declares a choice: an enum whose variants are written `Name`, or `Name(…)` with what is declared for the type in it.
+/// Declares a choice: an enum whose variants are written `Name`, or `Name(…)` with the content of the type in it.
 macro_rules! choice {
     (
         $(#[doc = $about:literal])*
@@ -257,14 +258,14 @@ macro_rules! write_variant {
 
 pub(crate) use {choice, key, pattern, read_variant, record, write_variant};
 
-/// The format of a choice.
+/// Format of a choice.
 #[derive(Clone, Copy)]
 pub(crate) struct Named<T> {
     example: &'static str,
     choice: PhantomData<T>,
 }
 
-/// One of the things of a choice.
+/// Returns the format of a choice.
 pub(crate) fn named<T: Choose>(example: &'static str) -> Named<T> {
     Named { example, choice: PhantomData }
 }

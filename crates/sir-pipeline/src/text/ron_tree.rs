@@ -1,9 +1,9 @@
-//! RON text as a tree whose every node knows its place.
+//! RON text as a tree whose nodes know their positions.
 //!
-//! serde stops at the first error and forgets places, so a file decoded by it can show one problem at a time. Here
-//! the `ron` crate still does all the parsing: a node is read as [`RawValue`], which is a slice of the source and so
-//! has a place, and its children are read from that slice in the same way. The text of a node is thus parsed once
-//! per level of nesting, which does not matter for files of this size (and `ron` limits the nesting).
+//! serde stops at the first error and does not keep positions, so a file decoded by it shows one problem at a time.
+//! Here the `ron` crate still does all the parsing: a node is read as [`RawValue`], which is a slice of the source and
+//! therefore has a position. Its children are read from that slice in the same way. The text of a node is thus parsed
+//! once per level of nesting, which does not matter for files of this size (and `ron` limits the nesting).
 
 use std::fmt;
 use std::ops::Range;
@@ -16,13 +16,13 @@ use crate::text::diagnostic::{Diagnostic, Position};
 /// A node of the tree.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Node<'a> {
-    /// Its text, a slice of the source.
+    /// Text of the node, a slice of the source.
     pub(crate) text: &'a str,
-    /// What it is.
+    /// Value of the node.
     pub(crate) value: Value<'a>,
 }
 
-/// What a node is.
+/// Value of a node.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value<'a> {
     /// A number. `text` has its digits.
@@ -33,13 +33,13 @@ pub(crate) enum Value<'a> {
     Text(String),
     /// `Name(field: value, …)` or `(field: value, …)`.
     Fields(Vec<(&'a str, Node<'a>)>),
-    /// `Name(value, …)` or `(value, …)`, or a mere `Name`.
+    /// `Name(value, …)` or `(value, …)`, or only `Name`.
     Items(Vec<Node<'a>>),
     /// `[value, …]`.
     List(Vec<Node<'a>>),
     /// `None`.
     Nothing,
-    /// Anything that no pipeline has: maps, characters, bytes, ranges.
+    /// Any value that pipelines do not have: maps, characters, bytes, ranges.
     Other,
 }
 
@@ -47,7 +47,7 @@ pub(crate) enum Value<'a> {
 ///
 /// # Errors
 ///
-/// The first error of syntax.
+/// Returns the first syntax error.
 pub(crate) fn parse(source: &str) -> Result<Node<'_>, Diagnostic> {
     let check = || -> Result<(), ron::error::SpannedError> {
         let mut deserializer = ron::Deserializer::from_str(source)?;
@@ -57,8 +57,8 @@ pub(crate) fn parse(source: &str) -> Result<Node<'_>, Diagnostic> {
     check().map_err(|e| syntax_error(source, &e))?;
     ron::from_str(source).map_err(|_| Diagnostic {
         span: 0..1,
-        message: "the file cannot be read as plain RON".into(),
-        help: "write it as docs/pipeline.md does".into(),
+        message: "the file is not plain RON".into(),
+        help: "see docs/pipeline.md for the syntax of a pipeline".into(),
     })
 }
 
@@ -68,19 +68,19 @@ fn syntax_error(source: &str, error: &ron::error::SpannedError) -> Diagnostic {
         |p: ron::error::Position| Position { line: p.line.max(1), column: p.col.max(1) }.byte_in(source);
     let (start, end) = (place(error.span.start), place(error.span.end));
     let help = match error.code {
-        E::Eof => "the file ends inside a value: close every `(` and `[`, and every `\"`",
+        E::Eof => "the file ends within a value; close every `(`, `[` and `\"`",
         E::ExpectedComma | E::ExpectedStructLikeEnd | E::ExpectedArrayEnd => {
             "put a comma between two values, and close every `(` with `)` and every `[` with `]`"
         }
-        E::ExpectedStringEnd => "end the text with `\"`",
+        E::ExpectedStringEnd => "end the string with `\"`",
         E::ExpectedMapColon => "a field is written `name: value`",
-        E::TrailingCharacters => "a pipeline is one value, `Pipeline(…)`, with nothing after it but comments",
-        E::ExceededRecursionLimit => "a pipeline needs about ten of them",
-        _ => "see docs/pipeline.md for how a pipeline is written",
+        E::TrailingCharacters => "a pipeline is one value, `Pipeline(…)`; only comments may follow it",
+        E::ExceededRecursionLimit => "a pipeline needs about ten levels of brackets; remove some",
+        _ => "see docs/pipeline.md for the syntax of a pipeline",
     };
-    // `ron` starts its sentences with a capital letter.
+    // Messages of `ron` start with a capital letter.
     let message = match error.code {
-        E::ExceededRecursionLimit => "too many brackets within brackets".into(),
+        E::ExceededRecursionLimit => "brackets are nested too deeply".into(),
         _ => error.code.to_string(),
     };
     let mut letters = message.chars();
@@ -95,7 +95,7 @@ fn syntax_error(source: &str, error: &ron::error::SpannedError) -> Diagnostic {
 }
 
 impl<'a> Node<'a> {
-    /// The name in front of the parentheses, or the mere name; empty if there is none.
+    /// Returns the name, with or without parentheses after it; empty if there is none.
     pub(crate) fn name(&self) -> &'a str {
         match self.value {
             Value::Fields(_) | Value::Items(_) => {
@@ -107,12 +107,12 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// What the node is, in words.
+    /// Describes the node in words.
     pub(crate) fn kind(&self) -> String {
         match &self.value {
             Value::Number => format!("the number {}", self.text),
             Value::Bool(_) => format!("`{}`", self.text),
-            Value::Text(_) => "a text".into(),
+            Value::Text(_) => "a string".into(),
             Value::List(_) => "a list".into(),
             Value::Nothing => "`None`".into(),
             Value::Items(items) if items.is_empty() && !self.name().is_empty() => {
@@ -130,7 +130,7 @@ impl<'a> Node<'a> {
     }
 }
 
-/// The bytes of `source` at which `part`, a slice of it, lies.
+/// Returns the byte range of `part`, a slice of `source`.
 pub(crate) fn span(source: &str, part: &str) -> Range<usize> {
     let start = (part.as_ptr() as usize).saturating_sub(source.as_ptr() as usize).min(source.len());
     start..(start + part.len()).min(source.len())
@@ -189,7 +189,7 @@ impl<'de: 'a, 'a> Visitor<'de> for NodeVisitor<'a> {
         Ok(self.node(Value::Nothing))
     }
 
-    /// `Some(x)` means `x`.
+    /// Reads `Some(x)` as `x`.
     fn visit_some<D: Deserializer<'de>>(self, inner: D) -> Result<Node<'a>, D::Error> {
         Node::deserialize(inner)
     }
@@ -219,7 +219,7 @@ impl<'de: 'a, 'a> Visitor<'de> for NodeVisitor<'a> {
 mod tests {
     use super::*;
 
-    /// The tree as an S-expression, with the place of every node.
+    /// Returns the tree as an S-expression, with the position of every node.
     fn show(source: &str, node: &Node<'_>) -> String {
         let Range { start, end } = span(source, node.text);
         assert_eq!(&source[start..end], node.text);
@@ -307,6 +307,6 @@ mod tests {
             "(\n  a: \"\\q\",\n)" 8..10 not valid RON: unknown escape character
             "#);
         let deep = format!("{}{}", "[".repeat(5000), "]".repeat(5000));
-        assert_eq!(parse(&deep).unwrap_err().message, "not valid RON: too many brackets within brackets");
+        assert_eq!(parse(&deep).unwrap_err().message, "not valid RON: brackets are nested too deeply");
     }
 }

@@ -1,4 +1,4 @@
-//! Where things stand in a file.
+//! Positions of values in a file.
 
 use std::ops::Range;
 
@@ -6,7 +6,8 @@ use crate::text::field::Format;
 use crate::text::reader::Reader;
 use crate::text::ron_tree::Node;
 
-/// Bytes of a pipeline's text. All spans are equal: two files that say the same in different places say the same.
+/// Byte range in the text of a pipeline. All spans compare as equal, so that pipelines are equal if they differ only in
+/// the positions of their values.
 #[derive(Clone, Debug, Default)]
 pub struct Span(pub Range<usize>);
 
@@ -16,16 +17,16 @@ impl PartialEq for Span {
     }
 }
 
-/// A value, and where it stands in the file.
+/// A value with its position in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spanned<T> {
-    /// The value.
+    /// Value.
     pub value: T,
-    /// Where it stands.
+    /// Position of the value.
     pub span: Span,
 }
 
-/// The format of a value whose place is remembered.
+/// Format of a value whose position is kept.
 #[derive(Clone, Copy)]
 pub(crate) struct WithSpan<F>(pub(crate) F);
 
@@ -33,7 +34,7 @@ impl<F: Format> Format for WithSpan<F> {
     type Value = Spanned<F::Value>;
 
     fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<Self::Value> {
-        // Of what has a name, that is enough.
+        // The span of a named value is its name.
         let part = if node.name().is_empty() { node.text } else { node.name() };
         let span = Span(reader.span(part));
         self.0.read(reader, node, name).map(|value| Spanned { value, span })

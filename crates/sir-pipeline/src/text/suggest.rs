@@ -1,11 +1,11 @@
-//! Which of the known names a misspelled one may mean.
+//! Suggestions for misspelled names.
 
-/// "did you mean …", if `name` resembles one of `candidates`.
+/// Returns "did you mean …?" if `name` resembles one of `candidates`.
 pub(crate) fn did_you_mean<S: AsRef<str>>(name: &str, candidates: &[S]) -> Option<String> {
     resembling(name, candidates).map(|best| format!("did you mean `{}`?", best.as_ref()))
 }
 
-/// The one of `candidates` that `name` is a misspelling of.
+/// Returns the one of `candidates` that `name` probably misspells.
 pub(crate) fn resembling<'c, S: AsRef<str>>(name: &str, candidates: &'c [S]) -> Option<&'c S> {
     let lower = name.to_lowercase();
     let near = |c: &S| strsim::damerau_levenshtein(&lower, &c.as_ref().to_lowercase());

@@ -1,4 +1,4 @@
-//! Computing view factors, by several ranks together.
+//! Computation of view factors by one or more ranks.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,20 +20,22 @@ use crate::view_factors::files;
 use crate::view_factors::options::{By, ViewFactorsOptions};
 use crate::view_factors::report::Report;
 
-/// View factors, and where they were written.
+/// View factors and their files.
 #[derive(Clone, Debug)]
 pub struct ViewFactorsResult {
     /// All factors with their errors.
     pub report: Report,
-    /// The files, if an output directory was given; on the first rank only.
+    /// Paths of the written files, if an output directory was given; only on the first rank.
     pub files: Vec<PathBuf>,
 }
 
-/// Computes view factors, by several ranks together, until they are good enough or `stop` becomes true, and writes the files.
+/// Computes view factors together with the other ranks, until they are accurate enough, and writes the files. Ends
+/// early if `stop` becomes true.
 ///
 /// # Errors
 ///
-/// If the scene cannot be read, has no or too many groups, or files cannot be written. If one rank fails, all do.
+/// If the scene cannot be read, has no groups or too many, or if files cannot be written. If one rank fails, all ranks
+/// fail.
 pub fn view_factors(
     options: &ViewFactorsOptions,
     comm: &dyn Communicator,
@@ -69,7 +71,7 @@ pub fn view_factors(
     Ok(ViewFactorsResult { report, files })
 }
 
-/// Reads the scene and makes the groups; on the first rank, also looks whether the files can be written.
+/// Reads the scene and makes the groups. On the first rank, also checks and creates the output directory.
 fn prepare(
     options: &ViewFactorsOptions,
     comm: &dyn Communicator,

@@ -1,4 +1,4 @@
-//! Why there are no view factors.
+//! The error type of view factors.
 
 use std::path::PathBuf;
 
@@ -7,10 +7,10 @@ use thiserror::Error;
 
 use crate::error_kind::ErrorKind;
 
-/// Why there are no view factors.
+/// Failure of a computation of view factors.
 #[derive(Debug, Error)]
 pub enum ViewFactorsError {
-    /// View factors between named parts are asked for, and no part has a name.
+    /// View factors between named parts are requested, but no part has a name.
     #[error(
         "{} names no groups (glTF: names of nodes or meshes; OBJ: statements `o` or `g`); group the surfaces by material instead",
         scene.display()
@@ -19,8 +19,8 @@ pub enum ViewFactorsError {
         /// The scene file.
         scene: PathBuf,
     },
-    /// The output directory holds view factors already.
-    #[error("{} holds view factors already; choose another directory, or allow them to be replaced", directory.display())]
+    /// The output directory already holds view factors.
+    #[error("{} already holds view factors; choose another directory, or allow them to be replaced", directory.display())]
     Exists {
         /// The directory.
         directory: PathBuf,

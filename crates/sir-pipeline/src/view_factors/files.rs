@@ -1,4 +1,4 @@
-//! The files of view factors.
+//! The output files of view factors.
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use crate::error::Error;
 use crate::view_factors::report::{Matrix, Report};
 
-/// The file that tells that a directory has view factors: it is written last.
+/// Name of the JSON file. It is written last, so its presence shows that a directory holds view factors.
 pub(super) const JSON: &str = "viewfactors.json";
 
-/// Writes the view factors as CSV and JSON; returns the paths of the files.
+/// Writes the view factors as CSV and JSON, and returns the paths of the files.
 pub(super) fn write(report: &Report, directory: &Path) -> Result<Vec<PathBuf>, Error> {
     let counted = &report.counted;
     let mut files = vec![
@@ -32,7 +32,7 @@ pub(super) fn write(report: &Report, directory: &Path) -> Result<Vec<PathBuf>, E
     Ok(paths)
 }
 
-/// Returns a row for each group, with a column for each group and those of what is blocked and escapes.
+/// Returns a CSV table with a row for each group, and columns for each group, `blocked` and `escaped`.
 fn matrix(report: &Report, rows: &[Vec<f64>], rest: [&[f64]; 2]) -> io::Result<Vec<u8>> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let names = report.groups.iter().map(|group| group.name.as_str());
@@ -45,7 +45,7 @@ fn matrix(report: &Report, rows: &[Vec<f64>], rest: [&[f64]; 2]) -> io::Result<V
     finish(table)
 }
 
-/// Returns a row for each pair of which something was counted.
+/// Returns a CSV table with a row for each pair of groups with a count above 0.
 fn pairs(report: &Report) -> io::Result<Vec<u8>> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(["from", "to", "lines", "count", "factor", "error", "closed", "closed_error"])?;

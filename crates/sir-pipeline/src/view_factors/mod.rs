@@ -1,4 +1,4 @@
-//! View factors between the materials or the named parts of a scene: a run without a pipeline.
+//! View factors between the materials or named parts of a scene, computed without a pipeline.
 
 pub(crate) mod compute;
 pub(crate) mod error;

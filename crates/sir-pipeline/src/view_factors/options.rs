@@ -1,4 +1,4 @@
-//! Which view factors to compute, and how well.
+//! The options of a computation of view factors.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -7,34 +7,34 @@ use serde::Serialize;
 use sir_geom::SidesPolicy;
 use sir_radiosity::ViewFactorSettings;
 
-/// Which view factors to compute, and how well.
+/// Options of a computation of view factors.
 #[derive(Clone, Debug)]
 pub struct ViewFactorsOptions {
     /// The scene file.
     pub scene: PathBuf,
-    /// What makes a group of surfaces.
+    /// Criterion by which surfaces are grouped.
     pub by: By,
-    /// Which sides of surfaces send and receive. The other sides absorb: what arrives there is `blocked`.
+    /// Sides of surfaces that send and receive. The other sides absorb: the share that arrives there is `blocked`.
     pub sides: SidesPolicy,
-    /// When to stop, and the seed.
+    /// Stopping criteria, and the seed.
     pub settings: ViewFactorSettings,
-    /// Also adjust the factors, within their errors, so that they obey reciprocity and each row adds up to 1.
+    /// True to also adjust the factors, within their errors, to satisfy reciprocity and row sums of 1.
     pub closure: bool,
-    /// Directory for the files; `None` to write nothing.
+    /// Directory of the files; `None` to write nothing.
     pub out: Option<PathBuf>,
-    /// Whether to replace view factors in `out`.
+    /// True to replace view factors in `out`.
     pub force: bool,
-    /// Threads of each process; `None` for one per processor core.
+    /// Number of threads of each process; `None` for one per processor core.
     pub threads: Option<NonZeroUsize>,
 }
 
-/// What makes a group of surfaces.
+/// Criterion by which surfaces are grouped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum By {
-    /// A material.
+    /// The material.
     #[default]
     Material,
-    /// A name: of a node, or else of its mesh (glTF); in an `o` or `g` statement (OBJ).
+    /// The name: of the node, or else of its mesh (glTF); in an `o` or `g` statement (OBJ).
     Group,
 }

@@ -1,4 +1,4 @@
-//! What is told about view factors.
+//! The report of view factors: the content of `viewfactors.json`.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::view_factors::options::{By, ViewFactorsOptions};
 /// Version of the JSON file.
 const VERSION: u32 = 1;
 
-/// View factors with all that belongs to them. Rows and columns are in the order of the groups.
+/// View factors with their errors, counts and settings. Rows and columns are in the order of the groups.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Version of this layout.
@@ -21,64 +21,64 @@ pub struct Report {
     pub program: &'static str,
     /// The scene file.
     pub scene: String,
-    /// What makes a group.
+    /// Criterion by which surfaces were grouped.
     pub by: By,
-    /// Which sides took part: `as-authored`, `both` or `front`.
+    /// Sides that sent and received: `as-authored`, `both` or `front`.
     pub sides: &'static str,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Lines of all groups together.
+    /// Number of lines of all groups together.
     pub lines: u64,
-    /// What the reader of the scene changed or left out.
+    /// Warnings of the reader of the scene: what it changed or left out.
     pub warnings: Vec<String>,
     /// The groups.
     pub groups: Vec<Group>,
-    /// `F_ij` as counted.
+    /// Factors `F_ij` as counted.
     pub counted: Matrix,
-    /// Of each group, how many lines arrived at each group.
+    /// `counts[i][j]`: number of lines from group `i` that arrived at group `j`.
     pub counts: Vec<Vec<u64>>,
-    /// How well both estimates of the same exchange area agree, for all pairs of which something was counted.
+    /// Agreement of both estimates of the same exchange area, for all pairs with a count above 0.
     pub reciprocity: Vec<Pair>,
-    /// As adjusted, if that was asked for.
+    /// Factors after closure, if it was requested.
     pub closed: Option<Matrix>,
 }
 
-/// A group of surfaces.
+/// Group of surfaces.
 #[derive(Clone, Debug, Serialize)]
 pub struct Group {
-    /// Its name; of equal names the second one is followed by `(2)`.
+    /// Name of the group. The second of equal names is followed by `(2)`.
     pub name: String,
-    /// Area of its active sides.
+    /// Area of the active sides.
     pub area: f64,
-    /// Lines from this group.
+    /// Number of lines from this group.
     pub lines: u64,
 }
 
 /// Factors and their standard errors.
 #[derive(Clone, Debug, Serialize)]
 pub struct Matrix {
-    /// `factors[i][j]`: share of what leaves group `i` that arrives at group `j`.
+    /// `factors[i][j]`: share of the flux leaving group `i` that arrives at group `j`.
     pub factors: Vec<Vec<f64>>,
     /// Standard errors of `factors`.
     pub errors: Vec<Vec<f64>>,
-    /// Shares that backs of one-sided surfaces absorb.
+    /// Share of each row that backs of one-sided surfaces absorb.
     pub blocked: Vec<f64>,
-    /// Their standard errors.
+    /// Standard errors of `blocked`.
     pub blocked_errors: Vec<f64>,
-    /// Shares that leave the scene.
+    /// Share of each row that leaves the scene.
     pub escaped: Vec<f64>,
-    /// Their standard errors.
+    /// Standard errors of `escaped`.
     pub escaped_errors: Vec<f64>,
-    /// Sum of each row: 1.
+    /// Sum of each row, `blocked` and `escaped` included: 1.
     pub row_sums: Vec<f64>,
 }
 
-/// Reciprocity of two groups.
+/// Test of the reciprocity of two groups.
 #[derive(Clone, Debug, Serialize)]
 pub struct Pair {
-    /// One of the groups.
+    /// Name of group `i`.
     pub from: String,
-    /// The other one.
+    /// Name of group `j`.
     pub to: String,
     /// `A_i F_ij − A_j F_ji`.
     pub residual: f64,
@@ -129,10 +129,10 @@ impl Report {
         })
     }
 
-    /// For programs.
+    /// Returns the report as JSON.
     #[must_use]
     pub fn to_json(&self) -> String {
-        // A tree of plain structs and finite numbers.
+        // Serializing cannot fail: the report is a tree of plain structs and finite numbers.
         serde_json::to_string_pretty(self).map(|json| json + "\n").unwrap_or_default()
     }
 }
@@ -157,7 +157,7 @@ impl Matrix {
     }
 }
 
-/// The name of a policy in the report.
+/// Returns the name of a policy in the report.
 fn name_of(sides: SidesPolicy) -> &'static str {
     match sides {
         SidesPolicy::AsAuthored => "as-authored",
@@ -166,7 +166,7 @@ fn name_of(sides: SidesPolicy) -> &'static str {
     }
 }
 
-/// Names that tell groups apart.
+/// Returns unique names of the groups.
 fn labels(names: &[String]) -> Vec<String> {
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
     names

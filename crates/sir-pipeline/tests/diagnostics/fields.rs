@@ -85,7 +85,7 @@ fn unknown_names_and_fields() {
       = help: outputs are `Image`, `Gltf` and `Table`
     "#);
     insta::assert_snapshot!(problems("Pipelin(stages: [])"), @r"
-    error: the file must hold `Pipeline(…)`, but it holds `Pipelin(…)`
+    error: the file must contain `Pipeline(…)`, but it contains `Pipelin(…)`
      --> x.ron:1:1
       |
     1 | Pipelin(stages: [])
@@ -94,7 +94,7 @@ fn unknown_names_and_fields() {
       = help: write `Pipeline(stages: […])`
     ");
     insta::assert_snapshot!(problems("[1]"), @r"
-    error: the file must hold `Pipeline(…)`, but it holds a list
+    error: the file must contain `Pipeline(…)`, but it contains a list
      --> x.ron:1:1
       |
     1 | [1]
@@ -161,7 +161,7 @@ fn missing_and_repeated_fields() {
       |
       = help: write `Gltf(path: "result.glb", …)`
 
-    error: `path` must be a text in quotes, but it is empty
+    error: `path` must be a string in quotes, but it is empty
      --> x.ron:6:45
       |
     6 | Save([Image(width: 10), Gltf(), Table(path: "")]),
@@ -200,7 +200,7 @@ fn wrong_types() {
         r#"Save(path: "b.png"),"#,
         r#"Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),"#,
     ]), @r#"
-    error: `path` must be a text in quotes, but it is the number 3
+    error: `path` must be a string in quotes, but it is the number 3
      --> x.ron:2:12
       |
     2 | Load(path: 3, sides: "Both"),
@@ -208,7 +208,7 @@ fn wrong_types() {
       |
       = help: write for instance `path: "scene.gltf"`
 
-    error: `sides` must be `AsAuthored`, `Both` or `Front`, but it is a text
+    error: `sides` must be `AsAuthored`, `Both` or `Front`, but it is a string
      --> x.ron:2:22
       |
     2 | Load(path: 3, sides: "Both"),
@@ -232,7 +232,7 @@ fn wrong_types() {
       |
       = help: write `FirstShot(lines: …)`
 
-    error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is a text
+    error: `lines` must be a whole number from 1 to 1_000_000_000_000_000, but it is a string
      --> x.ron:5:18
       |
     5 | Multipath(lines: "many", domain: Spher, transport: Replicas(count: 1.5)),
@@ -296,7 +296,7 @@ fn wrong_types() {
       |
       = help: write for instance `target: (1, 1, 0)`
 
-    error: `fov` must be a finite number above 0 and below 180, but it is a text
+    error: `fov` must be a finite number above 0 and below 180, but it is a string
      --> x.ron:8:76
       |
     8 | Save([Image(path: "c.png", camera: Camera(eye: 1, target: (1, 2, up), fov: "wide"))]),
@@ -447,7 +447,7 @@ fn numbers_out_of_range() {
     2 | Load(path: "room.obj"), Subdivide(max_area: 0), FirstShot(lines: 1e16), Multipath(lines: 9, transport: Replicas(tail: 9))
       |                                                                                                        ^^^^^^^^^^^^^^^^^
       |
-      = help: leave `tail` out, or make it smaller: lines before the tail bring the light of the sources
+      = help: leave `tail` out, or make it smaller; only lines before the tail send the light of the sources
     "#);
     insta::assert_snapshot!(stages(&[
         r#"Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),"#,
@@ -474,7 +474,7 @@ fn replicas_have_lines_before_their_tail() {
     3 | Multipath(lines: 10, transport: Replicas(count: 20, tail: 1))
       |                                 ^^^^^^^^^^^^^^^^^^^^^^^^^^^^
       |
-      = help: each replica needs a line: ask for fewer, or for more lines
+      = help: each replica needs a line; use fewer replicas or more lines
     ");
 }
 
@@ -551,13 +551,13 @@ fn paths() {
       = help: paths are relative to the folder of the pipeline file
     "#);
     insta::assert_snapshot!(stages(&[r#"Load(path: "room.blend"), FirstShot(lines: 10),"#]), @r#"
-    error: "room.blend" is not a scene file by its name
+    error: the extension of "room.blend" is not that of a scene file
      --> x.ron:2:12
       |
     2 | Load(path: "room.blend"), FirstShot(lines: 10),
       |            ^^^^^^^^^^^^
       |
-      = help: scenes are read from .gltf, .glb and .obj files
+      = help: use a .gltf, .glb or .obj file
     "#);
 }
 
@@ -568,9 +568,9 @@ fn the_new_form_of_a_field_is_told() {
         r#"Multipath(lines: 10, replicas: 2, tail: 1),"#,
     ]);
     for told in [
-        "is called `denoise` now",
-        "`transport: Replicas(count: …)` now",
-        "`transport: Replicas(tail: …)` now",
+        "is now called `denoise`",
+        "`transport: Replicas(count: …)` instead",
+        "`transport: Replicas(tail: …)` instead",
     ] {
         assert!(shown.contains(told), "{shown}");
     }

@@ -1,4 +1,4 @@
-//! What a pipeline file with mistakes is answered with.
+//! Diagnostics of invalid pipeline files.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -34,14 +34,14 @@ Pipeline(
     ],
 ) // the end"#;
 
-/// Parses a pipeline that lies in a folder with the scene `room.obj`.
+/// Parses a pipeline in a folder with the scene `room.obj`.
 fn parse(text: &str) -> Result<Pipeline, Diagnostics> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("room.obj"), "").unwrap();
     Pipeline::parse(text, &folder.path().join("x.ron"))
 }
 
-/// The problems as shown, without the folder.
+/// Returns the problems as displayed, without the folder.
 fn problems(text: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("room.obj"), "").unwrap();
@@ -49,7 +49,7 @@ fn problems(text: &str) -> String {
     shown.replace(&format!("{}/", folder.path().display()), "")
 }
 
-/// The problems of a pipeline with the given stages, each on its line.
+/// Returns the problems of a pipeline with the given stages, one per line.
 fn stages(lines: &[&str]) -> String {
     problems(&format!("(stages: [\n{}\n])", lines.join("\n")))
 }

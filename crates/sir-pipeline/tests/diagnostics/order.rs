@@ -1,4 +1,4 @@
-//! Stages that cannot stand where they stand.
+//! Stages in a wrong order.
 
 use super::stages;
 
@@ -39,7 +39,7 @@ fn impossible_orders() {
       |
       = help: put `FirstShot(lines: 1_000_000)` before `Multipath`
 
-    error: `Subdivide` after `FirstShot`: light has been computed on the patches as they were
+    error: `Subdivide` after `FirstShot`: light has already been computed on the existing patches
      --> x.ron:7:1
       |
     7 | Subdivide(patches: 10),
@@ -113,9 +113,9 @@ fn a_focus_that_cannot_be() {
     5 | Focus(min: (0, 0, 0)),
       | ^^^^^
       |
-      = help: keep one, with a box around all that matters
+      = help: keep one, with a box around everything of interest
 
-    error: the transport `Replicas` cannot have a `Focus`: each line takes along all that a surface holds, so lines must be the same everywhere
+    error: the transport `Replicas` cannot be combined with a `Focus`: each line takes all unshot power of a surface, so the density of lines must be uniform
      --> x.ron:6:1
       |
     6 | Multipath(lines: 10, transport: Replicas),
@@ -158,7 +158,7 @@ fn second_shots_out_of_place() {
     ");
 }
 
-/// A `Repeat` with these fields.
+/// Returns the problems of a `Repeat` with these fields.
 fn repeat(fields: &str) -> String {
     stages(&[r#"Load(path: "room.obj"),"#, &format!("Repeat({fields}),"), r#"Save([Table(path: "a.csv")]),"#])
 }
@@ -316,7 +316,7 @@ fn repeats_out_of_place() {
       = help: add `FirstShot(lines: 1_000_000)` and `Multipath(lines: 1_000_000)`
     "#);
     insta::assert_snapshot!(stages(&[load, "FirstShot(lines: 10),", repeat, "Multipath(lines: 10),"]), @r"
-    error: `FirstShot` beside the `Repeat` in line 4
+    error: `FirstShot` outside of the `Repeat` in line 4
      --> x.ron:3:1
       |
     3 | FirstShot(lines: 10),
@@ -324,7 +324,7 @@ fn repeats_out_of_place() {
       |
       = help: move `FirstShot` into the `stages` of `Repeat`
 
-    error: `Multipath` beside the `Repeat` in line 4
+    error: `Multipath` outside of the `Repeat` in line 4
      --> x.ron:5:1
       |
     5 | Multipath(lines: 10),
@@ -339,9 +339,9 @@ fn repeats_out_of_place() {
     4 | Repeat(times: 2, stages: [FirstShot(lines: 10)]),
       | ^^^^^^
       |
-      = help: keep one, with as many repeats as both together
+      = help: keep one, with the repeats of both
 
-    error: `Subdivide` after `Repeat`: light has been computed on the patches as they were
+    error: `Subdivide` after `Repeat`: light has already been computed on the existing patches
      --> x.ron:5:1
       |
     5 | Subdivide(patches: 9),

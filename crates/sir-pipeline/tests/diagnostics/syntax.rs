@@ -1,4 +1,4 @@
-//! Text that is no pipeline at all.
+//! Texts with syntax errors.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ fn syntax() {
     3 |         Load(path: "room.obj),
       |                    ^
       |
-      = help: end the text with `"`
+      = help: end the string with `"`
     "#);
     insta::assert_snapshot!(problems("Pipeline(stages: [Load(path: \"room.obj\")]"), @r#"
     error: not valid RON: expected comma
@@ -43,11 +43,11 @@ fn syntax() {
     1 |
       | ^
       |
-      = help: the file ends inside a value: close every `(` and `[`, and every `"`
+      = help: the file ends within a value; close every `(`, `[` and `"`
     "#);
 }
 
-/// A valid pipeline with a few pieces cut out, doubled, or replaced by others.
+/// Generates valid pipelines with a few pieces removed or replaced by others.
 fn mutated() -> impl Strategy<Value = String> {
     let pieces = prop::sample::select(vec![
         "(",
@@ -97,7 +97,7 @@ fn mutated() -> impl Strategy<Value = String> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// Whatever the file says, there is an answer, and every problem lies inside the file.
+    /// Every text is handled, and every problem lies inside the file.
     #[test]
     fn no_text_is_too_strange(text in mutated()) {
         if let Err(all) = Pipeline::parse(&text, Path::new("no-such-folder/x.ron")) {

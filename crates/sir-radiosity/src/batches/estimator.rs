@@ -1,4 +1,4 @@
-//! The estimator: from what lines have brought to the power that sides receive, and its variance.
+//! The estimator: converts the power that lines have brought to the power that sides receive, with its variance.
 
 use sir_lines::GlobalLines;
 
@@ -10,7 +10,7 @@ use crate::power::Quanta;
 use crate::received::Received;
 use crate::tallies::PatchTallies;
 
-/// Everything that all batches have counted.
+/// The tallies of all batches, with the data needed to evaluate them.
 pub(super) struct Counted<'a> {
     pub(super) model: &'a Model,
     pub(super) domain: &'a GlobalLines,
@@ -21,12 +21,15 @@ pub(super) struct Counted<'a> {
 }
 
 impl Counted<'_> {
-    /// Adds the estimate of the indirect power, and its variance, to the direct power that sides have received. Returns the
-    /// extrapolated power: by how much the estimate differs from what lines have brought.
+    /// Adds the estimate of the indirect power, and its variance, to the direct power that sides have received.
+    ///
+    /// Returns the extrapolated power: the estimate minus the power that lines have brought.
     pub(super) fn add_to(&self, received: &mut Received) -> Quanta {
         let Self { model, domain, focus_sides, tallies, states, schedule } = *self;
-        let (forecast, stretches) =
-            (domain.forecast(schedule.lines()), [false, true].map(|in_focus| schedule.stretch(in_focus)));
+        let (forecast, extrapolations) = (
+            domain.forecast(schedule.lines()),
+            [false, true].map(|in_focus| schedule.extrapolation(in_focus)),
+        );
         let factor =
             |state: &SideState, triangle, side| state.factor(forecast.crossings(model.area(triangle, side)));
         let (mut plain, mut corrected) = ([0.0; 3], [0.0; 3]);
@@ -34,10 +37,10 @@ impl Counted<'_> {
             if !focus_sides.contains(side) {
                 return;
             }
-            let (state, [_, stretch]) = (&states[side.index()], stretches);
+            let (state, [_, extrapolation]) = (&states[side.index()], extrapolations);
             let factor = factor(state, triangle, side);
             for band in 0..3 {
-                let [_, _, power] = state.stretched(band, stretch[band]);
+                let [_, _, power] = state.extrapolated(band, extrapolation[band]);
                 plain[band] += power;
                 corrected[band] += factor * power;
             }
@@ -47,21 +50,21 @@ impl Counted<'_> {
         let Received { power, variance } = received;
         model.mesh.for_each_side(|triangle, _, _, side| {
             let (state, squares) = (&states[side.index()], tallies.squares(side));
-            // Where lines have different weights, they are not corrected.
+            // The ratio estimator does not apply where lines have different weights.
             let in_focus = focus_sides.contains(side);
             let factor = if in_focus { factor(state, triangle, side) } else { 1.0 };
-            let stretch = stretches[usize::from(in_focus)];
+            let extrapolation = extrapolations[usize::from(in_focus)];
             let (power, variance) = (&mut power[side.index()], &mut variance[side.index()]);
             let mut sum = Quanta::ZERO;
             for band in 0..3 {
-                let [brought, tail, stretched] = state.stretched(band, stretch[band]);
+                let [brought, tail, total] = state.extrapolated(band, extrapolation[band]);
                 let factor = if in_focus { factor * scale(band) } else { 1.0 };
-                sum.0[band] = (factor * stretched).round() as i64;
+                sum.0[band] = (factor * total).round() as i64;
                 // Lines bring about the same at all times, so the squares of the tail are in proportion to its power.
                 let share = if brought > 0.0 { (tail / brought).clamp(0.0, 1.0) } else { 0.0 };
-                let longer = 1.0 - share + share * (1.0 + stretch[band]) * (1.0 + stretch[band]);
+                let longer = 1.0 - share + share * (1.0 + extrapolation[band]) * (1.0 + extrapolation[band]);
                 let squares = longer * squares[band];
-                let spread = if in_focus { state.variance(stretched, squares) } else { squares };
+                let spread = if in_focus { state.variance(total, squares) } else { squares };
                 let more = factor * factor * spread;
                 variance[band] = (f64::from(variance[band]) + more) as f32;
             }

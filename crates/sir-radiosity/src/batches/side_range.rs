@@ -1,4 +1,4 @@
-//! Sides between two batches.
+//! Updates of sides between two batches.
 
 use std::ops::Range;
 
@@ -13,7 +13,8 @@ use crate::focus_sides::FocusSides;
 use crate::model::Model;
 use crate::tallies::PatchTallies;
 
-/// Some consecutive sides between two batches. All parts together have all sides, and may be worked on at the same time.
+/// A range of consecutive sides between two batches. All ranges together contain all sides, and may be processed
+/// concurrently.
 #[derive(Debug)]
 pub(super) struct SideRange<'a> {
     pub(super) model: &'a Model,
@@ -26,13 +27,13 @@ pub(super) struct SideRange<'a> {
 }
 
 impl<'a> SideRange<'a> {
-    /// Sets what these sides send with each line of the batch that begins.
+    /// Sets the power that these sides send with each line of the batch that begins.
     pub(super) fn open(&mut self) {
         let batch = self.schedule.batch();
         let forecast = self.domain.forecast(batch.end - batch.start);
         let heavy = f64::from(self.domain.weight());
         let withheld = self.schedule.withheld();
-        let ceased = self.schedule.sources_just_ceased();
+        let tail_begins = self.schedule.tail_begins();
         for (triangle, sides) in self.sides() {
             for i in sides {
                 let weight = if self.focus_sides.contains(SideId(i)) { 1.0 } else { heavy };
@@ -40,17 +41,18 @@ impl<'a> SideRange<'a> {
                 let lines = weight * (expected + 1.0 + expected.sqrt() * expected.min(1.0));
                 let k = (i - self.first) as usize;
                 let state = &mut self.states[k];
-                if ceased {
-                    state.noted = state.brought.0.map(|q| q as f32);
+                if tail_begins {
+                    state.snapshot = state.brought.0.map(|q| q as f32);
                 }
-                let kept = |band: usize| withheld * f64::from(state.noted[band]);
+                let kept = |band: usize| withheld * f64::from(state.snapshot[band]);
                 let share = |band: usize| (state.unshot.0[band] as f64 - kept(band)) / lines;
                 self.tallies.set_share(SideId(i), [0, 1, 2].map(share));
             }
         }
     }
 
-    /// StageBatchSums what the lines of the batch that ends have brought to the sides of this part, and taken from them.
+    /// Adds up the power that the lines of the batch that ends have brought to the sides of this range and taken from
+    /// them.
     pub(super) fn close(&mut self) -> BatchSums {
         let mut sums = BatchSums::default();
         for (triangle, sides) in self.sides() {
@@ -74,7 +76,7 @@ impl<'a> SideRange<'a> {
         sums
     }
 
-    /// The sides of this part: triangles, and consecutive sides of each.
+    /// Returns the sides of this range: triangles, and consecutive sides of each.
     fn sides(&self) -> impl Iterator<Item = (TriangleId, Range<u32>)> + use<'a> {
         self.model.mesh.sides_within(self.first..self.first + self.states.len() as u32)
     }

@@ -4,7 +4,7 @@ use std::ops::AddAssign;
 
 use crate::power::Quanta;
 
-/// Power of all sides, and of those in the focus.
+/// Power of all sides, and of the sides in the focus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct FocusSums {
     pub(super) all: Quanta,
@@ -38,7 +38,7 @@ impl AddAssign for FocusSums {
     }
 }
 
-/// What a batch did, summed over sides.
+/// Power of a batch, summed over sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct BatchSums {
     pub(super) unshot: FocusSums,

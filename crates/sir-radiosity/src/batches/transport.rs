@@ -1,4 +1,4 @@
-//! The transport: batches of global lines, one after the other.
+//! The transport: successive batches of global lines.
 
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ use crate::visitor::Visitor;
 pub struct BatchSettings<'m> {
     /// The scene and its patches.
     pub model: &'m Model,
-    /// What lines are drawn through: a domain, and a focus if there is one.
+    /// Domain through which lines are drawn, with an optional focus.
     pub domain: GlobalLines,
     /// Number of lines.
     pub lines: u64,
@@ -49,11 +49,11 @@ impl<'m> BatchSettings<'m> {
 pub struct Batches<'m> {
     model: &'m Model,
     domain: GlobalLines,
-    /// Where the sequence of lines through the focus begins.
+    /// Random start of the systematic sample of lines through the focus.
     offset: u64,
     focus_sides: FocusSides,
     streams: Streams,
-    /// What the lines of this batch bring, and the share of its power that each side sends with a line.
+    /// Power that the lines of this batch bring, and the power that each side sends with a line.
     tallies: PatchTallies,
     /// The direct light.
     direct: Received,
@@ -62,9 +62,9 @@ pub struct Batches<'m> {
     schedule: Schedule,
 }
 
-/// How large patches are, for the number of lines that cross a typical one.
+/// Sums over patch areas, for the number of lines that cross a typical patch.
 struct PatchSizes {
-    /// Sum of the areas of sides in the focus; of all sides, if there is none in it.
+    /// Sum of the areas of the sides in the focus; of all sides, if there are none in the focus.
     area: f64,
     /// Sum of the squares of these areas.
     square: f64,
@@ -83,26 +83,26 @@ impl PatchSizes {
         sizes
     }
 
-    /// Returns how many lines cross a typical patch once: typical of where the area is.
-    fn lines_for_one_crossing(&self, domain: &GlobalLines, lines: u64) -> f64 {
+    /// Returns the number of lines that cross a typical patch once. Patches are weighted by area.
+    fn lines_per_crossing(&self, domain: &GlobalLines, lines: u64) -> f64 {
         domain.forecast(lines).surface * self.area / (2.0 * self.square)
     }
 }
 
 impl<'m> Batches<'m> {
-    /// Returns the transport before its first batch; `source` is the power that sides reflect of the direct light, and
-    /// `guess` that over what was sent in the first shot.
+    /// Returns the transport before its first batch. `source` is the reflected direct power, and `reflected_share` its
+    /// ratio to the power sent in the first shot.
     fn new(
         settings: BatchSettings<'m>,
         focus_sides: FocusSides,
         direct: Received,
         unit: PowerUnit,
         tallies: PatchTallies,
-        (source, guess): (FocusSums, f64),
+        (source, reflected_share): (FocusSums, f64),
     ) -> Self {
         let BatchSettings { model, domain, lines, seed } = settings;
-        let once = PatchSizes::of(model, &focus_sides).lines_for_one_crossing(&domain, lines);
-        let schedule = Schedule::new(lines, once, &domain, source, guess);
+        let lines_per_crossing = PatchSizes::of(model, &focus_sides).lines_per_crossing(&domain, lines);
+        let schedule = Schedule::new(lines, lines_per_crossing, &domain, source, reflected_share);
         let purpose = Purpose::GLOBAL;
         let offset = Streams::new(seed, Purpose::ALLOCATION).line(purpose.0 - Purpose::FIRST_SHOT.0).unit();
         let offset = (offset * 2f64.powi(64)) as u64;
@@ -111,7 +111,7 @@ impl<'m> Batches<'m> {
         Self { model, domain, offset, focus_sides, streams, tallies, direct, states, unit, schedule }
     }
 
-    /// Cuts the sides into at most `count` ranges.
+    /// Divides the sides into at most `count` ranges.
     fn ranges(&mut self, count: usize) -> impl Iterator<Item = SideRange<'_>> {
         let Self { model, ref domain, ref focus_sides, ref tallies, ref mut states, schedule, .. } = *self;
         let size = states.len().div_ceil(count.max(1)).max(1);
@@ -121,7 +121,7 @@ impl<'m> Batches<'m> {
         })
     }
 
-    /// Sets what all sides send with a line of the batch that begins.
+    /// Sets the power that all sides send with each line of the batch that begins.
     fn open(&mut self, workers: &dyn Workers) {
         map_parts(workers, self.ranges(workers.count()), |mut sides| sides.open());
     }
@@ -155,21 +155,21 @@ impl<'m> Stage for Batches<'m> {
             source.add(unshot, in_focus);
             let crossings = forecast.crossings(model.area(triangle, side));
             let weight = if in_focus { 1.0 } else { f64::from(domain.weight()) };
-            // Lines are fewer than their weights, and cross it once.
+            // There are fewer lines than their total weight, and each crosses the side at most once.
             most = f64::max(most, if in_focus { crossings } else { crossings.min(lines as f64) });
             for band in 0..3 {
-                // All light that a side reflects, if what it sees is as bright, over all its crossings.
+                // All light that the side reflects, if the surfaces it sees are as bright, over all its crossings.
                 let share = weight * (unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings);
-                // Not a number, and not counted, for a patch that is all gap.
+                // NaN for a patch without covered area; `max` ignores it.
                 brightest[band] = f64::max(brightest[band], share);
             }
         });
         let unit_of_squares = SquareUnit::new(brightest, most);
         let tallies = PatchTallies::new(model.mesh.side_count(), workers.count(), 1, unit_of_squares);
-        let guess = balance.unshot.total() / balance.emitted.total().max(1.0);
-        let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (source, guess));
+        let reflected_share = balance.unshot.total() / balance.emitted.total().max(1.0);
+        let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (source, reflected_share));
         for (state, unshot) in stage.states.iter_mut().zip(unshot) {
-            (state.unshot, state.noted) = (unshot, unshot.0.map(|q| q as f32));
+            (state.unshot, state.snapshot) = (unshot, unshot.0.map(|q| q as f32));
         }
         stage.open(workers);
         Ok(stage)
@@ -207,15 +207,15 @@ impl<'m> Stage for Batches<'m> {
     fn trace(&self, worker: usize, _chain: &mut AnyOrder, lines: Range<u64>, totals: &mut StageTotals) {
         let StageTotals { balance, counts } = totals;
         let tallies = self.tallies.of_worker(worker);
-        let soon = |side| tallies.prefetch(side);
+        let prefetch = |side| tallies.prefetch(side);
         let draw = |index| self.domain.line(index, self.offset, self.streams.line(index).point());
         if self.domain.focus().is_none() {
-            // The weight is known, and costs nothing.
-            global::trace(self.model, draw, lines, counts, soon, |_, _, segment| {
+            // The weight is a constant here, which costs nothing.
+            global::trace(self.model, draw, lines, counts, prefetch, |_, _, segment| {
                 exchange(tallies, balance, segment, 1);
             });
         } else {
-            global::trace(self.model, draw, lines, counts, soon, |_, weight, segment| {
+            global::trace(self.model, draw, lines, counts, prefetch, |_, weight, segment| {
                 exchange(tallies, balance, segment, weight);
             });
         }
@@ -274,7 +274,7 @@ impl<'m> Stage for Batches<'m> {
 }
 
 impl Batches<'_> {
-    /// Shows the state, except the units that are needed before.
+    /// Visits the state except the units, which are needed before the tallies can be created.
     fn visit_after_units(&mut self, visitor: &mut dyn Visitor) {
         self.schedule.visit(!self.focus_sides.is_all(), visitor);
         self.tallies.visit(Counters::All, visitor);
@@ -284,7 +284,7 @@ impl Batches<'_> {
     }
 }
 
-/// Passes power along a segment of a line of some weight.
+/// Sends power both ways along a segment of a line.
 #[inline]
 fn exchange(tallies: WorkerTallies<'_>, balance: &mut Balance, segment: Segment, weight: u32) {
     match (segment.from, segment.to) {

@@ -1,4 +1,4 @@
-//! Which emitting surfaces a point aims at.
+//! Choice of the emitting surfaces at which a sensor aims.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -10,21 +10,21 @@ use sir_mesh::PatchId;
 use crate::emitter::Emitter;
 use crate::model::Model;
 use crate::sensors::sensor::Sensor;
-use crate::sensors::tree::{Leaf, MOST_GROUPS, Tree};
+use crate::sensors::tree::{Leaf, MAX_CUT, Tree};
 use crate::sources;
 
 /// All emitting surfaces of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Emitters {
     patches: Vec<EmittingPatch>,
-    /// Groups of them, if there are many.
+    /// Tree of the surfaces, if there are many.
     tree: Option<Tree>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct EmittingPatch {
     triangle: TriangleId,
-    /// The patch of it, if its patches differ.
+    /// Patch of the triangle, if its patches differ.
     patch: Option<PatchId>,
     side: Side,
     corners: [DVec3; 3],
@@ -33,13 +33,13 @@ struct EmittingPatch {
     area: f64,
 }
 
-/// The emitting surfaces as a sensor sees them if nothing is in between.
+/// Distribution of rays over the emitting surfaces for one sensor, without occlusion.
 #[derive(Clone, Debug)]
 pub(super) struct Choice<'e> {
     emitters: &'e Emitters,
     origin: DVec3,
     normal: DVec3,
-    /// What is told apart: ranges in the order of the tree; without a tree, nothing, since then it is the patches themselves.
+    /// Ranges in the order of the tree; empty without a tree, where each patch is a group of its own.
     groups: Vec<Range<u32>>,
     /// Running sums of the probabilities of groups, or of patches; empty if the sensor sees no emitter.
     ends: Vec<f64>,
@@ -50,12 +50,12 @@ pub(super) struct Choice<'e> {
 pub(super) struct Aim {
     /// Unit vector towards the point.
     pub(super) direction: DVec3,
-    /// The surface.
+    /// Triangle aimed at.
     pub(super) triangle: TriangleId,
-    /// Which side of it.
+    /// Side of the triangle.
     pub(super) side: Side,
-    /// What it brings if it is seen.
-    pub(super) brings: Rgb,
+    /// Contribution of the ray, if the point is visible.
+    pub(super) contribution: Rgb,
 }
 
 impl Emitters {
@@ -67,16 +67,16 @@ impl Emitters {
                     Some(patch) => model.exitance(triangle, patch, side),
                     None => scene.exitance(triangle, side),
                 };
-                // Gaps included: rays that are aimed at them meet something else.
+                // Including gaps: rays aimed at gaps hit something else.
                 let [a, b, c] = corners;
                 let area = 0.5 * (b - a).cross(c - a).length();
                 Some(EmittingPatch { triangle, patch, side, corners, normal, exitance, area })
             }
-            // Lights without a surface are measured by themselves, and the sky is what no ray meets.
+            // Lights without a surface are measured separately. Rays that hit nothing measure the sky.
             _ => None,
         });
         let patches: Vec<EmittingPatch> = patches.collect();
-        let tree = (patches.len() > MOST_GROUPS).then(|| {
+        let tree = (patches.len() > MAX_CUT).then(|| {
             let leaf = |&EmittingPatch { corners, normal, exitance, area, .. }: &EmittingPatch| Leaf {
                 corners,
                 normal,
@@ -88,8 +88,8 @@ impl Emitters {
         Self { patches, tree }
     }
 
-    /// How often each is to be aimed at from a point that looks in the direction `normal`: in proportion to an estimate of the
-    /// irradiance that it brings.
+    /// Returns the probability of aiming at each surface from a sensor, in proportion to an estimate of the irradiance
+    /// that it brings.
     pub(super) fn from(&self, origin: DVec3, sensor: &Sensor) -> Choice<'_> {
         let normal = sensor.direction();
         let of_patch = |k: usize| weight(&self.patches[k], origin, normal);
@@ -110,8 +110,9 @@ impl Emitters {
     }
 }
 
-/// Exitance times an estimate of the share of the hemisphere that a source takes: from the geometry at its corners and its middle,
-/// and never more than all. Zero only where the source is behind the sensor, or the sensor behind the source.
+/// Returns the exitance times an estimate of the share of the hemisphere that a source takes. The estimate uses the
+/// geometry at the corners and the center of the source, and is at most 1. It is zero only if the source is behind the
+/// sensor, or the sensor behind the source.
 fn weight(emitting: &EmittingPatch, origin: DVec3, normal: DVec3) -> f64 {
     let [a, b, c] = emitting.corners;
     let height = (origin - a).dot(emitting.normal);
@@ -121,7 +122,7 @@ fn weight(emitting: &EmittingPatch, origin: DVec3, normal: DVec3) -> f64 {
     let at = |point: DVec3| {
         let to = point - origin;
         let square = to.length_squared();
-        // Both cosines lack the distance.
+        // Both cosines lack division by the distance.
         to.dot(normal).max(0.0) * height / (square * square).max(f64::MIN_POSITIVE)
     };
     let geometry = (at(a) + at(b) + at(c) + at((a + b + c) / 3.0)) / 4.0;
@@ -130,12 +131,12 @@ fn weight(emitting: &EmittingPatch, origin: DVec3, normal: DVec3) -> f64 {
 }
 
 impl Choice<'_> {
-    /// Whether there is anything to aim at.
+    /// True if there is nothing to aim at.
     pub(super) fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// How often emitter `k` is aimed at.
+    /// Returns the probability of aiming at emitter `k`.
     fn probability(&self, k: usize) -> f64 {
         let Some(tree) = &self.emitters.tree else { return self.of_group(k) };
         let place = tree.place(k);
@@ -151,12 +152,14 @@ impl Choice<'_> {
         }
     }
 
-    /// What the light of emitter `k` from a direction at a distance brings, shared between the two ways to find it.
+    /// Returns the contribution of emitter `k` to a ray in a direction that hits it at a distance, weighted between the
+    /// two sampling strategies.
     ///
-    /// Rays of the cosine distribution find a direction with the density `cos θ / π`, aimed ones with `p_k r² / (A_k cos θ′)`. Each
-    /// counts `M/π · cos θ` over the sum of both (the balance heuristic of Veach and Guibas 1995), which is never more than `M`:
-    /// neither an emitter that nearly touches the sensor nor one that is small and bright makes few rays carry much.
-    fn brings(&self, k: usize, direction: DVec3, distance: f64) -> Rgb {
+    /// Cosine-weighted rays sample a direction with the density `cos θ / π`, and aimed rays with
+    /// `p_k r² / (A_k cos θ′)`. Each contributes `M/π · cos θ` over the sum of both densities (the balance heuristic of
+    /// Veach and Guibas 1995), which is at most `M`. So neither an emitter that nearly touches the sensor nor a small
+    /// and bright one makes a few rays carry most of the light.
+    fn contribution(&self, k: usize, direction: DVec3, distance: f64) -> Rgb {
         let EmittingPatch { exitance, area, normal, .. } = self.emitters.patches[k];
         let cosine = direction.dot(self.normal);
         let its_cosine = -direction.dot(normal);
@@ -167,9 +170,9 @@ impl Choice<'_> {
         exitance * (cosine / (aimed + cosine))
     }
 
-    /// What a ray of the cosine distribution brings that has met this side at this distance; `patch` is where, if the patches of
-    /// the triangle differ.
-    pub(super) fn met(
+    /// Returns the contribution of a cosine-weighted ray that has hit this side at this distance. `patch` is the patch
+    /// hit, if the patches of the triangle differ.
+    pub(super) fn hit_contribution(
         &self,
         triangle: TriangleId,
         patch: Option<PatchId>,
@@ -179,12 +182,12 @@ impl Choice<'_> {
     ) -> Rgb {
         let key = |emitting: &EmittingPatch| (emitting.triangle, emitting.side, emitting.patch);
         let found = self.emitters.patches.binary_search_by_key(&(triangle, side, patch), key);
-        found.map_or(Rgb::ZERO, |k| self.brings(k, direction, distance))
+        found.map_or(Rgb::ZERO, |k| self.contribution(k, direction, distance))
     }
 
-    /// Aims at the point that belongs to one of the unit square; `None` if it brings nothing.
+    /// Aims at the point that corresponds to a point of the unit square. Returns `None` if the contribution is zero.
     pub(super) fn aim(&self, [u, v]: [f64; 2]) -> Option<Aim> {
-        // The emitters share the first coordinate; what is left of it is a coordinate on the emitter.
+        // The first coordinate selects the emitter. Its remainder is a coordinate on the emitter.
         let group = self.ends.partition_point(|&end| end <= u).min(self.ends.len().checked_sub(1)?);
         let probability = self.of_group(group);
         let start = self.ends[group] - probability;
@@ -196,7 +199,7 @@ impl Choice<'_> {
         let EmittingPatch { triangle, side, corners, .. } = self.emitters.patches[k];
         let to = sir_lines::continuous_point_on_triangle([within, v]).point(corners) - self.origin;
         let (distance, direction) = (to.length(), to.try_normalize()?);
-        let brings = self.brings(k, direction, distance);
-        (brings != Rgb::ZERO).then_some(Aim { direction, triangle, side, brings })
+        let contribution = self.contribution(k, direction, distance);
+        (contribution != Rgb::ZERO).then_some(Aim { direction, triangle, side, contribution })
     }
 }

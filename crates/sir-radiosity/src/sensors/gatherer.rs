@@ -8,15 +8,15 @@ use sir_lines::{Purpose, Streams};
 use crate::model::Model;
 use crate::sensors::emitters::Emitters;
 use crate::sensors::measurement::Measurement;
-use crate::sensors::replication::{Met, Replication};
+use crate::sensors::replication::{PatchHits, Replication};
 use crate::sensors::sensor::{REPLICATIONS, Sensor, SensorSettings};
 use crate::solution::Solution;
 
-/// How far above its position a sensor looks from, in radii of the scene's bounding sphere, so that the surface on which it lies is
-/// below it whatever was rounded in the file of the scene: 0.1 mm in a room of 10 m.
+/// Height above the position of a sensor at which its rays start, in radii of the scene's bounding sphere: 0.1 mm in a
+/// room of 10 m. The surface on which the sensor lies is then below it in spite of rounding in the scene file.
 pub const SENSOR_OFFSET: f64 = 1e-5;
 
-/// Rays of all replications before the error is looked at for the first time.
+/// Rays of all replications before the first check of the error.
 const FIRST: u64 = 2048;
 
 /// Measures the light of a solution at points, by final gathering.
@@ -27,12 +27,13 @@ pub struct Gatherer<'s> {
     settings: SensorSettings,
     emitters: Emitters,
     streams: Streams,
-    /// Distance at which rays start above a sensor.
+    /// Height above a sensor at which rays start.
     offset: f64,
 }
 
 impl<'s> Gatherer<'s> {
-    /// Prepares to measure the light of a solution: `solution` has the irradiance of the patches, whose reflected light is gathered.
+    /// Prepares measurements of the light of a solution, which has the irradiance of the patches whose reflected light
+    /// is gathered.
     #[must_use]
     pub fn new(model: &'s Model, solution: &'s Solution, settings: SensorSettings, seed: u64) -> Self {
         Self {
@@ -45,7 +46,8 @@ impl<'s> Gatherer<'s> {
         }
     }
 
-    /// Measures at a sensor: a function of it, of the seed and of `number`, which should differ from sensor to sensor (below 2⁴⁵).
+    /// Measures the irradiance at a sensor. The result depends on the sensor, the seed and `number` only. `number`
+    /// should differ between sensors and must be below 2⁴⁵.
     ///
     /// Backs of one-sided surfaces are black.
     #[must_use]
@@ -56,7 +58,7 @@ impl<'s> Gatherer<'s> {
         let choice = self.emitters.from(origin, sensor);
         let stream = |k| self.streams.line(number * REPLICATIONS + k);
         let mut replications: Vec<_> = (0..REPLICATIONS).map(|k| Replication::new(&mut stream(k))).collect();
-        let mut met = Met::default();
+        let mut patch_hits = PatchHits::default();
         let most = self.settings.rays.div_ceil(REPLICATIONS).max(1);
         let mut rays = if self.settings.error > 0.0 { most.min(FIRST / REPLICATIONS) } else { most };
         loop {
@@ -67,24 +69,24 @@ impl<'s> Gatherer<'s> {
                     (origin, sensor.direction()),
                     &choice,
                     &mut tracer,
-                    &mut met,
+                    &mut patch_hits,
                 );
             }
             let mut measurement = Measurement::of(&replications, lights);
             let enough = measurement.sampling_error() <= self.settings.error * measurement.luminance();
             if rays == most || enough {
-                measurement.inherit(&met.errors(self.model, self.solution), rays * REPLICATIONS);
+                measurement.inherit(&patch_hits.errors(self.model, self.solution), rays * REPLICATIONS);
                 return measurement;
             }
             rays = most.min(2 * rays);
         }
     }
 
-    /// The irradiance by lights without a surface.
+    /// Returns the irradiance by lights without a surface.
     fn lights(&self, sensor: &Sensor, origin: DVec3, tracer: &mut Tracer<'_>) -> Rgb {
         let (mut rays, mut brings) = (Vec::new(), Vec::new());
         for light in self.model.scene.lights() {
-            // What arrives at the sensor itself; only the shadow ray starts above it.
+            // The arrival is computed at the sensor itself. Only the shadow ray starts above it.
             let Some(arrival) = light.kind.arrival(sensor.position()) else { continue };
             let cosine = arrival.towards.dot(sensor.direction());
             if cosine <= 0.0 {
@@ -97,7 +99,7 @@ impl<'s> Gatherer<'s> {
         }
         let mut seen = vec![false; rays.len()];
         tracer.occluded_each(&rays, |i, is_occluded| seen[i] = !is_occluded);
-        // Rays are done in any order, but floats have to be added up in always the same.
+        // Rays are traced in any order, but floats have to be added in a fixed order.
         brings.iter().zip(seen).filter(|(_, seen)| *seen).fold(Rgb::ZERO, |sum, (brought, _)| sum + *brought)
     }
 }

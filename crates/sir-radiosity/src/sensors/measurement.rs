@@ -1,4 +1,4 @@
-//! What a sensor measures.
+//! The result of a measurement at a sensor.
 
 use sir_geom::{Rgb, luminance};
 
@@ -9,21 +9,23 @@ use crate::sensors::replication::{Gathered, Replication};
 pub struct Measurement {
     /// Irradiance per band \[W/m²\].
     pub irradiance: Rgb,
-    /// Its part that comes straight from lights, emitting surfaces and the sky \[W/m²\].
+    /// Part of `irradiance` directly from lights, emitting surfaces and the sky \[W/m²\].
     pub direct: Rgb,
-    /// Standard error of `irradiance` per band \[W/m²\] by the choice of rays, from the spread of the replications.
+    /// Sampling error: standard error of `irradiance` per band \[W/m²\] due to the choice of rays, from the spread of
+    /// the replications.
     pub sampling: Rgb,
-    /// Standard error of `irradiance` per band \[W/m²\] by the errors of the patches whose light is gathered, which are taken to be
-    /// independent of each other. Sensors that see the same patches have it in common.
+    /// Inherited error: standard error of `irradiance` per band \[W/m²\] due to the errors of the patches whose light
+    /// is gathered. These are assumed to be independent of each other. Sensors that see the same patches have this
+    /// error in common.
     pub inherited: Rgb,
-    /// Standard errors of the luminance-weighted irradiance \[W/m²\]: by the choice of rays, and by those of patches.
+    /// Sampling and inherited standard error of the luminance-weighted irradiance \[W/m²\].
     pub luminance_errors: [f64; 2],
-    /// Rays over the hemisphere.
+    /// Number of rays over the hemisphere.
     pub rays: u64,
 }
 
 impl Measurement {
-    /// From the replications, and the light of lights without a surface.
+    /// Returns the measurement from the replications and the irradiance by lights without a surface.
     pub(super) fn of(replications: &[Replication], lights: Rgb) -> Self {
         let n = replications.len() as f64;
         let mean = |value: &dyn Fn(&Replication) -> Rgb| {
@@ -47,8 +49,8 @@ impl Measurement {
         }
     }
 
-    /// Adds the errors of patches, of `rays` rays. All bands of a patch are taken to be off in the same direction, since the same
-    /// lines have brought their light.
+    /// Adds the errors of patches, gathered by `rays` rays. The errors of all bands of a patch are assumed to have the
+    /// same sign, because the same lines have brought their light.
     pub(super) fn inherit(&mut self, gathered: &[Gathered], rays: u64) {
         let (mut squares, mut square) = (Rgb::ZERO, 0.0);
         for &(count, error) in gathered {
@@ -61,38 +63,38 @@ impl Measurement {
         self.rays = rays;
     }
 
-    /// Standard error of the irradiance per band \[W/m²\].
+    /// Returns the standard error of the irradiance per band \[W/m²\].
     #[must_use]
     pub fn error(&self) -> Rgb {
         (self.sampling * self.sampling + self.inherited * self.inherited).map(f64::sqrt)
     }
 
-    /// The irradiance weighted as the eye does, `0.2126 R + 0.7152 G + 0.0722 B` \[W/m²\].
+    /// Returns the luminance-weighted irradiance, `0.2126 R + 0.7152 G + 0.0722 B` \[W/m²\].
     #[must_use]
     pub fn luminance(&self) -> f64 {
         luminance(self.irradiance)
     }
 
-    /// Standard error of [`luminance`](Self::luminance) by the choice of rays \[W/m²\].
+    /// Returns the sampling error of [`luminance`](Self::luminance) \[W/m²\].
     #[must_use]
     pub fn sampling_error(&self) -> f64 {
         self.luminance_errors[0]
     }
 
-    /// Standard error of [`luminance`](Self::luminance) by the errors of patches \[W/m²\].
+    /// Returns the inherited error of [`luminance`](Self::luminance) \[W/m²\].
     #[must_use]
     pub fn inherited_error(&self) -> f64 {
         self.luminance_errors[1]
     }
 
-    /// Standard error of [`luminance`](Self::luminance) \[W/m²\].
+    /// Returns the standard error of [`luminance`](Self::luminance) \[W/m²\].
     #[must_use]
     pub fn luminance_error(&self) -> f64 {
         let [sampling, inherited] = self.luminance_errors;
         (sampling * sampling + inherited * inherited).sqrt()
     }
 
-    /// All numbers as bit patterns; those of the default are zero.
+    /// Returns all numbers as bit patterns, which are zero for the default value.
     #[must_use]
     pub fn to_bits(&self) -> [u64; 15] {
         let [a, b, c] = self.irradiance.to_array();
@@ -105,7 +107,7 @@ impl Measurement {
         bits
     }
 
-    /// From what [`to_bits`](Self::to_bits) gave.
+    /// Returns the measurement from the bit patterns of [`to_bits`](Self::to_bits).
     #[must_use]
     pub fn from_bits(bits: [u64; 15]) -> Self {
         let [a, b, c, d, e, f, g, h, i, k, l, m, n, o, _] = bits.map(f64::from_bits);

@@ -1,9 +1,9 @@
-//! Irradiance where there is no patch: at points, by rays from there.
+//! Irradiance at points that need not be on a patch, by rays that start there.
 //!
-//! Lights without a surface are exact, with one shadow ray each. Emitting surfaces are found in two ways, by rays aimed at them
-//! and by rays of the cosine distribution over the hemisphere, which also gather what patches reflect and the light of the sky. The
-//! rays come in [`REPLICATIONS`] sets, each of which is spread evenly ([`sir_lines::R2Sequence`]), and which are independent of each
-//! other: their differences tell the error.
+//! Lights without a surface are exact, with one shadow ray each. Emitting surfaces are sampled in two ways, by rays
+//! aimed at them and by cosine-weighted rays over the hemisphere. The latter also gather the light that patches reflect
+//! and the light of the sky. The rays form [`REPLICATIONS`] sets. Each set is low-discrepancy
+//! ([`sir_lines::R2Sequence`]), and the sets are independent of each other, so that their spread gives the error.
 
 mod emitters;
 mod gatherer;

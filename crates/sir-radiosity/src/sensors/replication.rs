@@ -12,26 +12,26 @@ use crate::model::Model;
 use crate::sensors::emitters::{Aim, Choice};
 use crate::solution::Solution;
 
-/// Rays that are made at a time.
+/// Number of rays that are generated at a time.
 const RAYS: u64 = 1024;
 
-/// A set of evenly spread rays, and what they have brought so far.
+/// A low-discrepancy set of rays, with the sums of their contributions so far.
 #[derive(Clone, Debug)]
 pub(super) struct Replication {
     hemisphere: R2Sequence,
     aimed: R2Sequence,
     rays: u64,
-    /// Sums over the rays, of which each way has the same number.
+    /// Sums over the rays. Both sampling strategies have the same number of rays.
     direct: Rgb,
     reflected: Rgb,
 }
 
-/// The patches that rays have met.
+/// The patches that rays have hit.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Met(Vec<(SideId, TriangleId)>);
+pub(super) struct PatchHits(Vec<(SideId, TriangleId)>);
 
-/// What the error of a patch does to that of a sensor: the number of rays that met the patch, and the standard error of the light
-/// that it reflects.
+/// Contribution of a patch to the error of a sensor: the number of rays that hit the patch, and the standard error of
+/// the light that it reflects.
 pub(super) type Gathered = (u64, Rgb);
 
 impl Replication {
@@ -40,13 +40,13 @@ impl Replication {
         Self { hemisphere, aimed, rays: 0, direct: Rgb::ZERO, reflected: Rgb::ZERO }
     }
 
-    /// The irradiance by sources with a surface and by the sky, and that by patches.
+    /// Returns the irradiance by emitting surfaces and the sky, and the irradiance by reflected light.
     pub(super) fn means(&self) -> (Rgb, Rgb) {
         let per_ray = 1.0 / self.rays.max(1) as f64;
         (self.direct * per_ray, self.reflected * per_ray)
     }
 
-    /// Traces rays until there are `rays` over the hemisphere, and as many that are aimed at emitters.
+    /// Traces rays until there are `rays` over the hemisphere, and the same number aimed at emitters.
     pub(super) fn trace(
         &mut self,
         rays: u64,
@@ -54,7 +54,7 @@ impl Replication {
         (origin, normal): (DVec3, DVec3),
         choice: &Choice<'_>,
         tracer: &mut Tracer<'_>,
-        met: &mut Met,
+        patch_hits: &mut PatchHits,
     ) {
         while self.rays < rays {
             let numbers = self.rays..rays.min(self.rays + RAYS);
@@ -68,28 +68,28 @@ impl Replication {
                 aims.extend(numbers.filter_map(|i| choice.aim(self.aimed.at(i))));
                 all.extend(aims.iter().map(|aim| ray(aim.direction)));
             }
-            // Rays are done in any order, but floats have to be added up in always the same.
+            // Rays are traced in any order, but floats have to be added in a fixed order.
             let mut hits = vec![None; all.len()];
             tracer.closest_each(&all, |i, hit| hits[i] = hit);
             for (ray, hit) in all[..free].iter().zip(&hits) {
-                self.gather((model, solution), choice, ray.line.direction, hit.as_ref(), met);
+                self.gather((model, solution), choice, ray.line.direction, hit.as_ref(), patch_hits);
             }
-            for (Aim { triangle, side, brings, .. }, hit) in aims.iter().zip(&hits[free..]) {
+            for (Aim { triangle, side, contribution, .. }, hit) in aims.iter().zip(&hits[free..]) {
                 if hit.is_some_and(|hit| (hit.triangle, hit.side) == (*triangle, *side)) {
-                    self.direct += *brings;
+                    self.direct += *contribution;
                 }
             }
         }
     }
 
-    /// Adds what a ray over the hemisphere brings: the radiosity of what it has met.
+    /// Adds the contribution of a ray over the hemisphere: the radiosity of the surface that it hit.
     fn gather(
         &mut self,
         (model, solution): (&Model, &Solution),
         choice: &Choice<'_>,
         direction: DVec3,
         hit: Option<&Hit>,
-        met: &mut Met,
+        patch_hits: &mut PatchHits,
     ) {
         let Model { scene, mesh, .. } = model;
         let Some(hit) = hit else {
@@ -98,17 +98,17 @@ impl Replication {
         };
         let Some(side) = mesh.side_at(hit.triangle, hit.point, hit.side) else { return };
         let patch = mesh.is_varied(hit.triangle).then(|| mesh.patch_at(hit.triangle, hit.point));
-        self.direct += choice.met(hit.triangle, patch, hit.side, direction, hit.t);
+        self.direct += choice.hit_contribution(hit.triangle, patch, hit.side, direction, hit.t);
         let reflectance = model.reflectance(hit.triangle, side);
         if reflectance != Rgb::ZERO {
             self.reflected += reflectance * solution.irradiance[side.index()];
-            met.0.push((side, hit.triangle));
+            patch_hits.0.push((side, hit.triangle));
         }
     }
 }
 
-impl Met {
-    /// For each patch that was met: by how many rays, and the standard error of what it reflects.
+impl PatchHits {
+    /// Returns, for each patch hit, the number of rays and the standard error of the light that it reflects.
     pub(super) fn errors(&mut self, model: &Model, solution: &Solution) -> Vec<Gathered> {
         self.0.sort_unstable_by_key(|(side, _)| *side);
         let patches = self.0.chunk_by(|a, b| a.0 == b.0);

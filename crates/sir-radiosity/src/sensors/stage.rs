@@ -1,4 +1,4 @@
-//! Sensors as a stage: each is measured by one worker, whichever it is.
+//! Sensors as a stage. Any worker may measure any sensor.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -13,16 +13,16 @@ use crate::stage::{AnyOrder, Stage, Workers};
 use crate::totals::StageTotals;
 use crate::visitor::Visitor;
 
-/// What is to be measured.
+/// Input of the measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorTask<'s> {
     /// The scene and its patches.
     pub model: &'s Model,
-    /// The light of the patches, which is gathered.
+    /// Irradiance of the patches whose reflected light is gathered.
     pub solution: &'s Solution,
-    /// Where to measure.
+    /// Sensors to measure.
     pub sensors: &'s [Sensor],
-    /// How carefully.
+    /// Number of rays and target error.
     pub settings: SensorSettings,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -31,13 +31,13 @@ pub struct SensorTask<'s> {
 /// Bits of a [`Measurement`].
 type Slot = [AtomicU64; 15];
 
-/// Measures at sensors, in any order. The outcome has their measurements in the order of the sensors.
+/// Measures sensors in any order. The outcome is their measurements in the order of the sensors.
 #[derive(Debug)]
 pub struct SensorStage<'s> {
     sensors: &'s [Sensor],
     gatherer: Gatherer<'s>,
     rays: u64,
-    /// What was measured, as bit patterns; zero where nothing was measured yet.
+    /// Measurements as bit patterns; zero where nothing has been measured yet.
     measured: Vec<Slot>,
 }
 
@@ -94,7 +94,8 @@ impl<'s> Stage for SensorStage<'s> {
         }
     }
 
-    /// A sensor is measured by one process and all others show zeros, so the sum of the bit patterns is that of the measurement.
+    /// Each sensor is measured by one process, and all others have zeros, so the sum of the bit patterns is the
+    /// measurement.
     fn visit_round(&mut self, visitor: &mut dyn Visitor) {
         let mut words: Vec<i64> =
             self.measured.iter_mut().flatten().map(|word| *word.get_mut() as i64).collect();

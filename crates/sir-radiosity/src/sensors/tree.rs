@@ -1,8 +1,8 @@
-//! A tree of emitting surfaces, so that a sensor need not look at each of thousands.
+//! A tree of emitting surfaces, so that a sensor need not evaluate each of thousands.
 //!
-//! As in lightcuts (Walter et al. 2005), a sensor takes as much of the tree as it needs: near groups in parts, far ones as a whole. A
-//! group is chosen by an estimate of what it brings, one of its members by power. Estimates have no part in what is measured, but in
-//! its noise.
+//! As in lightcuts (Walter et al. 2005), a sensor uses a cut through the tree: near groups in parts, far groups as a
+//! whole. A group is chosen by an estimate of its contribution, and a member of it by power. The estimates affect only
+//! the noise of a measurement, not its mean.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -11,10 +11,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-/// The most groups that a sensor distinguishes.
-pub(super) const MOST_GROUPS: usize = 256;
+/// Largest number of groups in a cut.
+pub(super) const MAX_CUT: usize = 256;
 
-/// What the tree knows of a surface.
+/// A surface in the tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leaf {
     pub(super) corners: [DVec3; 3],
@@ -23,14 +23,14 @@ pub(super) struct Leaf {
     pub(super) area: f64,
 }
 
-/// Groups within groups of surfaces.
+/// A hierarchy of groups of surfaces.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    /// Numbers of the surfaces such that each group is a range.
+    /// Numbers of the surfaces, in an order in which each group is a range.
     order: Vec<u32>,
-    /// Where in `order` each surface is.
+    /// Position of each surface in `order`.
     place: Vec<u32>,
-    /// Power of all before, in this order.
+    /// Running sums of power in this order, starting with 0.
     sums: Vec<f64>,
     nodes: Vec<Node>,
 }
@@ -39,7 +39,7 @@ pub(super) struct Tree {
 struct Node {
     start: u32,
     end: u32,
-    /// The second child; the first one follows the node itself.
+    /// The second child. The first child follows the node itself.
     second: u32,
     center: DVec3,
     radius: f64,
@@ -49,7 +49,7 @@ struct Node {
     area: f64,
 }
 
-/// A group on its way to a cut.
+/// A group in the construction of a cut.
 struct Candidate {
     node: usize,
     weight: f64,
@@ -57,7 +57,7 @@ struct Candidate {
 }
 
 impl Tree {
-    /// Groups surfaces, of which there is at least one.
+    /// Returns the tree of these surfaces, of which there must be at least one.
     pub(super) fn new(leaves: &[Leaf]) -> Self {
         let n = leaves.len();
         let mut tree = Self {
@@ -66,7 +66,7 @@ impl Tree {
             sums: Vec::with_capacity(n + 1),
             nodes: Vec::with_capacity(2 * n),
         };
-        // Halves are of equal size, so the tree is as deep as the logarithm of its size.
+        // Both halves have the same size, so the depth of the tree is logarithmic.
         tree.build(leaves, 0..n);
         let mut sum = 0.0;
         tree.sums.push(sum);
@@ -121,8 +121,9 @@ impl Tree {
         self.build(leaves, range.start + half..range.end);
     }
 
-    /// The groups that a point sees which looks in the direction `normal`, as ranges in the tree's order, each with an estimate of
-    /// the irradiance that it brings: zero only if all of it is behind the point. `exact` estimates what a single surface brings.
+    /// Returns a cut for a point that looks in the direction `normal`: groups as ranges in the tree's order, each with
+    /// an estimate of the irradiance that it brings. The estimate is zero only if the whole group is behind the point.
+    /// `exact` returns the estimate for a single surface.
     pub(super) fn cut(
         &self,
         origin: DVec3,
@@ -141,8 +142,8 @@ impl Tree {
             Candidate { node, weight, priority }
         };
         let mut heap = BinaryHeap::from([candidate(0)]);
-        while heap.len() < MOST_GROUPS {
-            // The first one is the one to part, if there is any.
+        while heap.len() < MAX_CUT {
+            // The first candidate is the one to split, if it can be.
             match heap.peek() {
                 Some(top) if top.priority > 0.0 => {
                     let node = top.node;
@@ -159,25 +160,25 @@ impl Tree {
         groups
     }
 
-    /// Where in the tree's order a surface is.
+    /// Returns the position of a surface in the tree's order.
     pub(super) fn place(&self, surface: usize) -> u32 {
         self.place[surface]
     }
 
-    /// Share of the power of a group that the surface in a place of it has.
+    /// Returns the share of the power of a group that belongs to the surface at a position in it.
     pub(super) fn share(&self, group: &Range<u32>, place: u32) -> f64 {
         let (low, high) = self.ends(group);
         let place = place as usize;
         if high > low { (self.sums[place + 1] - self.sums[place]) / (high - low) } else { 0.0 }
     }
 
-    /// The surface of a group that a number between 0 and 1 stands for, by power, and what is left of the number as one between 0
-    /// and 1.
+    /// Chooses a surface of a group in proportion to power, by a number in `[0, 1]`. Returns the surface and the
+    /// remainder of the number, rescaled to `[0, 1]`.
     pub(super) fn choose(&self, group: &Range<u32>, u: f64) -> (usize, f64) {
         let (low, high) = self.ends(group);
         let target = low + u * (high - low);
         let (first, last) = (group.start as usize, group.end as usize - 1);
-        // Only surfaces in between are chosen, whatever was rounded.
+        // Only surfaces of the group are chosen, in spite of rounding.
         let k = first + self.sums[first + 1..=last].partition_point(|&sum| sum <= target);
         let rest = (target - self.sums[k]) / (self.sums[k + 1] - self.sums[k]);
         (self.order[k] as usize, if rest.is_finite() { rest.clamp(0.0, 1.0) } else { 0.5 })
@@ -189,16 +190,16 @@ impl Tree {
 }
 
 impl Node {
-    /// An estimate of the irradiance that a group brings; `to` leads to its middle.
+    /// Returns an estimate of the irradiance that a group brings. `to` is the vector to its center.
     fn weight(&self, to: DVec3, normal: DVec3) -> f64 {
         let (height, radius) = (to.dot(normal), self.radius);
         if height + radius <= 0.0 || self.area <= 0.0 {
             return 0.0;
         }
         let distance = to.length().max(radius).max(f64::MIN_POSITIVE);
-        // A group that is partly behind has at least a part of the cosine of its upper end.
+        // For a group that is partly behind the point, the cosine is at least a part of that of its upper end.
         let cosine = (height.max(0.25 * (height + radius)) / distance).min(1.0);
-        // The same of its own cosine, unless all members face the same way from far away.
+        // The cosine at the group has a lower bound likewise, unless all members face the same way and are far away.
         let mean = -self.facing.dot(to) / (self.power * distance).max(f64::MIN_POSITIVE);
         let spread = (1.0 - self.facing.length() / self.power.max(f64::MIN_POSITIVE)).max(0.0);
         let near = (radius / distance).min(1.0);
@@ -232,7 +233,7 @@ impl Eq for Candidate {}
 mod tests {
     use super::*;
 
-    /// 1,000 lamps of different power, strewn about.
+    /// Returns 1,000 lamps of different power at scattered positions.
     fn strewn() -> Vec<Leaf> {
         let place = |i: u32| {
             let i = f64::from(i);
@@ -251,7 +252,7 @@ mod tests {
         let leaves = strewn();
         let tree = Tree::new(&leaves);
         let groups = tree.cut(DVec3::new(0.3, 0.2, 0.0), DVec3::Z, |_| 1.0);
-        assert_eq!(groups.len(), MOST_GROUPS);
+        assert_eq!(groups.len(), MAX_CUT);
         let mut end = 0;
         for (group, weight) in &groups {
             assert_eq!(group.start, end);

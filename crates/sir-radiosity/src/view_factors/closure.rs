@@ -1,38 +1,40 @@
 //! View factors that obey reciprocity and add up to 1.
 //!
-//! Unknown are the exchange areas `G_ij = A_i F_ij = G_ji`, and what is blocked and escapes of each group, none of them negative. They
-//! are to deviate least from what was counted, each deviation in its standard error, while each row adds up to `A_i`:
-//! least-squares smoothing (Larsen and Howell 1986, *J. Heat Transfer* 108, 239–242; van Leersum 1989, *Int. J. Heat and Fluid
-//! Flow* 10, 83–85), with the variances of the Monte Carlo estimates as weights (Daun, Morton and Howell 2005, *J. Heat Transfer* 127, 1124–1128).
+//! The unknowns are the exchange areas `G_ij = A_i F_ij = G_ji`, and the blocked and escaped parts of each group, none
+//! of them negative. They minimize the squared deviations from the estimates, in units of their standard errors, under
+//! the constraint that each row adds up to `A_i`: least-squares smoothing (Larsen and Howell 1986, *J. Heat Transfer*
+//! 108, 239–242; van Leersum 1989, *Int. J. Heat and Fluid Flow* 10, 83–85), with the variances of the Monte Carlo
+//! estimates as weights (Daun, Morton and Howell 2005, *J. Heat Transfer* 127, 1124–1128).
 //!
-//! As a Poisson variable, the count `N_ij` has the mean `t_i G_ij` with `t_i = n_i/A_i`, and is independent of all others: that it is not,
-//! because a row of `n_i` lines adds up to `n_i`, is what the constraint of the row says. Of `N_ij` and `N_ji` together the best
-//! estimate is `G⁰_ij = (N_ij + N_ji)/(t_i + t_j)`, with the variance `v_ij = G⁰_ij/(t_i + t_j)`. What was never seen stays zero.
+//! The count `N_ij` is taken as a Poisson variable with the mean `t_i G_ij`, where `t_i = n_i/A_i`, independent of all
+//! other counts. The counts of a row are not independent, because they add up to `n_i`, but this is expressed by the
+//! constraint of the row. The best estimate from `N_ij` and `N_ji` together is `G⁰_ij = (N_ij + N_ji)/(t_i + t_j)`,
+//! with the variance `v_ij = G⁰_ij/(t_i + t_j)`. An exchange area without counts stays zero.
 //!
-//! With a multiplier `λ_i` for each row the solution is `G_ij = max(0, G⁰_ij + v_ij (λ_i + λ_j))`. Newton's method finds the
-//! multipliers: solve for those `G_ij` that are positive, and again if these change (a primal-dual active set; Hintermüller, Ito and Kunisch
-//! 2003, *SIAM J. Optim.* 13, 865–888).
+//! With a multiplier `λ_i` for each row, the solution is `G_ij = max(0, G⁰_ij + v_ij (λ_i + λ_j))`. Newton's method
+//! finds the multipliers: it solves for the `G_ij` that are positive, and repeats this if their set changes (a
+//! primal-dual active set; Hintermüller, Ito and Kunisch 2003, *SIAM J. Optim.* 13, 865–888).
 
 use thiserror::Error;
 
 use crate::view_factors::table::{Receiver, ViewFactors};
 
-/// Most steps of Newton's method; a few are enough where there is a solution.
+/// Largest number of steps of Newton's method. A few are enough if there is a solution.
 const STEPS: usize = 50;
 
-/// Sums of rows are as close to 1.
+/// Largest relative deviation of the sum of a row.
 const TOLERANCE: f64 = 1e-9;
 
-/// A pivot that is so much smaller than the diagonal is rounding only.
+/// Ratio of a pivot to the diagonal below which the pivot is only rounding error.
 const SINGULAR: f64 = 1e-12;
 
-/// Why no factors obey reciprocity and add up to 1.
+/// The reason why no factors obey reciprocity and add up to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum ClosureError {
     /// The equations have no unique solution.
     #[error(
-        "no view factors obey reciprocity and add up to 1: so far, some groups only see others whose factors leave nothing to adjust; \
-         trace more lines, or ask for fewer groups"
+        "no view factors obey reciprocity and add up to 1 (with the lines so far, some groups see only \
+         groups whose factors cannot be adjusted); trace more lines, or use fewer groups"
     )]
     Undetermined,
 }
@@ -41,17 +43,17 @@ pub enum ClosureError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closed {
     areas: Vec<f64>,
-    /// Exchange areas, then what is blocked and escapes, of each group; and their variances.
+    /// Exchange areas of each group, followed by its blocked and escaped parts, and their variances.
     exchange: Vec<f64>,
     variance: Vec<f64>,
 }
 
 impl ViewFactors {
-    /// Returns factors that obey reciprocity and add up to 1, and are as close as they can be to those that were counted.
+    /// Returns the factors that obey reciprocity, add up to 1, and deviate least from the estimates.
     ///
     /// # Errors
     ///
-    /// If there are none, or too few lines to find them.
+    /// If there are none, or too few lines to determine them.
     pub fn closed(&self) -> Result<Closed, ClosureError> {
         close(self)
     }
@@ -68,28 +70,28 @@ impl Closed {
         i * (groups + 2) + column
     }
 
-    /// The share of the flux of group `i` that arrives there, and its standard error: zero for what was never seen, and was
-    /// held at zero.
+    /// Returns the share of the flux of group `i` that arrives at a receiver, and its standard error. The error is zero
+    /// for a share that was never observed, and for one that was clamped to zero.
     #[must_use]
     pub fn share(&self, i: usize, receiver: Receiver) -> (f64, f64) {
         let (at, area) = (self.at(i, receiver), self.areas[i]);
         (self.exchange[at] / area, self.variance[at].max(0.0).sqrt() / area)
     }
 
-    /// The view factor `F_ij`.
+    /// Returns the view factor `F_ij`.
     #[must_use]
     pub fn factor(&self, i: usize, j: usize) -> f64 {
         self.share(i, Receiver::Group(j)).0
     }
 
-    /// By how much `F_ij` and `F_ji` miss reciprocity: rounding.
+    /// Returns the reciprocity residual of `F_ij` and `F_ji`, which is only rounding error.
     #[must_use]
     pub fn reciprocity(&self, i: usize, j: usize) -> f64 {
         self.areas[i] * self.factor(i, j) - self.areas[j] * self.factor(j, i)
     }
 }
 
-/// The estimates and variances of all rows, before closure.
+/// Estimates and variances of all rows, before closure.
 struct Estimates {
     groups: usize,
     areas: Vec<f64>,
@@ -121,15 +123,15 @@ impl Estimates {
         Self { groups, areas, mean, variance }
     }
 
-    /// The value in a row and column for these multipliers, before it is kept from being negative.
+    /// Returns the value in a row and column for these multipliers, before it is clamped at zero.
     fn adjusted(&self, i: usize, column: usize, multipliers: &[f64]) -> f64 {
         let at = i * (self.groups + 2) + column;
         let other = if column < self.groups && column != i { multipliers[column] } else { 0.0 };
         self.mean[at] + self.variance[at] * (multipliers[i] + other)
     }
 
-    /// For the values that are positive with these multipliers, the equations for the next ones: their matrix, and by how much
-    /// the rows fall short of the areas.
+    /// Returns the equations for the next multipliers, from the values that are positive with these multipliers: the
+    /// matrix, and the difference between the areas and the sums of the rows.
     fn equations(&self, multipliers: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let n = self.groups;
         let (mut matrix, mut missing) = (vec![0.0; n * n], self.areas.clone());
@@ -171,7 +173,7 @@ pub(super) fn close(factors: &ViewFactors) -> Result<Closed, ClosureError> {
     Err(ClosureError::Undetermined)
 }
 
-/// Variances of the adjusted values: those of the estimates, less what the constraints explain.
+/// Returns the variances of the adjusted values: those of the estimates, less what the constraints explain.
 fn variances(estimates: &Estimates, exchange: &[f64], root: &Cholesky) -> Vec<f64> {
     let n = estimates.groups;
     let inverse: Vec<Vec<f64>> = (0..n)
@@ -196,8 +198,8 @@ fn variances(estimates: &Estimates, exchange: &[f64], root: &Cholesky) -> Vec<f6
     variances
 }
 
-/// The triangular root of a symmetric positive definite matrix. Written here, since fast libraries round differently on
-/// different processors.
+/// Cholesky factor of a symmetric positive definite matrix. Implemented here, because fast libraries round differently
+/// on different processors.
 struct Cholesky {
     n: usize,
     /// Rows of the lower triangle; the upper one is not used.
@@ -205,7 +207,7 @@ struct Cholesky {
 }
 
 impl Cholesky {
-    /// The root of a matrix; `None` if that is singular.
+    /// Returns the factor of a matrix, or `None` if the matrix is singular.
     fn of(mut matrix: Vec<f64>, n: usize) -> Option<Self> {
         for i in 0..n {
             let (above, row) = matrix.split_at_mut(i * n);
@@ -254,7 +256,7 @@ mod tests {
         assert!(Cholesky::of(vec![1.0, 1.0, 1.0, 1.0], 2).is_none());
     }
 
-    /// Counts of some groups of area 1 with 1,000 lines each.
+    /// Returns factors with these counts, for groups of area 1 with 1,000 lines each.
     fn counted(counts: &[&[u64]]) -> ViewFactors {
         let n = counts.len();
         ViewFactors {
@@ -267,7 +269,7 @@ mod tests {
 
     #[test]
     fn negative_factors_are_kept_out() {
-        // Far more arrives at the second group than it has room for.
+        // Far more flux arrives at the second group than its area allows.
         let factors = counted(&[&[43, 913, 20, 24, 0], &[161, 653, 98, 68, 20], &[4, 908, 83, 5, 0]]);
         let closed = factors.closed().unwrap();
         for i in 0..3 {

@@ -1,64 +1,65 @@
-//! How many lines leave which group.
+//! The number of lines of each group.
 //!
-//! Lines come in rounds, each of a quarter of all lines before it, and each round is shared so that all groups come equally close
-//! to their target. The rounds depend on what was counted, never on who counted it.
+//! Lines are traced in rounds, each a quarter of all lines before it. Each round is allocated such that all groups come
+//! equally close to their target. The rounds depend on the counts only, not on the workers that made them.
 
-/// Lines of a group in the first round.
+/// Lines per group in the first round.
 const FIRST: u64 = 1024;
 
-/// Fewest lines per group that make sense.
-const FEWEST: u64 = 16;
+/// Smallest number of lines per group.
+const MIN_LINES_PER_GROUP: u64 = 16;
 
-/// Most lines: their streams of random numbers do not overlap up to here.
-const MOST: u64 = 1 << 50;
+/// Largest number of lines. Up to here, their streams of random numbers do not overlap.
+const MAX_LINES: u64 = 1 << 50;
 
-/// How good view factors are to be: for every share of every row, the standard error is at most
-/// `max(error, relative · share)`.
+/// Required accuracy: the standard error of every share of every row is at most `max(error, relative · share)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Absolute standard error, above 0.
     pub error: f64,
-    /// Relative standard error that is good enough where it is the larger one; 0 if none is.
+    /// Relative standard error that suffices where it is larger than the absolute one; 0 for none.
     pub relative: f64,
 }
 
-/// How view factors are estimated. The result depends on nothing else.
+/// Settings of a view factor computation. The result depends on nothing else.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewFactorSettings {
-    /// When to stop. Without it, lines are shared as for some absolute error, and all are traced.
+    /// Stopping criterion. Without it, lines are allocated as for some absolute error, and all are traced.
     pub accuracy: Option<Accuracy>,
-    /// Most lines of all groups together.
+    /// Largest number of lines of all groups together.
     pub lines: u64,
     /// Seed of the random numbers.
     pub seed: u64,
 }
 
 impl ViewFactorSettings {
-    /// As many lines as are needed so that no standard error is above `error`.
+    /// Returns settings with as many lines as are needed for no standard error to exceed `error`.
     #[must_use]
     pub fn to_error(error: f64, seed: u64) -> Self {
-        Self { accuracy: Some(Accuracy { error, relative: 0.0 }), lines: MOST, seed }
+        Self { accuracy: Some(Accuracy { error, relative: 0.0 }), lines: MAX_LINES, seed }
     }
 
-    /// This number of lines.
+    /// Returns settings with this number of lines.
     #[must_use]
     pub fn of_lines(lines: u64, seed: u64) -> Self {
         Self { accuracy: None, lines, seed }
     }
 
-    /// Most lines, as far as there are streams for them.
-    fn most(&self) -> u64 {
-        self.lines.min(MOST)
+    /// Returns the largest number of lines, limited by the number of streams.
+    fn max_lines(&self) -> u64 {
+        self.lines.min(MAX_LINES)
     }
 
-    /// Fewest lines for this number of groups.
-    pub(super) fn fewest(groups: usize) -> u64 {
-        FEWEST * groups as u64
+    /// Returns the smallest number of lines for this number of groups.
+    pub(super) fn min_lines(groups: usize) -> u64 {
+        MIN_LINES_PER_GROUP * groups as u64
     }
 
-    /// What a group of which `counts` arrived at each receiver demands: the largest variance of a line, where a variance counts less
-    /// as far as its share may have a larger error than the absolute one. With that error, it needs `demand/error²` lines; but
-    /// the sharing does not depend on it, to the last bit, so that a number of lines alone gives the same again.
+    /// Returns the demand of a group, from the `counts` that arrived at each receiver: the largest variance of a line.
+    /// A variance is reduced if its share may have a larger error than the absolute one.
+    ///
+    /// For the absolute error `error`, the group needs `demand/error²` lines. The factor `1/error²` is left out, so that
+    /// a run that is given only the number of lines allocates them in the same way, to the last bit.
     fn demand(&self, counts: &[u64], lines: u64) -> f64 {
         let loosened = |share: f64| match self.accuracy {
             Some(Accuracy { error, relative }) => (relative * share / error).max(1.0),
@@ -71,36 +72,36 @@ impl ViewFactorSettings {
         demands.fold(0.0, f64::max)
     }
 
-    /// What comes next, when each of some groups has had so many lines and so many have arrived at each receiver.
+    /// Returns the next round, given the number of lines of each group so far and their counts at each receiver.
     pub(super) fn next(&self, lines: &[u64], counts: &[u64]) -> Next {
         let done: u64 = lines.iter().sum();
         if done == 0 {
-            let end = self.most().min(FIRST * lines.len() as u64);
-            let expected = if self.accuracy.is_some() { end } else { self.most() };
+            let end = self.max_lines().min(FIRST * lines.len() as u64);
+            let expected = if self.accuracy.is_some() { end } else { self.max_lines() };
             return Next { weights: vec![1.0; lines.len()], end, expected, finished: false };
         }
         let rows = counts.chunks(counts.len() / lines.len());
         let demands: Vec<f64> = lines.iter().zip(rows).map(|(&n, row)| self.demand(row, n)).collect();
         let total: f64 = demands.iter().sum();
-        let end = self.most().min(done + (done / 4).max(1));
-        // None is nothing, so that rounding cannot leave all with nothing.
+        let end = self.max_lines().min(done + (done / 4).max(1));
+        // Every weight is positive, so that rounding cannot make all of them zero.
         let weights = lines.iter().zip(&demands).map(|(&n, &demand)| {
             let share = demand / total;
             (end as f64 * share - n as f64).max(share)
         });
-        let (met, needed) = match self.accuracy {
+        let (reached, needed) = match self.accuracy {
             Some(Accuracy { error, .. }) => {
                 let needed = |demand: f64| demand / (error * error);
-                let met = lines.iter().zip(&demands).all(|(&n, &demand)| n as f64 >= needed(demand));
-                (met, needed(total) as u64)
+                let reached = lines.iter().zip(&demands).all(|(&n, &demand)| n as f64 >= needed(demand));
+                (reached, needed(total) as u64)
             }
-            None => (false, MOST),
+            None => (false, MAX_LINES),
         };
         Next {
             weights: weights.collect(),
             end,
-            expected: needed.max(end).min(self.most()),
-            finished: met || done >= self.most(),
+            expected: needed.max(end).min(self.max_lines()),
+            finished: reached || done >= self.max_lines(),
         }
     }
 }
@@ -108,17 +109,17 @@ impl ViewFactorSettings {
 /// The next round.
 #[derive(Clone, Debug)]
 pub(super) struct Next {
-    /// In proportion to these, the lines are shared among the groups.
+    /// Weights in proportion to which the lines are allocated to the groups.
     pub(super) weights: Vec<f64>,
-    /// All lines, once the round is done.
+    /// Total number of lines after the round.
     pub(super) end: u64,
-    /// All lines that will be needed, as far as can be told.
+    /// Estimated total number of lines that will be needed.
     pub(super) expected: u64,
-    /// Whether there is no need of it.
+    /// True if this round is not needed.
     pub(super) finished: bool,
 }
 
-/// The variance `p (1 − p)` of one line, where `count` of `lines` arrived, with Laplace's `p`.
+/// Returns the variance `p (1 − p)` of one line, where `count` of `lines` arrived, with Laplace's `p`.
 pub(super) fn variance(count: u64, lines: u64) -> f64 {
     let p = (count as f64 + 1.0) / (lines as f64 + 2.0);
     p * (1.0 - p)

@@ -1,4 +1,4 @@
-//! The lines that count view factors.
+//! The lines that estimate view factors.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -17,10 +17,10 @@ use crate::view_factors::effort::{Next, ViewFactorSettings};
 use crate::view_factors::table::ViewFactors;
 use crate::visitor::Visitor;
 
-/// Most groups: the tables grow with their square.
+/// Largest number of groups. The tables grow with its square.
 pub const MAX_GROUPS: usize = 4096;
 
-/// Rays that are made at a time.
+/// Number of rays that are generated at a time.
 const RAYS: usize = 1024;
 
 /// The triangles of a group, as a sender of lines.
@@ -31,20 +31,20 @@ struct Sender {
     ends: Vec<f64>,
 }
 
-/// What view factors are wanted of.
+/// Input of a view factor computation.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewFactorTask<'m> {
     /// The scene and its patches.
     pub model: &'m Model,
     /// The groups of surfaces.
     pub grouping: &'m Grouping,
-    /// Accuracy, lines and seed.
+    /// Accuracy, number of lines and seed.
     pub settings: ViewFactorSettings,
 }
 
-/// Local lines that count view factors, in rounds.
+/// Local lines that estimate view factors, in rounds.
 ///
-/// It cannot begin with more than [`MAX_GROUPS`] groups, nor with too few lines for them.
+/// [`Stage::begin`] fails with more than [`MAX_GROUPS`] groups, and with too few lines for the groups.
 #[derive(Debug)]
 pub struct ViewFactorLines<'m> {
     model: &'m Model,
@@ -52,22 +52,22 @@ pub struct ViewFactorLines<'m> {
     settings: ViewFactorSettings,
     streams: Streams,
     senders: Vec<Sender>,
-    /// Lines of each group in all rounds before this one, and how many of them arrived at each receiver.
+    /// Number of lines of each group in all rounds before this one, and how many of them arrived at each receiver.
     lines: Vec<u64>,
     counts: Vec<u64>,
-    /// What the lines of this round have counted, by whoever has traced them.
+    /// Counts of this round, by all threads.
     round: Vec<AtomicU64>,
     next: Next,
     allocation: Allocation,
 }
 
 impl<'m> ViewFactorLines<'m> {
-    /// Lines of all rounds before this one.
+    /// Returns the number of lines of all rounds before this one.
     fn done(&self) -> u64 {
         self.lines.iter().sum()
     }
 
-    /// Decides how many lines the next round has, and of which groups.
+    /// Determines the number of lines of the next round and allocates them to groups.
     fn plan_round(&mut self) {
         self.next = self.settings.next(&self.lines, &self.counts);
         self.allocation = Allocation::new(&self.next.weights, self.next.end - self.done(), 0.5);
@@ -105,7 +105,7 @@ impl<'m> Stage for ViewFactorLines<'m> {
         if groups > MAX_GROUPS {
             return Err(SolveError::TooManyGroups { groups, most: MAX_GROUPS });
         }
-        let fewest = ViewFactorSettings::fewest(groups);
+        let fewest = ViewFactorSettings::min_lines(groups);
         if settings.lines < fewest {
             return Err(SolveError::TooFewLines { lines: settings.lines, groups, fewest });
         }
@@ -185,7 +185,8 @@ impl<'m> Stage for ViewFactorLines<'m> {
                 };
             });
             totals.counts.lines += rays.len() as u64;
-            // Lines of a group follow each other. Threads meet at a number of the tally seldom, not for every line.
+            // Consecutive lines mostly belong to the same group. Counting each run locally first keeps contention for
+            // the shared counters low.
             let mut receivers = &receivers[..rays.len()];
             for run in senders.chunk_by(|a, b| a == b) {
                 let (mine, others) = receivers.split_at(run.len());
@@ -225,7 +226,7 @@ impl<'m> Stage for ViewFactorLines<'m> {
         !self.next.finished
     }
 
-    /// Returns the factors as all rounds have counted them.
+    /// Returns the view factors counted in all rounds.
     fn finish(self, _totals: StageTotals) -> Result<ViewFactors, SolveError> {
         Ok(ViewFactors {
             names: self.grouping.names().to_vec(),

@@ -1,27 +1,28 @@
-//! View factors between all groups, as they were counted.
+//! Estimated view factors between all groups.
 
 use crate::view_factors::effort::variance;
 
-/// Where flux that leaves a group may arrive.
+/// Receiver of flux that leaves a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Receiver {
-    /// At active sides of the group of this number.
+    /// Active sides of the group with this number.
     Group(usize),
-    /// At the back of a one-sided surface, which absorbs it.
+    /// The back of a one-sided surface, which absorbs the flux.
     Blocked,
-    /// Nowhere: it leaves the scene.
+    /// None: the flux leaves the scene.
     Escaped,
 }
 
-/// A share of the flux that leaves a group, as it was counted.
+/// Estimated share of the flux that leaves a group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
-    /// The share: the binomial mean `N/n`. The shares of a row add up to 1.
+    /// The share, as the binomial mean `N/n`. The shares of a row add up to 1.
     pub value: f64,
-    /// Its standard error `√(p (1 − p)/n)`, with Laplace's `p = (N + 1)/(n + 2)` in place of the share: it is never zero, since that
-    /// none of `n` lines arrived, or all of them, does not prove that none, or all, would.
+    /// Standard error `√(p (1 − p)/n)`, where Laplace's `p = (N + 1)/(n + 2)` replaces the share. It is never zero: if
+    /// none or all of `n` lines arrived, that does not prove that the share is 0 or 1.
     pub error: f64,
-    /// Where nothing arrived: what the share is below, with 95 % confidence, `3/n` (the rule of three; Hanley and Lippman-Hand 1983).
+    /// Upper bound of the share with 95 % confidence where nothing arrived: `3/n` (the rule of three; Hanley and
+    /// Lippman-Hand 1983).
     pub bound: Option<f64>,
 }
 
@@ -30,23 +31,23 @@ pub struct Share {
 pub struct ViewFactors {
     pub(super) names: Vec<String>,
     pub(super) areas: Vec<f64>,
-    /// Lines of each group.
+    /// Number of lines of each group.
     pub(super) lines: Vec<u64>,
-    /// Of each group, the lines that met each group, were blocked, and escaped.
+    /// For each group, the number of lines that arrived at each group, were blocked, and escaped.
     pub(super) counts: Vec<u64>,
 }
 
-/// By how much two estimates of the same exchange area differ.
+/// Difference between two estimates of the same exchange area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     /// `A_i F_ij − A_j F_ji`, in the square of the scene's unit of length.
     pub value: f64,
-    /// Its standard error, never zero.
+    /// Standard error of `value`, never zero.
     pub error: f64,
 }
 
 impl Residual {
-    /// The difference in standard errors.
+    /// Returns the difference in units of its standard error.
     #[must_use]
     pub fn z(self) -> f64 {
         self.value / self.error
@@ -54,43 +55,43 @@ impl Residual {
 }
 
 impl ViewFactors {
-    /// Number of groups.
+    /// Returns the number of groups.
     #[must_use]
     pub fn len(&self) -> usize {
         self.names.len()
     }
 
-    /// Whether there are no groups: never, of a scene.
+    /// True if there are no groups, which never happens for a scene.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.names.is_empty()
     }
 
-    /// Names of the groups, as their [`Grouping`](crate::Grouping) has them.
+    /// Returns the names of the groups, as in their [`Grouping`](crate::Grouping).
     #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Area `A_i` of the active sides of a group, in the square of the scene's unit of length.
+    /// Returns the area `A_i` of the active sides of a group, in the square of the scene's unit of length.
     #[must_use]
     pub fn area(&self, i: usize) -> f64 {
         self.areas[i]
     }
 
-    /// Lines that left each group.
+    /// Returns the number of lines that left each group.
     #[must_use]
     pub fn lines(&self) -> &[u64] {
         &self.lines
     }
 
-    /// Lines in all.
+    /// Returns the total number of lines.
     #[must_use]
     pub fn total_lines(&self) -> u64 {
         self.lines.iter().sum()
     }
 
-    /// How many lines of group `i` arrived there.
+    /// Returns the number of lines of group `i` that arrived at a receiver.
     #[must_use]
     pub fn count(&self, i: usize, receiver: Receiver) -> u64 {
         let groups = self.len();
@@ -102,7 +103,7 @@ impl ViewFactors {
         self.counts[i * (groups + 2) + column]
     }
 
-    /// The share of the flux of group `i` that arrives there.
+    /// Returns the share of the flux of group `i` that arrives at a receiver.
     #[must_use]
     pub fn share(&self, i: usize, receiver: Receiver) -> Share {
         let (count, lines) = (self.count(i, receiver), self.lines[i]);
@@ -114,22 +115,23 @@ impl ViewFactors {
         }
     }
 
-    /// The view factor `F_ij`.
+    /// Returns the view factor `F_ij`.
     #[must_use]
     pub fn factor(&self, i: usize, j: usize) -> f64 {
         self.share(i, Receiver::Group(j)).value
     }
 
-    /// The standard error of `F_ij`.
+    /// Returns the standard error of `F_ij`.
     #[must_use]
     pub fn error(&self, i: usize, j: usize) -> f64 {
         self.share(i, Receiver::Group(j)).error
     }
 
-    /// By how much `F_ij` and `F_ji` miss reciprocity, `A_i F_ij = A_j F_ji`: by chance only, since both are counted by themselves.
+    /// Returns the reciprocity residual of `F_ij` and `F_ji`, the deviation from `A_i F_ij = A_j F_ji`. It is due to
+    /// chance only, because the two are counted independently.
     ///
-    /// The standard error is that of two binomial shares of the exchange area that both rows together give, with one line more: few
-    /// lines of a row say too little about their own error.
+    /// The standard error is that of two binomial shares of the exchange area estimated from both rows together, with
+    /// one line added, because few lines of a row alone give too little information about their own error.
     #[must_use]
     pub fn reciprocity(&self, i: usize, j: usize) -> Residual {
         let (one, other) = (self.count(i, Receiver::Group(j)), self.count(j, Receiver::Group(i)));

@@ -1,6 +1,6 @@
-//! Solving scenes whose answer is known, and judging the result.
+//! Solves scenes with a known answer, and checks the result.
 #![allow(dead_code, reason = "each test uses some of it")]
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and talk like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 use std::f64::consts::PI;
 
@@ -15,13 +15,13 @@ use sir_radiosity::{
     ShotSettings, Stage, StageTotals, Transported, Workers, run_stage,
 };
 
-/// The exact answers: see `README.md` in `data` of `sir-validate`.
+/// Returns the exact answers of a file: see `data/README.md` in `sir-validate`.
 pub(crate) fn reference(file: &str) -> Value {
     let path = format!("{}/../sir-validate/data/{file}", env!("CARGO_MANIFEST_DIR"));
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// The case with this number.
+/// Returns the case with this number.
 pub(crate) fn case(file: &Value, id: &str) -> Value {
     let cases = file["cases"].as_array().unwrap();
     cases.iter().find(|c| c["id"] == id).unwrap().clone()
@@ -39,8 +39,8 @@ pub(crate) fn add_polygon(builder: &mut SceneBuilder, surface: &Value, material:
     builder.add_polygon(&corners, material);
 }
 
-/// Adds a sphere of flat quadrilaterals: 36 rings five degrees wide, times `finer`, so that polar angles in multiples of
-/// five degrees are edges. `zones` are the polar angles (degrees) where one zone ends and the next begins, with the
+/// Adds a sphere of flat quadrilaterals: 36 rings five degrees wide, times `finer`, so that polar angles in multiples
+/// of five degrees are edges. `zones` are the polar angles (degrees) where one zone ends and the next begins, with the
 /// material of each.
 pub(crate) fn add_sphere(
     builder: &mut SceneBuilder,
@@ -62,7 +62,7 @@ pub(crate) fn add_sphere(
             let next = (segment + 1) % segments;
             let mut corners =
                 vec![at(ring, segment), at(ring + 1, segment), at(ring + 1, next), at(ring, next)];
-            // At the poles two corners are one.
+            // At the poles two corners coincide.
             corners.dedup();
             if corners.first() == corners.last() {
                 corners.pop();
@@ -76,12 +76,12 @@ pub(crate) fn add_sphere(
     }
 }
 
-/// A gray surface with exitance `m` and reflectance `rho`.
+/// Returns a gray material with exitance `m` and reflectance `rho`.
 pub(crate) fn gray(m: f64, rho: f64) -> Material {
     Material::diffuse("", Rgb::splat(rho)).emitting(Rgb::splat(m))
 }
 
-/// A first shot, traced as two workers share it.
+/// Returns a first shot whose lines are shared by two workers.
 pub(crate) fn shoot(model: &Model, lines: u64, seed: u64) -> Shot {
     let mut stage = FirstShot::begin(ShotSettings::new(model, lines, seed), (), &TwoWorkers).unwrap();
     let mut totals = StageTotals::default();
@@ -91,7 +91,7 @@ pub(crate) fn shoot(model: &Model, lines: u64, seed: u64) -> Shot {
     stage.finish(totals).unwrap()
 }
 
-/// Tallies are made for two workers; jobs are done one after the other.
+/// Two workers: tallies are allocated for both, jobs are run one after the other.
 struct TwoWorkers;
 
 impl Workers for TwoWorkers {
@@ -104,45 +104,45 @@ impl Workers for TwoWorkers {
     }
 }
 
-/// A second shot after a first one.
+/// Returns a second shot after a first one.
 pub(crate) fn shoot_again(model: &Model, shot: &Shot, lines: u64, seed: u64) -> Shot {
     run_stage::<SecondShot<'_>>(ShotSettings::new(model, lines, seed), shot.clone()).unwrap()
 }
 
-/// Transports the light of a first shot; takes the number of lines and the seed.
+/// Transports the light of a first shot, with a number of lines and a seed.
 pub(crate) type Transport = fn(&Model, Shot, u64, u64) -> Transported;
 
-/// Both transports, and what to call them.
+/// Both transports with their names.
 pub(crate) const TRANSPORTS: [(&str, Transport); 2] = [("batches", batches), ("multipath", multipath)];
 
-/// Frozen batches.
+/// Transports light in frozen batches.
 pub(crate) fn batches(model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
     batches_in(Domain::hull(model.scene.vertices()), model, shot, lines, seed)
 }
 
-/// Frozen batches with lines of a given domain.
+/// Transports light in frozen batches with lines of a given domain.
 pub(crate) fn batches_in(domain: Domain, model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
     run_stage::<Batches<'_>>(BatchSettings::new(model, domain, lines, seed), shot).unwrap()
 }
 
-/// Multipath in one replica.
+/// Transports light by multipath in one replica.
 pub(crate) fn multipath(model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
     multipath_in(Domain::hull(model.scene.vertices()), model, shot, lines, seed)
 }
 
-/// Multipath in one replica with lines of a given domain.
+/// Transports light by multipath in one replica with lines of a given domain.
 pub(crate) fn multipath_in(domain: Domain, model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
-    // A long tail: what is left unshot must be far below standard errors of some 0.01 %.
+    // A long tail: the power left unshot must be far below standard errors of about 0.01 %.
     let settings = MultipathSettings::new(model, domain, lines, seed);
     replicas(shot, MultipathSettings { tail: 3 * (lines / 10), ..settings })
 }
 
-/// Multipath in any number of replicas.
+/// Transports light by multipath in any number of replicas.
 pub(crate) fn replicas(shot: Shot, settings: MultipathSettings<'_>) -> Transported {
     run_stage::<Multipath<'_>>(settings, shot).unwrap()
 }
 
-/// All domains around the scene of a model.
+/// Returns all domains around the scene of a model.
 pub(crate) fn domains(model: &Model) -> [Domain; 3] {
     let scene = &model.scene;
     [
@@ -152,7 +152,7 @@ pub(crate) fn domains(model: &Model) -> [Domain; 3] {
     ]
 }
 
-/// Radiosity of every material: the area-weighted mean of its fronts.
+/// Returns the radiosity of every material: the area-weighted mean of its fronts.
 pub(crate) fn radiosities(model: &Model, run: &Transported) -> Vec<Rgb> {
     let materials = model.scene.materials().len();
     let (mut sums, mut areas) = (vec![Rgb::ZERO; materials], vec![0.0; materials]);
@@ -167,7 +167,7 @@ pub(crate) fn radiosities(model: &Model, run: &Transported) -> Vec<Rgb> {
     sums.iter().zip(&areas).map(|(s, a)| *s / *a).collect()
 }
 
-/// Power that each material receives in the first band \[W\].
+/// Returns the power that each material receives in the first band \[W\].
 pub(crate) fn received(model: &Model, shot: &Shot) -> Vec<f64> {
     let mut sums = vec![0.0; model.scene.materials().len()];
     model.mesh.for_each_side(|triangle, _, _, side| {
@@ -177,13 +177,13 @@ pub(crate) fn received(model: &Model, shot: &Shot) -> Vec<f64> {
     sums
 }
 
-/// A number from independent runs.
+/// Mean of a number from independent runs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Estimate {
     pub(crate) mean: f64,
     /// Standard error of the mean.
     pub(crate) sigma: f64,
-    /// Number of the runs less one.
+    /// Degrees of freedom: number of runs minus one.
     freedom: f64,
 }
 
@@ -196,14 +196,15 @@ impl Estimate {
         Self { mean, sigma: (variance / n).sqrt(), freedom: n - 1.0 }
     }
 
-    /// How many standard errors are exceeded as seldom as four of a normal variable: more, because those of a few runs
-    /// are uncertain themselves (Student's t, by the expansion of Cornish and Fisher 1938). 5.4 for 16 runs.
+    /// Returns the number of standard errors that corresponds to four of a normal variable. It is larger, because the
+    /// standard error of a few runs is itself uncertain (Student's t, by the expansion of Cornish and Fisher 1938): 5.4
+    /// for 16 runs.
     fn limit(self) -> f64 {
         let (z, n) = (4.0_f64, self.freedom);
         z + (z.powi(3) + z) / (4.0 * n) + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * n * n)
     }
 
-    /// Equal to the exact value but for chance, with a standard error of at most 0.3 %.
+    /// Asserts that the mean is exact except for chance, with a standard error of at most 0.3 %.
     #[track_caller]
     pub(crate) fn assert_is(self, exact: f64, what: &str) {
         let z = (self.mean - exact) / self.sigma;
@@ -214,13 +215,13 @@ impl Estimate {
     }
 }
 
-/// Independent runs of a model, with this number of lines in both stages: the radiosities of its materials, per run.
+/// Returns the radiosities of the materials in independent runs, with this number of lines in both stages.
 pub(crate) fn runs(model: &Model, transport: Transport, lines: u64, count: u64) -> Vec<Vec<Rgb>> {
     let one = |seed| radiosities(model, &transport(model, shoot(model, lines, seed), lines, seed));
     (1..=count).map(one).collect()
 }
 
-/// One patch per face.
+/// Returns a model with one patch per face.
 pub(crate) fn per_face(builder: SceneBuilder) -> Model {
     Model::new(scene(builder), Subdivision::PerFace).unwrap()
 }

@@ -1,4 +1,4 @@
-//! The bulkheads at both ends of the seats, with a doorway each, screens and curtains.
+//! Bulkheads at both ends of the seat rows, each with a doorway and curtains; the front one has screens.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,11 +15,11 @@ use crate::model::{GAP, Model};
 pub(super) const DOORWAY: f64 = 0.33;
 /// Height of a doorway \[m\].
 const HEIGHT: f64 = 2.0;
-/// Distance of bulkheads from the shell; the facets of the shell are a little inside its round section.
+/// Distance of the bulkheads from the shell \[m\]. The facets of the shell lie slightly inside its round section.
 const CLEAR: f64 = 0.006;
 const THICK: f64 = 0.04;
 
-/// Both bulkheads and what is on them.
+/// Returns both bulkheads with their screens and curtains.
 pub(super) fn bulkheads(palette: &Palette) -> Model {
     let mut m = Model::default();
     let z = FRONT - 0.03;
@@ -60,7 +60,8 @@ fn bulkhead(m: &mut Model, palette: &Palette, z: [f64; 2]) {
     plate(m, &[low, middle, top], z, palette.bulkhead);
 }
 
-/// A plate between two positions along the cabin. `rows` go up, each with the same number of points from left to right.
+/// Adds a plate between two positions `z`. `rows` are ordered from bottom to top; each has the same number of points
+/// from left to right.
 fn plate(m: &mut Model, rows: &[Vec<[f64; 2]>], [near, far]: [f64; 2], material: MaterialId) {
     let (height, width) = (rows.len() - 1, rows[0].len() - 1);
     let at = |i: usize, j: usize, z: f64| DVec3::new(rows[j][i][0], rows[j][i][1], z);
@@ -74,7 +75,7 @@ fn plate(m: &mut Model, rows: &[Vec<[f64; 2]>], [near, far]: [f64; 2], material:
     m.sheet([around.len() - 1, 1], edge, |_, _| material);
 }
 
-/// A screen on the front bulkhead that shows a map with the route, on the middle of its lower edge.
+/// Adds a screen that shows a map with the route. The point is the middle of its lower edge.
 fn screen(m: &mut Model, palette: &Palette, [x, y, z]: [f64; 3]) {
     let (half, frame) = (0.27, 0.025);
     let mut columns = vec![-half - frame];
@@ -93,7 +94,7 @@ fn screen(m: &mut Model, palette: &Palette, [x, y, z]: [f64; 3]) {
             return palette.dark;
         }
         let (u, v) = (u as usize, v as usize);
-        // One row of the map after another, from below: columns that are land.
+        // Range of land columns in each row of the map, from the bottom up.
         let coast = [[0, 2], [0, 1], [3, 5], [4, 6]][v];
         if u == [1, 2, 3, 4][v] {
             route
@@ -105,7 +106,7 @@ fn screen(m: &mut Model, palette: &Palette, [x, y, z]: [f64; 3]) {
     });
 }
 
-/// A curtain that hangs in folds, its left lower end on the origin, of the given width.
+/// Returns a curtain of the given width that hangs in folds, with its lower left end on the origin.
 fn curtain(palette: &Palette, width: f64) -> Model {
     let mut m = Model::default();
     let (folds, points) = (width / 0.075, 6.0);
@@ -116,7 +117,7 @@ fn curtain(palette: &Palette, width: f64) -> Model {
             [width * s, offset + 0.026 * (TAU * folds * s).sin()]
         })
     };
-    // Seen from above, with `y` of the section toward −z.
+    // Seen from above; `y` of the section points toward −z.
     let section: Vec<[f64; 2]> =
         wave(-0.005).chain(wave(0.005).collect::<Vec<_>>().into_iter().rev()).collect();
     let mut lying = Model::default();

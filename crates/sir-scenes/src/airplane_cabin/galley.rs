@@ -1,4 +1,4 @@
-//! What is beyond the bulkheads: kitchens, seen through the doorways, and the doors in the end walls.
+//! Galleys beyond the bulkheads, seen through the doorways, and doors in the end walls.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use crate::airplane_cabin::size::{FRONT, LENGTH, REAR};
 use crate::model::sheet::lines;
 use crate::model::{GAP, Model};
 
-/// Both galleys.
+/// Returns both galleys.
 pub(super) fn galleys(palette: &Palette) -> Model {
     let mut m = Model::default();
     for side in [-1.0, 1.0] {
@@ -26,7 +26,7 @@ pub(super) fn galleys(palette: &Palette) -> Model {
     m
 }
 
-/// A row of trolleys under a counter, with ovens above, along one wall.
+/// Adds a row of trolleys under a counter, with ovens above, along one wall.
 fn kitchen(m: &mut Model, palette: &Palette, side: f64, [from, to]: [f64; 2]) {
     let (front, back) = (side * (DOORWAY + 0.14), side * 1.18);
     let mut place = |inset: f64, y: [f64; 2], z: [f64; 2], material| {
@@ -43,7 +43,7 @@ fn kitchen(m: &mut Model, palette: &Palette, side: f64, [from, to]: [f64; 2]) {
     }
 }
 
-/// A closed door on an end wall, whose front looks along `toward · z`.
+/// Adds a closed door on an end wall, whose front faces in the direction `toward · z`.
 fn door(m: &mut Model, palette: &Palette, z: f64, toward: f64) {
     let mut slab = |half: f64, y: [f64; 2], from: f64, to: f64, material| {
         let (a, b) = (z + toward * from, z + toward * to);

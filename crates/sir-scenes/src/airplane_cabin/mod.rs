@@ -1,8 +1,8 @@
 //! The cabin of an airliner.
 //!
-//! Nearly all light is hidden: violet-blue lamps on the overhead bins and amber ones above the middle of the ceiling meet
-//! on the vault, warm strips under the bins wash the side walls, and the sky looks in through deep windows, many of them
-//! with their blinds down. Blue and orange seats tint the pale panels.
+//! Almost all lamps are hidden. The light of violet-blue lamps on the overhead bins and of amber lamps above the middle
+//! of the ceiling mixes on the vault. Warm strips under the bins illuminate the side walls. Skylight enters through
+//! deep windows, many of which have their blinds down. Blue and orange seats tint the pale panels.
 
 mod bulkhead;
 mod galley;
@@ -25,15 +25,15 @@ use palette::Palette;
 use seat_size::HALF_GROUP;
 use size::{AISLE, FIRST_ROW, FRONT, PITCH, REAR, ROWS, near};
 
-/// The cabin of an airliner with one aisle, 3.7 m wide and 27 m long, with 29 rows of six seats between two galleys. It is
-/// closed: no light leaves it.
+/// Returns the cabin of an airliner with one aisle, 3.7 m wide and 27 m long, with 29 rows of six seats between two
+/// galleys.
 ///
-/// Cameras: `aisle` along the aisle from the rear, `row` from a seat toward its neighbors and the windows, and `galley`
-/// from the front over the seats.
+/// The cabin is closed: no light escapes. The cameras are `aisle` along the aisle from the rear, `row` from a seat
+/// toward its neighbors and the windows, and `galley` from the front over the seats.
 ///
 /// # Errors
 ///
-/// None that can occur with the numbers of the cabin; the signature is that of every scene.
+/// None that can occur with the dimensions of the cabin; the signature is the same for all scenes.
 pub fn airplane_cabin() -> Result<Built, SceneError> {
     let mut builder = SceneBuilder::new();
     let palette = Palette::new(&mut builder);
@@ -59,7 +59,7 @@ pub fn airplane_cabin() -> Result<Built, SceneError> {
     builder.build()
 }
 
-/// All seats, and the marks on the floor beside them.
+/// Returns all seats and the floor marks beside them.
 fn seats(palette: &Palette, random: &mut Random) -> Model {
     let mut m = Model::default();
     for row in 0..ROWS {

@@ -1,6 +1,6 @@
-//! What hangs over the seats, one unit at a time: bins, service panels, and the lamps hidden above and beside them.
+//! Overhead units: bins, service panels, and the lamps hidden above and beside them.
 //!
-//! A unit is modelled on the right side, from `z = 0` to the length of a unit.
+//! A unit is modeled on the right side, from `z = 0` to the length of a unit.
 
 use std::f64::consts::PI;
 
@@ -14,12 +14,12 @@ use crate::model::sheet::lines;
 use crate::model::{GAP, Model};
 use crate::random::Random;
 
-/// Section of a bin, from the outer end of its top around its curved front to its underside.
+/// Section of a bin, from the outer end of its top around its curved front to its underside \[m\].
 const BIN: [[f64; 2]; 16] = [
     [1.42, 2.0],
     [1.25, 2.015],
     [0.95, 2.015],
-    // The lip that hides the lamp on the bin.
+    // Lip that hides the lamp on the bin.
     [0.73, 2.03],
     [0.705, 2.075],
     [0.682, 2.085],
@@ -35,7 +35,7 @@ const BIN: [[f64; 2]; 16] = [
     [1.60, 1.685],
 ];
 
-/// All units on both sides.
+/// Returns all units on both sides.
 pub(super) fn overhead(palette: &Palette, random: &mut Random) -> Model {
     let mut m = Model::default();
     for i in 0..UNITS {
@@ -53,7 +53,7 @@ fn unit(palette: &Palette, random: &mut Random) -> Model {
     m.pillow(&BIN, [0.006, UNIT - 0.006], Ends { radius: 0.012, pieces: 1, cell: 0.53, cut: 0.0 }, |k| {
         if k.is_some_and(|k| (10..13).contains(&k)) { palette.bin_foot } else { palette.bin }
     });
-    // The latch, on the steep part of the front.
+    // Latch on the steep part of the front.
     let middle = 0.5 * UNIT;
     let latch = [[0.6736, 1.86], [0.6796, 1.86], [0.674, 1.885], [0.668, 1.885]];
     m.prism(&latch, [middle - 0.05, middle + 0.05], 1.0, palette.trim);
@@ -67,7 +67,7 @@ fn unit(palette: &Palette, random: &mut Random) -> Model {
     m
 }
 
-/// A triangular rail along a unit. It shines from the side between the first two corners of its section.
+/// Adds a triangular rail along a unit. The side between the first two corners of its section emits.
 fn slanted_lamp(m: &mut Model, z: &[f64], section: [[f64; 2]; 3], [lamp, rail]: [MaterialId; 2]) {
     let point = |i: usize, z: f64| DVec3::new(section[i % 3][0], section[i % 3][1], z);
     for i in 0..3 {
@@ -79,7 +79,7 @@ fn slanted_lamp(m: &mut Model, z: &[f64], section: [[f64; 2]; 3], [lamp, rail]: 
     m.polygon(&[2, 1, 0].map(|i| point(i, z[0])), rail);
 }
 
-/// A panel along the unit with a lip beside the lamp, and on it lights, nozzles and signs for two rows.
+/// Adds a panel along the unit with a lip beside the lamp, and with lights, nozzles and signs for two seat rows.
 fn service_panels(m: &mut Model, palette: &Palette, random: &mut Random) {
     let section = [[0.98, 1.655], [1.56, 1.650], [1.575, 1.640], [1.60, 1.640], [1.60, 1.665], [1.0, 1.670]];
     m.prism(&section, [0.004, UNIT - 0.004], 0.4, palette.panel);
@@ -92,7 +92,7 @@ fn service_panels(m: &mut Model, palette: &Palette, random: &mut Random) {
             let light = |d: DVec3, _| if on && d.y < 0.0 { palette.reading_lamp } else { palette.metal };
             m.grid_block([&[x - 0.02, x + 0.02], &[1.618, 1.632 - GAP], &[z + 0.10, z + 0.14]], light);
         }
-        // Nozzles for air, in a row.
+        // Row of air nozzles.
         m.block([1.14, 1.618, z - 0.12], [1.40, 1.632 - GAP, z - 0.08], 0.2, palette.trim);
         let sign = |d: DVec3, _| if row == 0 && d.y < 0.0 { palette.seat_sign } else { palette.dark };
         m.grid_block([&[1.19, 1.33], &[1.622, 1.632 - GAP], &[z - 0.01, z + 0.03]], sign);

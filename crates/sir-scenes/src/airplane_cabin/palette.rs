@@ -1,10 +1,10 @@
-//! The materials of the cabin.
+//! Materials of the cabin.
 
 use sir_geom::{Material, MaterialId, Rgb, SceneBuilder};
 
 use crate::model::furnish::lamp;
 
-/// Numbers of the materials.
+/// Indices of the materials.
 pub(super) struct Palette {
     /// Side walls and ceiling.
     pub(super) panel: MaterialId,
@@ -36,31 +36,31 @@ pub(super) struct Palette {
     pub(super) steel: MaterialId,
     pub(super) wood: MaterialId,
     pub(super) magazines: Vec<MaterialId>,
-    /// Emits the light of the sky.
+    /// Light of the sky.
     pub(super) sky: MaterialId,
-    /// Emits the violet-blue light on the bins.
+    /// Violet-blue light on the bins.
     pub(super) cove_lamp: MaterialId,
-    /// Emits the amber light above the middle of the ceiling.
+    /// Amber light above the middle of the ceiling.
     pub(super) spine_lamp: MaterialId,
-    /// Emits the light of the strip under the middle of the ceiling.
+    /// Light of the strip under the middle of the ceiling.
     pub(super) spine_strip: MaterialId,
-    /// Emits the warm light along the side walls.
+    /// Warm light along the side walls.
     pub(super) wall_lamp: MaterialId,
-    /// Emits the light of the galleys.
+    /// Light of the galleys.
     pub(super) galley_lamp: MaterialId,
-    /// Emits the light of reading lamps.
+    /// Light of the reading lamps.
     pub(super) reading_lamp: MaterialId,
-    /// Emits the light of the marks along the aisle.
+    /// Light of the marks along the aisle.
     pub(super) floor_lamp: MaterialId,
-    /// Emits the green light of exit signs.
+    /// Green light of the exit signs.
     pub(super) exit_sign: MaterialId,
-    /// Emits the light of signs at the seats.
+    /// Light of the signs at the seats.
     pub(super) seat_sign: MaterialId,
-    /// Emit the light of screens: sea, land, and the line of the route.
+    /// Light of the screens: sea, land and route.
     pub(super) screens: [MaterialId; 3],
 }
 
-/// Covers of magazines.
+/// Reflectances of the magazine covers.
 const MAGAZINES: [[f64; 3]; 5] =
     [[0.70, 0.66, 0.58], [0.55, 0.08, 0.06], [0.06, 0.30, 0.32], [0.75, 0.52, 0.08], [0.12, 0.16, 0.40]];
 

@@ -1,6 +1,6 @@
 //! Seats in groups of three.
 //!
-//! They are modelled from the side: `x` runs from the front edge of the cushion backward, `y` up, and `z` across.
+//! Seats are modeled from the side: `x` runs from the front edge of the cushion backward, `y` up, and `z` across.
 
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
@@ -12,7 +12,10 @@ use crate::model::pillow::Ends;
 use crate::model::{GAP, Model};
 use crate::random::Random;
 
-/// Sections seen from the side, counterclockwise; the ends of each pair from outside in face each other \[m\].
+/// Section of the cushion \[m\].
+///
+/// All sections here are counterclockwise seen from the side. As [`Model::pillow`] requires, the first and the last
+/// point face each other, then the second and the second to last, and so on.
 const CUSHION: [[f64; 2]; 8] = [
     [0.02, 0.335],
     [0.12, 0.315],
@@ -23,7 +26,7 @@ const CUSHION: [[f64; 2]; 8] = [
     [0.06, 0.460],
     [0.0, 0.42],
 ];
-/// The first three edges are the rear, the sixth and seventh the shoulders.
+/// Section of the backrest \[m\]. The first three edges are the rear, the sixth and seventh the shoulders.
 const BACK: [[f64; 2]; 10] = [
     [0.520, 0.375],
     [0.5688, 0.62],
@@ -36,6 +39,7 @@ const BACK: [[f64; 2]; 10] = [
     [0.462, 0.62],
     [0.458, 0.375],
 ];
+/// Section of the headrest \[m\].
 const HEAD: [[f64; 2]; 8] = [
     [0.640, 1.0],
     [0.660, 1.07],
@@ -46,7 +50,7 @@ const HEAD: [[f64; 2]; 8] = [
     [0.545, 1.05],
     [0.565, 1.0],
 ];
-/// With its post, down to beside the cushion.
+/// Section of an arm rest with its post, which reaches down beside the cushion \[m\].
 const ARM_REST: [[f64; 2]; 8] = [
     [0.13, 0.602],
     [0.17, 0.595],
@@ -58,10 +62,10 @@ const ARM_REST: [[f64; 2]; 8] = [
     [0.13, 0.64],
 ];
 
-/// Three seats side by side, the middle of the group's front on the origin, looking along `−z`. The middle one has
-/// colors of its own.
+/// Returns three seats side by side that look along `−z`, with the middle of the group's front on the origin. The
+/// middle seat has other colors.
 ///
-/// Those `near` a camera are rounder.
+/// Groups that are `near` a camera are rounder.
 pub(super) fn group(palette: &Palette, random: &mut Random, near: bool) -> Model {
     let mut m = Model::default();
     for (i, colors) in
@@ -91,7 +95,7 @@ pub(super) fn group(palette: &Palette, random: &mut Random, near: bool) -> Model
     group
 }
 
-/// What is soft on a seat.
+/// Materials of the upholstery of a seat.
 struct Colors {
     seat: MaterialId,
     back: MaterialId,
@@ -140,7 +144,7 @@ fn back(colors: &Colors, near: bool) -> Model {
     m
 }
 
-/// A pillow from `-half` to `half`.
+/// Adds a pillow from `-half` to `half`.
 fn soft(
     m: &mut Model,
     section: &[[f64; 2]],
@@ -153,12 +157,12 @@ fn soft(
     m.pillow(section, [-half, half], Ends { radius, pieces, cell: 0.4, cut }, material);
 }
 
-/// The beam under a group, and its legs.
+/// Adds the beam under a group and its legs.
 fn frame(m: &mut Model, palette: &Palette, near: bool) {
     let half = HALF_GROUP - 0.06;
     m.block([0.12, 0.26, -half], [0.37, 0.30, half], 0.7, palette.metal);
     for z in [-0.42, 0.42] {
-        // Front legs are seen from nearby only.
+        // Front legs are visible only from nearby.
         for [low, high] in [[0.46, 0.335], [0.12, 0.125]].into_iter().take(if near { 2 } else { 1 }) {
             let leg = [[low, GAP], [low + 0.04, GAP], [high + 0.04, 0.26 - GAP], [high, 0.26 - GAP]];
             m.prism(&leg, [z - 0.022, z + 0.022], 1.0, palette.metal);

@@ -1,4 +1,4 @@
-//! What is on the rear of a backrest: a screen, a folded table, and a pocket with something to read.
+//! Fittings on the rear of a backrest: a screen, a folded table, and a pocket with a magazine.
 
 use glam::{DAffine3, DVec3};
 
@@ -7,11 +7,12 @@ use crate::airplane_cabin::seat_size::HALF_BACK;
 use crate::model::{GAP, Model};
 use crate::random::Random;
 
-/// Lower end of the flat part of the rear \[m\], and its slope from the vertical.
+/// Lower end of the flat part of the rear \[m\].
 const FOOT: DVec3 = DVec3::new(0.5365, 0.45, 0.0);
+/// Slope of the rear, relative to the vertical.
 const SLOPE: f64 = 0.1975;
 
-/// Things on the rear of an upright back, in the coordinates of a seat.
+/// Returns the fittings on the rear of an upright backrest, in the coordinates of a seat.
 pub(super) fn back_things(palette: &Palette, random: &mut Random) -> Model {
     // Here `x` is the distance from the rear, and `y` runs up along it.
     let mut m = Model::default();

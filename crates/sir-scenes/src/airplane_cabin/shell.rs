@@ -1,4 +1,4 @@
-//! Floor, side walls with their windows, ceiling and ends: one closed surface with its fronts inward.
+//! Floor, side walls with their windows, ceiling and ends: one closed surface whose fronts face inward.
 
 use glam::DVec3;
 
@@ -11,12 +11,12 @@ use crate::model::Model;
 use crate::model::sheet::lines;
 use crate::random::Random;
 
-/// Cells of the runner along each window pitch, and across.
+/// Number of cells of the runner along each window pitch, and across the runner.
 const RUNNER_CELLS: usize = 4;
-/// Where the floor's coarse cells begin, beside the runner \[m\].
+/// Distance from the middle of the aisle at which the coarse cells of the floor begin \[m\].
 const BESIDE: f64 = AISLE + 0.2;
 
-/// The shell of the cabin.
+/// Returns the shell of the cabin.
 pub(super) fn shell(palette: &Palette, random: &mut Random) -> Model {
     let mut m = Model::default();
     floor(&mut m, palette);
@@ -32,12 +32,12 @@ pub(super) fn shell(palette: &Palette, random: &mut Random) -> Model {
     m
 }
 
-/// Positions along the cabin, a part of a window pitch apart.
+/// Returns positions `z` along the cabin, spaced by the window pitch divided by `parts`.
 fn z_lines(parts: usize) -> Vec<f64> {
     (0..=CELLS * parts).map(|i| WINDOW_PITCH * i as f64 / parts as f64).collect()
 }
 
-/// Points of the ceiling's section from left to right.
+/// Returns the points of the ceiling's section from left to right.
 fn ceiling_line() -> Vec<[f64; 2]> {
     let edge = WALL_LINES[WALL_LINES.len() - 1];
     let mut half = CEILING.to_vec();
@@ -45,7 +45,7 @@ fn ceiling_line() -> Vec<[f64; 2]> {
     half.iter().skip(1).rev().map(|[x, y]| [-x, *y]).chain(half.iter().copied()).collect()
 }
 
-/// Lines of the floor from beside the runner to the right wall.
+/// Returns the grid lines of the floor from beside the runner to the right wall.
 fn outer_floor() -> Vec<f64> {
     lines(BESIDE, half_width(0.0), 0.3)
 }
@@ -70,7 +70,8 @@ fn floor(m: &mut Model, palette: &Palette) {
     m.sheet(size, |i, j| DVec3::new(-x[last - j], 0.0, coarse[i]), |_, _| palette.carpet);
 }
 
-/// The pattern along the aisle: a diamond with an eye in every window pitch. Cells are halved along its sides.
+/// Adds the runner along the aisle. Each window pitch has a diamond with a dot in its middle; cells are split along the
+/// diamond's sides.
 fn runner(m: &mut Model, palette: &Palette, z: &[f64]) {
     let x = runner_lines();
     let middle = 0.5 * RUNNER_CELLS as f64;
@@ -86,7 +87,7 @@ fn runner(m: &mut Model, palette: &Palette, z: &[f64]) {
                 _ => palette.runner,
             };
             let (inner, outer) = (color(farther - 0.6), color(farther));
-            // The half that lies nearer the middle of the diamond comes first.
+            // The half nearer to the middle of the diamond comes first.
             let halves = match (across > 0.0, along > 0.0) {
                 (true, true) => [[a, b, d], [b, c, d]],
                 (false, false) => [[b, c, d], [a, b, d]],
@@ -102,7 +103,7 @@ fn runner(m: &mut Model, palette: &Palette, z: &[f64]) {
 fn wall(m: &mut Model, palette: &Palette, random: &mut Random, wall: Wall) {
     let z = z_lines(2);
     let last = z.len() - 1;
-    // Seen from the aisle, the right wall runs backward from left to right, the left wall forward.
+    // Seen from the aisle, from left to right, the right wall runs backward and the left wall forward.
     let z_at = |i: usize| if wall.side > 0.0 { z[i] } else { z[last - i] };
     let [low, _, high] = WINDOW_LINES;
     for (first, to) in [(0, low), (high, WALL_LINES.len() - 1)] {
@@ -121,7 +122,7 @@ fn wall(m: &mut Model, palette: &Palette, random: &mut Random, wall: Wall) {
     }
 }
 
-/// The wall at one end: rows of cells between the floor and the ceiling.
+/// Adds the wall at one end: rows of cells between the floor and the ceiling.
 fn end(m: &mut Model, palette: &Palette, z: f64) {
     let mut x: Vec<f64> = outer_floor().iter().rev().map(|x| -x).collect();
     x.extend(runner_lines());

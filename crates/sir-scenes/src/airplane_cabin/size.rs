@@ -1,47 +1,50 @@
-//! Dimensions that several parts of the cabin share \[m\]. The aisle runs along `z` in the middle of the floor; passengers
-//! look toward `−z`, where the galley is.
+//! Dimensions that several parts of the cabin share \[m\].
+//!
+//! The aisle runs along `z` in the middle of the floor. Passengers look toward `−z`, where the galley is.
 
 /// Radius of the round section of the side walls.
 pub(super) const RADIUS: f64 = 1.84;
 /// Height of the section's center above the floor.
 pub(super) const CENTER: f64 = 1.0;
-/// Distance of seat rows.
+/// Distance between seat rows.
 pub(super) const PITCH: f64 = 0.79;
-/// Distance of windows: three in two rows of seats.
+/// Distance between windows: three windows per two seat rows.
 pub(super) const WINDOW_PITCH: f64 = PITCH * 2.0 / 3.0;
-/// Length of an overhead bin, and of the panels above and below it: three windows.
+/// Length of an overhead unit (a bin and the panels above and below it): three windows.
 pub(super) const UNIT: f64 = 3.0 * WINDOW_PITCH;
-/// Number of such units.
+/// Number of units per side.
 pub(super) const UNITS: usize = 15;
-/// Window pitches from the front wall to the front bulkhead.
+/// Number of window pitches from the front wall to the front bulkhead.
 pub(super) const BEFORE: usize = 4;
-/// Window pitches from the rear bulkhead to the rear wall.
+/// Number of window pitches from the rear bulkhead to the rear wall.
 pub(super) const BEHIND: usize = 3;
-/// Window pitches in all.
+/// Total number of window pitches.
 pub(super) const CELLS: usize = BEFORE + 3 * UNITS + BEHIND;
 /// Length of the cabin.
 pub(super) const LENGTH: f64 = WINDOW_PITCH * CELLS as f64;
-/// Where the units begin.
+/// Position `z` at which the units begin.
 pub(super) const FRONT: f64 = WINDOW_PITCH * BEFORE as f64;
-/// Where the units end.
+/// Position `z` at which the units end.
 pub(super) const REAR: f64 = FRONT + UNIT * UNITS as f64;
-/// Rows of seats.
+/// Number of seat rows.
 pub(super) const ROWS: usize = 29;
-/// Front edge of the first row's cushions.
+/// Position `z` of the front edge of the first row's cushions.
 pub(super) const FIRST_ROW: f64 = FRONT + 0.56;
 /// Half the width of the aisle between arm rests.
 pub(super) const AISLE: f64 = 0.25;
 
-/// Heights of the lines of cells on the side walls, up to the edge of the ceiling.
+/// Heights of the grid lines on the side walls, up to the edge of the ceiling.
 pub(super) const WALL_LINES: [f64; 9] = [0.0, 0.27, 0.53, 0.8, 1.12, 1.44, 1.64, 1.92, 2.19];
-/// Lower edge, middle and upper edge of a window's cell among them.
+/// Indices in [`WALL_LINES`] of the lower edge, the middle and the upper edge of a window's cell.
 pub(super) const WINDOW_LINES: [usize; 3] = [3, 4, 5];
-/// The ceiling from its middle to its right edge: (x, y).
+/// Points (x, y) of the ceiling's section from its middle toward its right edge.
 pub(super) const CEILING: [[f64; 2]; 6] =
     [[0.0, 2.3], [0.2, 2.297], [0.45, 2.288], [0.7, 2.272], [0.95, 2.25], [1.18, 2.222]];
 
-/// Half the width of the cabin at a height. Between the lines of cells the walls are flat, and so is the whole height of
-/// the windows' cells: grazing light would show every facet.
+/// Returns half the width of the cabin at a height.
+///
+/// The walls are flat between grid lines. They are also flat over the whole height of the window cells, because grazing
+/// light would reveal every facet.
 pub(super) fn half_width(y: f64) -> f64 {
     let [low, _, high] = WINDOW_LINES;
     let on_circle = |y: f64| (RADIUS * RADIUS - (y - CENTER) * (y - CENTER)).sqrt();
@@ -51,7 +54,7 @@ pub(super) fn half_width(y: f64) -> f64 {
     on_circle(a) + (y - a) / (b - a) * (on_circle(b) - on_circle(a))
 }
 
-/// Height of the ceiling at a distance from its middle.
+/// Returns the height of the ceiling at a distance from its middle.
 pub(super) fn ceiling(x: f64) -> f64 {
     let edge = WALL_LINES[WALL_LINES.len() - 1];
     let mut points = CEILING.to_vec();
@@ -62,7 +65,8 @@ pub(super) fn ceiling(x: f64) -> f64 {
         .map_or(edge, |p| p[0][1] + (x.abs() - p[0][0]) / (p[1][0] - p[0][0]) * (p[1][1] - p[0][1]))
 }
 
-/// Whether a camera sees the part of the cabin around `z` on one side (−1 is left) from nearby: things are rounder there.
+/// Returns true if a camera is close to the part of the cabin around `z` on one side (−1 is left). Parts there are
+/// rounder.
 pub(super) fn near(side: f64, z: f64) -> bool {
     let both = [FRONT..FRONT + 2.1, 15.2..18.2];
     let one = if side > 0.0 { 10.0..13.4 } else { 11.2..11.6 };

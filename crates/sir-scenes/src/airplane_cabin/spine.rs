@@ -1,4 +1,4 @@
-//! The middle of the ceiling: panels that hang under it and hide lamps on their upper side, and signs under them.
+//! Middle of the ceiling: hanging panels that hide lamps on their upper side, and signs under the panels.
 
 use crate::airplane_cabin::palette::Palette;
 use crate::airplane_cabin::size::{FRONT, UNIT, UNITS};
@@ -8,11 +8,11 @@ use crate::model::sheet::lines;
 
 /// Half the width of the panels \[m\].
 const HALF: f64 = 0.20;
-/// Height of their underside \[m\].
+/// Height of the panels' underside \[m\].
 const LOW: f64 = 2.205;
-/// Half the width of the bright strip under them \[m\].
+/// Half the width of the bright strip under the panels \[m\].
 const STRIP: f64 = 0.025;
-/// The third edge is the strip.
+/// Section of a panel \[m\]. The third edge is the strip.
 const SECTION: [[f64; 2]; 12] = [
     [-HALF + 0.006, LOW + 0.008],
     [-HALF + 0.03, LOW],
@@ -28,7 +28,7 @@ const SECTION: [[f64; 2]; 12] = [
     [-HALF, LOW + 0.02],
 ];
 
-/// One panel per unit.
+/// Returns one panel per unit, with lamps, and the exit signs.
 pub(super) fn spine(palette: &Palette) -> Model {
     let mut m = Model::default();
     for i in 0..UNITS {
@@ -52,7 +52,7 @@ pub(super) fn spine(palette: &Palette) -> Model {
     m
 }
 
-/// A sign across the aisle, lit on both of its sides.
+/// Adds an exit sign across the aisle that emits on both sides.
 fn exit_sign(m: &mut Model, palette: &Palette, z: f64) {
     let (top, half) = (LOW - 0.002, 0.15);
     let x = [-half, -half + 0.02, -0.02, 0.02, half - 0.02, half];

@@ -1,4 +1,4 @@
-//! One window: a deep rounded recess in the curved wall, with a pane of sky behind a blind.
+//! Window: a deep rounded recess in the curved wall, with a pane of sky behind a blind.
 
 use std::f64::consts::TAU;
 
@@ -9,29 +9,30 @@ use crate::airplane_cabin::size::{FRONT, WALL_LINES, WINDOW_LINES, half_width, n
 use crate::model::Model;
 use crate::random::Random;
 
-/// A side wall seen from the aisle.
+/// Side wall seen from the aisle.
 #[derive(Clone, Copy)]
 pub(super) struct Wall {
-    /// 1 on the right of somebody who looks forward, −1 on the left.
+    /// 1 for the right wall and −1 for the left wall, looking forward.
     pub(super) side: f64,
 }
 
 impl Wall {
-    /// A point of the wall.
+    /// Returns a point of the wall.
     pub(super) fn at(self, z: f64, y: f64) -> DVec3 {
         DVec3::new(self.side * half_width(y), y, z)
     }
 }
 
-/// Rings of a recess from the wall to the pane: half its width and height, and its depth \[m\].
+/// Rings of a recess from the wall to the pane: half the width, half the height, and the depth \[m\].
 const RINGS: [[f64; 3]; 4] =
     [[0.205, 0.285, 0.0], [0.160, 0.232, 0.0], [0.126, 0.190, 0.075], [0.118, 0.180, 0.105]];
-/// Windows before this place are round, as are those near a camera: one looks along them \[m\].
+/// Position `z` in front of which all windows are rounder, like those near a camera: a camera looks along them \[m\].
 const ROUND_BEFORE: f64 = FRONT + 4.3;
-/// Exponent of the rings, which are superellipses: 2 is an ellipse, large ones are rectangles.
+/// Exponent of the superellipses that form the rings: 2 is an ellipse, large values approach a rectangle.
 const SQUARENESS: f64 = 3.0;
 
-/// The cell of a wall around a window. `z` are the left edge, the middle and the right edge seen from inside.
+/// Adds a window and the cell of the wall around it. `z` holds the positions of its left edge, middle and right edge
+/// seen from inside.
 pub(super) fn window(m: &mut Model, palette: &Palette, random: &mut Random, wall: Wall, z: [f64; 3]) {
     let [low, middle, high] = WINDOW_LINES.map(|i| WALL_LINES[i]);
     let [left, center, right] = z;
@@ -70,7 +71,7 @@ pub(super) fn window(m: &mut Model, palette: &Palette, random: &mut Random, wall
     let pane = &rings[RINGS.len() - 1];
     let half = points / 2;
     let shut = blind(random, half);
-    // Rows from the top to the bottom: right and left end of each line.
+    // Right and left end of each line between the rows, from top to bottom.
     let row = |r: usize| {
         let k = (half / 2 + points - 1 - r) % points;
         [pane[k], pane[(half + points - 1 - k) % points]]
@@ -82,8 +83,9 @@ pub(super) fn window(m: &mut Model, palette: &Palette, random: &mut Random, wall
     }
 }
 
-/// How many of a pane's rows a blind covers; there is one fewer than half the points of a ring, and the middle one is the
-/// highest.
+/// Returns the number of pane rows that the blind covers. `half` is half the number of points of a ring.
+///
+/// A pane has `half − 1` rows, of which the middle one is the tallest.
 fn blind(random: &mut Random, half: usize) -> usize {
     match random.unit() {
         x if x < 0.48 => 0,

@@ -1,4 +1,4 @@
-//! Solids that are carved out of a field of distances.
+//! Solids extracted from signed distance functions.
 
 use std::{array, collections::BTreeMap};
 
@@ -8,13 +8,14 @@ use sir_geom::MaterialId;
 use crate::model::Model;
 
 impl Model {
-    /// Adds the surface of the body in which `distance` is negative, which must lie within the box from `min` to
-    /// `max`, in facets of about the size `cell`.
+    /// Adds the surface of the solid where the signed distance `distance` is negative, in facets of about the size
+    /// `cell`. The solid must lie within the box from `min` to `max`.
     ///
-    /// Every edge of a grid that the surface crosses gets one quadrilateral between the four cubes around it. Its
-    /// corners are the means of the crossings of a cube's edges, one for each sheet of the surface in the cube (Nielson
-    /// 2004, "Dual marching cubes"). Where the body would touch itself in a face of a cube, a bit of it is taken away,
-    /// so that every edge of the surface joins two triangles.
+    /// The method is dual marching cubes (Nielson 2004, "Dual marching cubes"). Every grid edge that the surface
+    /// crosses gets one quadrilateral that joins the four cubes around it. The corners of the quadrilateral are the
+    /// means of the crossings on a cube's edges, one mean for each sheet of the surface in the cube. Where the solid
+    /// would touch itself in a face of a cube, one grid point is removed from it, so that every edge of the surface
+    /// joins two triangles.
     pub(crate) fn carve(
         &mut self,
         [min, max]: [DVec3; 2],
@@ -61,7 +62,7 @@ impl Model {
                     continue;
                 }
                 let (u, v) = (AXES[(axis + 1) % 3], AXES[(axis + 2) % 3]);
-                // Which edge of each cube it is, by the place of its lower end there.
+                // The four cubes around the edge, and the number that the edge has among those of its axis in each.
                 let around = [(i - u - v, 3), (i - v, 2), (i, 0), (i - u, 1)]
                     .map(|(cube, place)| vertices.get(&(index(cube), 4 * axis + place)).copied());
                 if let [Some(p), Some(q), Some(r), Some(s)] = around {
@@ -83,22 +84,25 @@ impl Model {
 
 const AXES: [IVec3; 3] = [IVec3::X, IVec3::Y, IVec3::Z];
 
-/// Where a corner of a cube is; its number has one bit for each axis.
+/// Returns the position of a corner of a cube relative to the cube. The corner number has one bit per axis.
 fn offset(corner: usize) -> IVec3 {
     let bit = |axis: usize| (corner >> axis & 1) as i32;
     IVec3::new(bit(0), bit(1), bit(2))
 }
 
-/// The corners at the ends of an edge. Four edges run along each axis; their numbers have one bit for each of the next
-/// two axes.
+/// Returns the two corners at the ends of an edge.
+///
+/// Four edges run along each axis. Their numbers have one bit for each of the next two axes.
 fn ends(edge: usize) -> [usize; 2] {
     let (axis, u, v) = (edge / 4, edge & 1, edge >> 1 & 1);
     let low = u << ((axis + 1) % 3) | v << ((axis + 2) % 3);
     [low, low | 1 << axis]
 }
 
-/// If opposite corners of a face at the cube `i` are inside, and the two others outside, that one of the former which
-/// is closer to the surface.
+/// Returns a corner in which the solid touches itself at a face of the cube `i`.
+///
+/// This is the case if two opposite corners of a face are inside and the other two outside. The result is the inside
+/// corner that is closer to the surface.
 fn touching_corner(i: IVec3, value: impl Fn(IVec3) -> f64) -> Option<IVec3> {
     (0..3).find_map(|axis| {
         let (u, v) = (AXES[(axis + 1) % 3], AXES[(axis + 2) % 3]);
@@ -113,7 +117,8 @@ fn touching_corner(i: IVec3, value: impl Fn(IVec3) -> f64) -> Option<IVec3> {
     })
 }
 
-/// To which sheet of the surface the crossings of a cube's edges belong, `None` for edges that are not crossed.
+/// Returns the sheet of the surface to which the crossing on each edge of a cube belongs; `None` for edges that are not
+/// crossed.
 fn sheets(inside: impl Fn(usize) -> bool) -> [Option<usize>; 12] {
     let mut sheet: [Option<usize>; 12] = array::from_fn(|edge| {
         let [a, b] = ends(edge);
@@ -150,8 +155,8 @@ mod tests {
         let bounds = [DVec3::splat(-1.13), DVec3::splat(1.13)];
         m.carve(bounds, 0.05, |p| p.length() - 1.0, |_| MaterialId(0));
         let six: f64 = m.polygons.iter().map(|(p, _)| p[0].dot(p[1].cross(p[2]))).sum();
-        // The mean of points on a ball lies within it: 1 % is lost with cells of a tenth of the radius, and a quarter
-        // of that with half the cells.
+        // The mean of points on a sphere lies inside it: cells of a tenth of the radius lose 1 % of the volume, and
+        // cells half as large lose a quarter of that.
         let exact = 4.0 / 3.0 * std::f64::consts::PI;
         assert!((0.995..1.0).contains(&(six / 6.0 / exact)), "{}", six / 6.0);
     }

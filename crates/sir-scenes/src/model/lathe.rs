@@ -8,8 +8,10 @@ use sir_geom::MaterialId;
 use crate::model::Model;
 
 impl Model {
-    /// Adds a turned solid. `profile` lists (radius, height) from the bottom to the top; the outermost two points
-    /// get joined to the axis by flat discs unless they lie on it.
+    /// Adds a solid of revolution.
+    ///
+    /// `profile` lists (radius, height) from the bottom to the top. Flat discs join its first and last point to the
+    /// axis unless they lie on it.
     pub(crate) fn lathe(&mut self, profile: &[[f64; 2]], segments: usize, material: MaterialId) {
         let mut closed = profile.to_vec();
         if let (Some(first), Some(last)) = (profile.first(), profile.last()) {
@@ -25,8 +27,10 @@ impl Model {
         }
     }
 
-    /// Adds a turned ring. `profile` lists (radius, height) counterclockwise (up on the outside, down on the inside)
-    /// with radii above zero; `material` gets the number of the point at which a band begins.
+    /// Adds a ring of revolution.
+    ///
+    /// `profile` lists (radius, height) counterclockwise (up on the outside, down on the inside), with radii above
+    /// zero. `material` receives the index of the point at which a band begins.
     pub(crate) fn turned_ring(
         &mut self,
         profile: &[[f64; 2]],
@@ -38,7 +42,7 @@ impl Model {
         }
     }
 
-    /// Adds the surface that the line between two profile points sweeps.
+    /// Adds the surface that the segment between two profile points sweeps.
     fn turned_band(&mut self, low: [f64; 2], high: [f64; 2], segments: usize, material: MaterialId) {
         let at = |[radius, y]: [f64; 2], i: usize| {
             let (sin, cos) = ((i % segments) as f64 / segments as f64 * TAU).sin_cos();

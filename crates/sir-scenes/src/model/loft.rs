@@ -1,4 +1,4 @@
-//! Solids that are spanned over closed rings of points.
+//! Solids lofted over closed rings of points.
 
 use glam::DVec3;
 use sir_geom::MaterialId;
@@ -6,8 +6,10 @@ use sir_geom::MaterialId;
 use crate::model::Model;
 
 impl Model {
-    /// Adds a closed skin over rings of points. `point(i, j)` is the `j`-th of `columns` points of ring `i`,
-    /// counterclockwise seen from the last ring; the ends are closed by fans around the middles of their rings.
+    /// Adds a solid lofted over rings of points.
+    ///
+    /// `point(i, j)` is the `j`-th of `columns` points of ring `i`, counterclockwise seen from the last ring. Fans
+    /// around the centroids of the first and the last ring close the ends.
     pub(crate) fn loft(
         &mut self,
         rings: usize,
@@ -30,7 +32,7 @@ impl Model {
         }
     }
 
-    /// Adds a skin over rings of points of which the first follows the last: a tube without ends.
+    /// Adds a solid lofted over rings of points where the first ring follows the last one: a closed tube.
     pub(crate) fn endless_loft(
         &mut self,
         rings: usize,
@@ -70,7 +72,7 @@ mod tests {
 
     use super::*;
 
-    /// Six times the volume that a model encloses, if it is closed with its fronts outward.
+    /// Returns six times the volume of a model, which must be closed with its fronts outward.
     fn six_volumes(m: &Model) -> f64 {
         m.polygons
             .iter()

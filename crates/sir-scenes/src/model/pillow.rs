@@ -1,4 +1,4 @@
-//! Solids with the same cross-section along a straight line, but for their rounded ends.
+//! Prisms with rounded ends.
 
 use glam::{DVec2, DVec3};
 use sir_geom::MaterialId;
@@ -6,26 +6,27 @@ use sir_geom::MaterialId;
 use crate::model::Model;
 use crate::model::sheet::lines;
 
-/// How the ends of a pillow are rounded, and how it is cut along its length.
+/// Rounding of a pillow's ends, and its division along its length.
 #[derive(Clone, Copy)]
 pub(crate) struct Ends {
     /// Radius at the ends \[m\].
     pub(crate) radius: f64,
-    /// Straight pieces of each quarter circle: 1 is a chamfer, and 0 (with no radius) leaves them flat.
+    /// Number of segments per quarter circle: 1 is a chamfer, and 0 (with radius 0) leaves the ends flat.
     pub(crate) pieces: usize,
-    /// Longest cell between the ends \[m\].
+    /// Maximum length of a cell between the ends \[m\].
     pub(crate) cell: f64,
-    /// How far from them the corners of the section are cut off \[m\]; 0 leaves them.
+    /// Distance from the corners of the section at which these are cut off \[m\]; 0 keeps them.
     pub(crate) cut: f64,
 }
 
 impl Model {
     /// Adds a solid with the given counterclockwise cross-section in the `xy` plane from `z = from` to `z = to`. Toward
-    /// both ends the section shrinks along quarter circles.
+    /// both ends, the section shrinks along quarter circles.
     ///
-    /// The section has an even number of points. The ends are strips between the first and the last, the second and
-    /// the last but one, and so on: it may be bent, but these pairs must face each other. `material` gets the number of
-    /// the point where an edge of the section begins (cut corners belong to the edge after them), or nothing for the ends.
+    /// The section has an even number of points. Strips between opposite points (the first and the last, the second and
+    /// the second to last, and so on) close the ends. The section may be concave as long as these pairs face each
+    /// other. `material` receives the index of the point at which an edge of the section begins, or `None` for the
+    /// ends. A cut corner belongs to the edge after it.
     pub(crate) fn pillow(
         &mut self,
         section: &[[f64; 2]],
@@ -40,14 +41,14 @@ impl Model {
                 [radius * (1.0 - cos.min(1.0)), radius * (1.0 - sin)]
             })
             .collect();
-        // Where each ring lies, and how far its section is shrunk.
+        // Position of each ring along z, and the distance by which its section shrinks.
         let mut rings: Vec<[f64; 2]> = arc.iter().map(|[along, inward]| [from + along, *inward]).collect();
         rings.extend(lines(from + radius, to - radius, cell).iter().map(|&z| [z, 0.0]));
         rings.extend(arc.iter().rev().map(|[along, inward]| [to - along, *inward]));
         let rings: Vec<Vec<DVec3>> = rings
             .iter()
             .map(|&[z, inward]| {
-                // Shrinking comes first: it would turn the short edges of cut corners around.
+                // Shrinking comes first: later, it would reverse the short edges of cut corners.
                 let mut ring = shrunk(section, inward);
                 if cut > 0.0 {
                     ring = cut_corners(&ring, cut);
@@ -69,7 +70,7 @@ impl Model {
     }
 }
 
-/// A counterclockwise polygon with all its edges moved inward by a distance.
+/// Returns a counterclockwise polygon with all edges moved inward by a distance.
 fn shrunk(polygon: &[[f64; 2]], distance: f64) -> Vec<DVec2> {
     let n = polygon.len();
     let point = |i: usize| DVec2::from_array(polygon[i % n]);
@@ -82,12 +83,12 @@ fn shrunk(polygon: &[[f64; 2]], distance: f64) -> Vec<DVec2> {
         .collect()
 }
 
-/// A polygon with each corner cut off at a distance of at most `cut` from it, so that there are twice as many points.
+/// Returns a polygon with each corner cut off at a distance of at most `cut` from it; it has twice as many points.
 fn cut_corners(polygon: &[DVec2], cut: f64) -> Vec<DVec2> {
     let n = polygon.len();
     let from_corner = |i: usize, toward: usize| {
-        let way = polygon[toward % n] - polygon[i];
-        polygon[i] + (cut / way.length()).min(0.25) * way
+        let edge = polygon[toward % n] - polygon[i];
+        polygon[i] + (cut / edge.length()).min(0.25) * edge
     };
     (0..n).flat_map(|i| [from_corner(i, i + n - 1), from_corner(i, i + 1)]).collect()
 }
@@ -124,7 +125,8 @@ mod tests {
                 volume += corners[0].dot(corners[i - 1].cross(corners[i])) / 6.0;
             }
         }
-        // The middle, and two frusta: h / 3 (A + B + √(AB)) does not hold for unlike rectangles, the prismoid does.
+        // The middle, and two frusta. h / 3 (A + B + √(AB)) does not hold for rectangles that are not similar; the
+        // prismoidal formula does.
         let frustum = 0.5 / 6.0 * (8.0 + 3.0 + 4.0 * 3.5 * 1.5);
         assert!((volume - (8.0 * 2.0 + 2.0 * frustum)).abs() < 1e-12, "{volume}");
     }

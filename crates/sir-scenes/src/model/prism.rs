@@ -1,4 +1,4 @@
-//! Solids with the same cross-section along a straight line.
+//! Prisms: solids with a constant cross-section.
 
 use glam::{DVec2, DVec3};
 use sir_geom::MaterialId;
@@ -7,8 +7,8 @@ use crate::model::Model;
 use crate::model::sheet::lines;
 
 impl Model {
-    /// Adds a solid with the given simple, counterclockwise cross-section in the `xy` plane from `z = from` to
-    /// `z = to`, in slices of at most `cell`.
+    /// Adds a prism with the given simple, counterclockwise cross-section in the `xy` plane from `z = from` to
+    /// `z = to`, in slices of at most `cell` \[m\].
     pub(crate) fn prism(
         &mut self,
         section: &[[f64; 2]],
@@ -30,8 +30,10 @@ impl Model {
     }
 }
 
-/// Cuts a simple counterclockwise polygon into triangles of its corners, by cutting off one convex corner after the
-/// other that holds no further corner (Meisters 1975, "Polygons have ears").
+/// Triangulates a simple counterclockwise polygon by ear clipping (Meisters 1975, "Polygons have ears").
+///
+/// Repeatedly cuts off a convex corner whose triangle contains no other corner. Returns the corner indices of the
+/// triangles.
 fn cut_ears(polygon: &[[f64; 2]]) -> Vec<[usize; 3]> {
     let point = |i: usize| DVec2::from_array(polygon[i]);
     let turns_left = |a: usize, b: usize, c: usize| (point(b) - point(a)).perp_dot(point(c) - point(b));
@@ -46,7 +48,7 @@ fn cut_ears(polygon: &[[f64; 2]]) -> Vec<[usize; 3]> {
                     turns_left(a, b, p) < 0.0 || turns_left(b, c, p) < 0.0 || turns_left(c, a, p) < 0.0
                 })
         });
-        // A simple polygon always has one; rounding may hide it where corners are in a line.
+        // A simple polygon always has an ear; rounding may hide it where corners are collinear.
         let i = ear.unwrap_or(0);
         triangles.push([left[(i + n - 1) % n], left[i], left[(i + 1) % n]]);
         left.remove(i);

@@ -1,19 +1,19 @@
-//! Surfaces made of a grid of cells, and boxes made of six of them.
+//! Grids of quadrilaterals, and boxes made of six grids.
 
 use glam::DVec3;
 use sir_geom::MaterialId;
 
 use crate::model::Model;
 
-/// Coordinates from `from` to `to`, both included, in equal steps of at most `cell`.
+/// Returns coordinates from `from` to `to`, both included, in equal steps of at most `cell`.
 pub(crate) fn lines(from: f64, to: f64, cell: f64) -> Vec<f64> {
     let cells = ((to - from) / cell - 1e-9).ceil().max(1.0);
     (0..=cells as usize).map(|i| from + (to - from) * (i as f64 / cells)).collect()
 }
 
 impl Model {
-    /// Adds a grid of quadrilaterals with the corners `point(i, j)`. The front is where
-    /// "`i` grows" × "`j` grows" points.
+    /// Adds a grid of quadrilaterals with the corners `point(i, j)`. The normal of the front is the cross product of
+    /// the directions of increasing `i` and increasing `j`.
     pub(crate) fn sheet(
         &mut self,
         [rows, columns]: [usize; 2],
@@ -28,12 +28,12 @@ impl Model {
         }
     }
 
-    /// Adds the triangles between two polylines that run side by side, `b` on the left of `a` seen from the front. They
-    /// may begin or end at a common point.
+    /// Adds the triangles between two polylines that run side by side, with `b` on the left of `a` seen from the front.
+    /// The polylines may begin or end at a common point.
     pub(crate) fn stitch(&mut self, a: &[DVec3], b: &[DVec3], material: MaterialId) {
         let (mut i, mut j) = (0, 0);
         while i + 1 < a.len() || j + 1 < b.len() {
-            // The shorter of the two possible next edges makes the better triangle.
+            // The shorter of the two possible next edges gives the better triangle.
             let along_a =
                 j + 1 == b.len() || (i + 1 < a.len() && a[i + 1].distance(b[j]) <= a[i].distance(b[j + 1]));
             let triangle = if along_a {
@@ -50,12 +50,12 @@ impl Model {
         }
     }
 
-    /// Adds a closed box, each face a grid with the given lines along `x`, `y` and `z`. `material` gets the direction
-    /// in which a face looks and the middle of the cell.
+    /// Adds a closed box whose faces are grids with the given lines along `x`, `y` and `z`. `material` receives the
+    /// outward normal of a face and the center of a cell.
     pub(crate) fn grid_block(&mut self, grid: [&[f64]; 3], material: impl Fn(DVec3, DVec3) -> MaterialId) {
         for axis in 0..3 {
             for end in [0, grid[axis].len() - 1] {
-                // The two other axes, in the order in which their cross product looks outward.
+                // The two other axes, ordered so that their cross product points outward.
                 let (mut u, mut v) = ((axis + 1) % 3, (axis + 2) % 3);
                 let mut normal = DVec3::AXES[axis];
                 if end == 0 {
@@ -76,7 +76,7 @@ impl Model {
         }
     }
 
-    /// Adds a closed box with faces in cells of at most `cell`.
+    /// Adds a closed box with faces in cells of at most `cell` \[m\].
     pub(crate) fn block(&mut self, min: [f64; 3], max: [f64; 3], cell: f64, material: MaterialId) {
         let [x, y, z] = [0, 1, 2].map(|axis| lines(min[axis], max[axis], cell));
         self.grid_block([&x, &y, &z], |_, _| material);

@@ -1,4 +1,4 @@
-//! Stone balustrades with turned balusters, level or along a flight of steps.
+//! Stone balustrades with turned balusters, level or sloping along a flight of steps.
 
 use glam::{DAffine3, DVec3};
 
@@ -7,7 +7,7 @@ use crate::model::{GAP, Model};
 use crate::museum_stairs::palette::Palette;
 use crate::museum_stairs::size::RAIL;
 
-/// Distance of the balusters.
+/// Maximum distance between balusters.
 const PITCH: f64 = 0.315;
 /// Length of the cells.
 const CELL: f64 = 0.7;
@@ -16,19 +16,21 @@ const PLINTH: f64 = 0.10;
 /// Height of the handrail.
 const HANDRAIL: f64 = 0.13;
 
-/// A place for a balustrade from `from` to `to`; if these differ in height, it is sheared, so that its balusters stay
-/// upright and what lies along it follows the slope.
+/// Returns a balustrade from `from` to `to`.
+///
+/// If these differ in height, the balustrade is sheared: its balusters stay vertical, and plinth and handrail follow
+/// the slope.
 pub(super) fn between(palette: &Palette, from: DVec3, to: DVec3) -> Model {
-    let way = to - from;
-    let length = way.x.hypot(way.z);
-    let along = way / length;
+    let span = to - from;
+    let length = span.x.hypot(span.z);
+    let along = span / length;
     let across = DVec3::new(along.x, 0.0, along.z).cross(DVec3::Y);
     let mut m = Model::default();
     m.add(&level(palette, length), DAffine3::from_cols(along, DVec3::Y, across, from));
     m
 }
 
-/// A balustrade along `x` from the origin.
+/// Returns a level balustrade along `x` from the origin.
 fn level(palette: &Palette, length: f64) -> Model {
     let mut m = Model::default();
     m.block([GAP, GAP, -0.10], [length - GAP, PLINTH, 0.10], CELL, palette.pale);
@@ -45,7 +47,7 @@ fn level(palette: &Palette, length: f64) -> Model {
         [-0.11, low + 0.045],
     ];
     rail.prism(&section, [GAP, length - GAP], CELL, palette.rosso);
-    // The prism's z becomes x, and its x −z.
+    // The prism's z becomes x, and its x becomes −z.
     m.add(&rail, DAffine3::from_cols(-DVec3::Z, DVec3::Y, DVec3::X, DVec3::ZERO));
 
     let (foot, head) = (PLINTH + GAP, RAIL - HANDRAIL - GAP);

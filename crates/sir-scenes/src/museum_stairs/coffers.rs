@@ -7,7 +7,7 @@ use crate::model::{GAP, Model};
 use crate::museum_stairs::palette::Palette;
 use crate::museum_stairs::size::{CELL, EDGE, HEIGHT, SOUTH_EDGE};
 
-/// A coffer is two cells wide, a rib one.
+/// Distance between coffers: a coffer is two cells wide and a rib one.
 const MODULE: f64 = 3.0 * CELL;
 /// Width of a coffer.
 const COFFER: f64 = 2.0 * CELL;
@@ -15,10 +15,10 @@ const COFFER: f64 = 2.0 * CELL;
 const STEP: f64 = 0.12;
 /// Depth of a coffer up to its step.
 const LOWER: f64 = 0.22;
-/// Depth of a closed coffer, and of one with a pane.
+/// Depths of a closed coffer and of a coffer with a pane.
 const DEPTHS: [f64; 2] = [0.40, 0.62];
 
-/// Number and place of a coffer's lower corner.
+/// Returns, for each coffer, true if it has a pane, and the corner of its mouth with the smallest coordinates.
 fn coffers() -> impl Iterator<Item = (bool, DVec3)> {
     let count = |length: f64| ((length - CELL) / MODULE).round() as usize;
     let (across, along) = (count(2.0 * EDGE), count(SOUTH_EDGE));
@@ -30,7 +30,7 @@ fn coffers() -> impl Iterator<Item = (bool, DVec3)> {
     })
 }
 
-/// Adds the ceiling of the middle to the shell, fronts down.
+/// Adds the ceiling of the middle to the shell, with fronts down.
 pub(super) fn ceiling(m: &mut Model, palette: &Palette) {
     let (x, z) = (lines(-EDGE, EDGE, CELL), lines(0.0, SOUTH_EDGE, CELL));
     for i in 0..x.len() - 1 {
@@ -46,7 +46,7 @@ pub(super) fn ceiling(m: &mut Model, palette: &Palette) {
     }
 }
 
-/// One coffer: sides, a step, sides and a bottom.
+/// Adds a coffer: sides, a step, sides and a bottom.
 fn coffer(m: &mut Model, palette: &Palette, corner: DVec3, lit: bool) {
     let depth = DEPTHS[usize::from(lit)];
     let ring = |inset: f64, up: f64| {
@@ -57,7 +57,7 @@ fn coffer(m: &mut Model, palette: &Palette, corner: DVec3, lit: bool) {
         [ring(0.0, 0.0), ring(0.0, LOWER), ring(STEP, LOWER), ring(STEP, depth)];
     for k in 0..4 {
         let l = (k + 1) % 4;
-        // The mouth has a vertex of the ribs in the middle of each side.
+        // Each side of the mouth has a vertex of the ribs in its middle.
         let middle = 0.5 * (mouth[k] + mouth[l]);
         m.polygon(&[ledge[k], mouth[k], middle, mouth[l], ledge[l]], palette.plaster);
         m.polygon(&[inner[k], ledge[k], ledge[l], inner[l]], palette.gold);
@@ -66,7 +66,7 @@ fn coffer(m: &mut Model, palette: &Palette, corner: DVec3, lit: bool) {
     m.polygon(&bottom, if lit { palette.sky } else { palette.coffer });
 }
 
-/// Bars under the panes, and rosettes in the other coffers.
+/// Returns bars under the panes, and rosettes in the other coffers.
 pub(super) fn fittings(palette: &Palette) -> Model {
     let mut m = Model::default();
     let mut rosette = Model::default();

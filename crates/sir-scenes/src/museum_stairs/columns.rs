@@ -13,10 +13,10 @@ use crate::museum_stairs::size::{
 
 /// Half the width of the pedestals of the upper columns \[m\].
 pub(super) const PEDESTAL: f64 = 0.24;
-/// How far the pilasters stand out from the walls \[m\].
+/// Projection of the pilasters from the walls \[m\].
 const PILASTER: f64 = 0.10;
 
-/// All columns with their pedestals and pilasters.
+/// Returns all columns with their pedestals and pilasters.
 pub(super) fn columns(palette: &Palette) -> Model {
     let mut m = Model::default();
     let lower = fluted_column(palette, LOWER_BEAM - 2.0 * GAP);
@@ -47,7 +47,7 @@ pub(super) fn columns(palette: &Palette) -> Model {
     m
 }
 
-/// Mouldings on the walls where their colors change.
+/// Adds moldings on the walls where the color changes.
 fn rails(m: &mut Model, palette: &Palette) {
     for z in bay_middles() {
         for side in [-1.0, 1.0] {
@@ -62,7 +62,7 @@ fn rails(m: &mut Model, palette: &Palette) {
     m.block([-half, 9.45, GAP], [half, 9.54, 0.06], 0.8, palette.gold);
 }
 
-/// A fluted column on a square plinth, standing on the origin.
+/// Returns a fluted column on a square plinth, on the origin.
 fn fluted_column(palette: &Palette, height: f64) -> Model {
     let mut m = Model::default();
     let (plinth, abacus) = (0.12, height - 0.10);
@@ -76,7 +76,7 @@ fn fluted_column(palette: &Palette, height: f64) -> Model {
 
     let (low, high) = (plinth + 0.17 + 2.0 * GAP, abacus - 0.25 - 2.0 * GAP);
     let (flutes, points) = (14, 3);
-    // The shaft swells a little and tapers to five sixths.
+    // The shaft swells slightly and tapers to five sixths.
     let radius = |t: f64| 0.245 * (1.0 + 0.06 * t - 0.22 * t * t);
     let rows = [0.0, 0.45, 1.0];
     m.loft(
@@ -93,7 +93,7 @@ fn fluted_column(palette: &Palette, height: f64) -> Model {
     m
 }
 
-/// A smooth marble column with a capital of leaves, standing on the origin.
+/// Returns a smooth marble column with a leaf capital, on the origin.
 fn leafed_column(palette: &Palette, height: f64) -> Model {
     let mut m = Model::default();
     let abacus = height - 0.07;
@@ -108,7 +108,7 @@ fn leafed_column(palette: &Palette, height: f64) -> Model {
         .to_vec();
     m.lathe(&shaft, 16, palette.rosso);
 
-    // Radius of the leaves' ribs and of the bell between them, bottom to top.
+    // Radius of the leaves' ribs, radius of the bell between them, and height, from bottom to top.
     let rows = [
         [0.165, 0.165, 0.0],
         [0.185, 0.180, 0.02],
@@ -138,7 +138,7 @@ fn lathe_between(m: &mut Model, palette: &Palette, profile: &[[f64; 2]], foot: f
     m.lathe(&profile, 14, palette.pale);
 }
 
-/// A pedestal between two stretches of balustrade.
+/// Returns a pedestal between two stretches of balustrade, on the origin.
 pub(super) fn pedestal(palette: &Palette, height: f64) -> Model {
     let mut m = Model::default();
     let mut slab = |half: f64, low: f64, high: f64| {

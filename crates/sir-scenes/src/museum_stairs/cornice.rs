@@ -1,4 +1,4 @@
-//! The cornice under the raised middle of the ceiling, with a trough in which lamps shine upward.
+//! Cornice under the raised middle of the ceiling, with lamps in a trough that shine upward.
 
 use glam::{DAffine3, DVec3};
 
@@ -7,10 +7,10 @@ use crate::model::{GAP, Model};
 use crate::museum_stairs::palette::Palette;
 use crate::museum_stairs::size::{AISLE, EDGE, SOUTH_EDGE};
 
-/// How far it stands out \[m\].
+/// Projection of the cornice from the wall \[m\].
 const OUT: f64 = 0.62;
 
-/// The cornice along three sides.
+/// Returns the cornice along three sides.
 pub(super) fn cornice(palette: &Palette) -> Model {
     let mut m = Model::default();
     let side = [GAP, SOUTH_EDGE - GAP];
@@ -22,7 +22,7 @@ pub(super) fn cornice(palette: &Palette) -> Model {
     m
 }
 
-/// A stretch along `z`; the wall is `x = 0`.
+/// Returns a piece of cornice along `z`; the wall is at `x = 0`.
 fn stretch(palette: &Palette, [from, to]: [f64; 2]) -> Model {
     let mut m = Model::default();
     let y = AISLE - 0.36;

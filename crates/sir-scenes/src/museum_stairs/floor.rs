@@ -8,7 +8,7 @@ use crate::model::sheet::lines;
 use crate::museum_stairs::palette::Palette;
 use crate::museum_stairs::size::{CELL, EDGE, HALF_WIDTH, LENGTH, SOUTH_EDGE};
 
-/// Adds the floor: every cell is two triangles, of two colors where a lozenge has its edge.
+/// Adds the floor. A cell on the edge of a lozenge consists of two triangles with different colors.
 pub(super) fn floor(m: &mut Model, palette: &Palette) {
     let (x, z) = (lines(-HALF_WIDTH, HALF_WIDTH, CELL), lines(0.0, LENGTH, CELL));
     for i in 0..z.len() - 1 {
@@ -19,7 +19,7 @@ pub(super) fn floor(m: &mut Model, palette: &Palette) {
             match pattern(palette, column, 0.5 * (z[i] + z[i + 1]), i) {
                 Inlay::Plain(material) => m.polygon(&[a, b, c, d], material),
                 Inlay::Lozenge { inner, outer, quarter: [right, low] } => {
-                    // The corner that points to the middle of the lozenge belongs to it.
+                    // The triangle toward the middle of the lozenge has the inner color.
                     match (right != flip, low) {
                         (false, false) => halves(m, [b, c, d], [d, a, b], [inner, outer]),
                         (true, false) => halves(m, [a, b, c], [c, d, a], [inner, outer]),
@@ -37,15 +37,15 @@ fn halves(m: &mut Model, first: [DVec3; 3], second: [DVec3; 3], [inner, outer]: 
     m.polygon(&second, outer);
 }
 
-/// Number of a cell's column from the middle, and whether it lies on the left.
+/// Returns the index of a cell's column from the middle, and true if it lies on the left.
 fn folded(x: f64) -> (usize, bool) {
     ((x.abs() / CELL) as usize, x < 0.0)
 }
 
-/// What fills a cell.
+/// Inlay of a cell.
 enum Inlay {
     Plain(MaterialId),
-    /// A quarter of a lozenge: whether it is its right and its lower one.
+    /// Quarter of a lozenge. `quarter` is true for the right half and for the lower half.
     Lozenge {
         inner: MaterialId,
         outer: MaterialId,
@@ -53,7 +53,7 @@ enum Inlay {
     },
 }
 
-/// Lozenges in frames under the skylight, a checkerboard under the gallery.
+/// Returns the inlay of a cell: lozenges in frames under the skylight, a checkerboard under the gallery.
 fn pattern(palette: &Palette, column: usize, z: f64, row: usize) -> Inlay {
     let edge = (EDGE / CELL) as usize;
     if column >= edge || z > SOUTH_EDGE {

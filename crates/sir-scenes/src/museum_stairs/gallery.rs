@@ -1,4 +1,4 @@
-//! The gallery: floors, beams, balustrades.
+//! Gallery: floors, beams and balustrades.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -17,10 +17,10 @@ use crate::museum_stairs::size::{
 /// Half the width of the beams \[m\].
 const BEAM: f64 = 0.24;
 
-/// How far the edge of the floor, with its moldings, reaches under the balustrade, which hides the joint behind it \[m\].
+/// Distance that the edge of the floor, with its moldings, reaches under the balustrade, which hides the joint \[m\].
 const LEDGE: f64 = 0.2;
 
-/// Floors, beams and balustrades.
+/// Returns the floors, beams and balustrades.
 pub(super) fn gallery(palette: &Palette) -> Model {
     let mut m = Model::default();
     floors(&mut m, palette);
@@ -34,7 +34,7 @@ pub(super) fn gallery(palette: &Palette) -> Model {
         let [from, to] = [from, to].map(|[x, z]| DVec3::new(x, floor, z));
         m.add(&balustrade::between(palette, from, to), DAffine3::IDENTITY);
     };
-    // The caps of the pedestals stand out further than their shafts.
+    // The caps of the pedestals project farther than their shafts.
     let clear = PEDESTAL + 0.035;
     let places: Vec<f64> = column_places().collect();
     for side in [-axis, axis] {
@@ -51,7 +51,7 @@ pub(super) fn gallery(palette: &Palette) -> Model {
     m
 }
 
-/// The three parts of the gallery's floor.
+/// Adds the three parts of the gallery's floor.
 fn floors(m: &mut Model, palette: &Palette) {
     let y = [UNDER_GALLERY, GALLERY];
     let (wall, edge) = (HALF_WIDTH - GAP, EDGE + LEDGE);
@@ -73,14 +73,14 @@ fn floors(m: &mut Model, palette: &Palette) {
         };
         m.grid_block([&x, &y, &z], paint);
     }
-    // Where the stair arrives, there are no moldings.
+    // There are no moldings where the stair arrives.
     for side in [-1.0, 1.0] {
         let (a, b) = (side * (EDGE + GAP), side * edge);
         m.block([a.min(b), y[0], GAP], [a.max(b), y[1], SIDE], CELL, palette.pale);
     }
 }
 
-/// Beams on the columns, and from each column to the wall behind it.
+/// Adds beams on the columns, and from each column to the wall behind it.
 fn beams(m: &mut Model, palette: &Palette, [low, high]: [f64; 2]) {
     let rise = high - low;
     let section = [
@@ -118,11 +118,11 @@ fn beams(m: &mut Model, palette: &Palette, [low, high]: [f64; 2]) {
     }
 }
 
-/// Mouldings along the edge of the gallery's floor.
+/// Adds moldings along the edge of the gallery's floor.
 fn edge_moldings(m: &mut Model, palette: &Palette) {
     let y = UNDER_GALLERY;
     let out = 0.16;
-    // (distance before the edge, height)
+    // (distance behind the edge, height)
     let section = [
         [LEDGE, y],
         [LEDGE, GALLERY],

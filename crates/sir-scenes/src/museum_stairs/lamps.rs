@@ -8,7 +8,7 @@ use crate::museum_stairs::shell::APSE;
 use crate::museum_stairs::size::{DOOR_COLUMN, GALLERY, HALF_WIDTH, LENGTH, column_places};
 use crate::museum_stairs::stair;
 
-/// All lamps but those on the cornice and in the vitrines.
+/// Returns all lamps except those on the cornice and in the vitrines.
 pub(super) fn lamps(palette: &Palette) -> Model {
     let mut m = Model::default();
     let sconce = sconce(palette);
@@ -33,7 +33,7 @@ pub(super) fn lamps(palette: &Palette) -> Model {
     m
 }
 
-/// An opaque bowl about the origin with a lamp in it that shines upward.
+/// Returns an opaque bowl about the origin with a lamp inside that shines upward.
 fn sconce(palette: &Palette) -> Model {
     let mut m = Model::default();
     let bowl = [
@@ -51,7 +51,7 @@ fn sconce(palette: &Palette) -> Model {
     m
 }
 
-/// A globe on a bronze stand, on the origin.
+/// Returns a globe on a bronze stand, on the origin.
 fn standing_globe(palette: &Palette) -> Model {
     let mut m = Model::default();
     let stand = [
@@ -77,10 +77,10 @@ fn standing_globe(palette: &Palette) -> Model {
     m
 }
 
-/// Pillars and an arch around the great niche, and the strips of light behind them.
+/// Adds pillars and an arch around the great niche, and the light strips behind them.
 fn niche_frame(m: &mut Model, palette: &Palette) {
     let (inner, outer) = (APSE.radius - 0.11, APSE.radius + 0.26);
-    // It rises above the floor of the niche, so that the gap behind it is hidden.
+    // The ledge rises above the floor of the niche and hides the gap behind it.
     let (foot, lip) = (APSE.sill - 0.25, APSE.sill + 0.03);
     m.block([-outer - 0.1, foot, GAP], [outer + 0.1, lip, 0.24], 0.5, palette.pale);
     for side in [-1.0, 1.0] {

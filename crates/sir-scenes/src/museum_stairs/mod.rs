@@ -1,8 +1,8 @@
-//! The hall of a museum's stair.
+//! The stair hall of a museum.
 //!
-//! Cool light of the sky falls through deep coffers into the middle of the hall. All else has it from walls, floors
-//! and carpets, or from warm lamps that hide: in a trough on the cornice, in bowls on the pilasters, in the great
-//! niche and under the caps of the vitrines. Only the globes on the stair can be seen.
+//! Cool skylight falls through deep coffers into the middle of the hall. The rest of the hall is lit by reflection from
+//! walls, floors and carpets, and by hidden warm lamps: in a trough on the cornice, in bowls on the pilasters, in the
+//! great niche and under the caps of the vitrines. The only visible lamps are the globes on the stair.
 
 mod balustrade;
 mod coffers;
@@ -29,14 +29,17 @@ use crate::model::{GAP, Model};
 use palette::Palette;
 use size::{FOOT, GALLERY, LENGTH};
 
-/// The hall of a stair in a museum, 16 m wide, 21 m long and 13 m high: a wide flight leads to a landing, two lead on
-/// to a gallery on columns; statues, vases and paintings. It is closed: no light leaves it.
+/// Returns the stair hall of a museum, 16 m wide, 21 m long and 13 m high.
 ///
-/// Cameras: `top` from under the ceiling toward the stair, `foot` from the entrance, and `gallery` along the gallery.
+/// A wide flight leads to a landing, and two flights lead from there to a gallery on columns. The hall holds statues,
+/// vases and paintings. It is closed: no light escapes.
+///
+/// The cameras are `top` from under the ceiling toward the stair, `foot` from the entrance, and `gallery` along the
+/// gallery.
 ///
 /// # Errors
 ///
-/// None that can occur with the numbers of the hall; the signature is that of every scene.
+/// None that can occur with the dimensions of the hall; the signature is the same for all scenes.
 pub fn museum_stairs() -> Result<Built, SceneError> {
     let mut builder = SceneBuilder::new();
     let palette = Palette::new(&mut builder);
@@ -66,7 +69,7 @@ pub fn museum_stairs() -> Result<Built, SceneError> {
     builder.build()
 }
 
-/// The carpet between the entrance and the stair.
+/// Returns the carpet between the entrance and the stair.
 fn runner(palette: &Palette) -> Model {
     let mut m = Model::default();
     let (half, border) = (stair::CARPET, stair::BORDER);

@@ -1,10 +1,10 @@
-//! The materials of the hall.
+//! Materials of the hall.
 
 use sir_geom::{Material, MaterialId, Rgb, SceneBuilder};
 
 use crate::model::furnish::lamp;
 
-/// Numbers of the materials.
+/// Indices of the materials.
 pub(super) struct Palette {
     /// Limestone of the building.
     pub(super) stone: MaterialId,
@@ -36,19 +36,19 @@ pub(super) struct Palette {
     pub(super) clay: MaterialId,
     pub(super) glaze: MaterialId,
     pub(super) celadon: MaterialId,
-    /// Colors of the paintings.
+    /// Colors of the paintings, as in [`PAINTS`].
     pub(super) paints: [MaterialId; 10],
-    /// Emits the light of the sky.
+    /// Light of the sky.
     pub(super) sky: MaterialId,
-    /// Emits the light of the strips that are hidden on the cornice.
+    /// Light of the strips hidden on the cornice.
     pub(super) cove_lamp: MaterialId,
-    /// Emits the light of the strips that are hidden in the great niche.
+    /// Light of the strips hidden in the great niche.
     pub(super) niche_lamp: MaterialId,
-    /// Emits the light of the sconces.
+    /// Light of the sconces.
     pub(super) bulb: MaterialId,
-    /// Emits the light of the globes on the stair.
+    /// Light of the globes on the stair.
     pub(super) globe: MaterialId,
-    /// Emits the light in the vitrines.
+    /// Light in the vitrines.
     pub(super) spot: MaterialId,
 }
 

@@ -10,7 +10,7 @@ use crate::model::{GAP, Model};
 use crate::museum_stairs::palette::Palette;
 use crate::museum_stairs::size::{GALLERY, HALF_WIDTH, LENGTH, bay_middles};
 
-/// All pictures and doors.
+/// Returns all pictures and doors.
 pub(super) fn pictures(palette: &Palette) -> Model {
     let mut m = Model::default();
     let sizes = [[1.7, 1.25], [1.25, 1.6], [1.9, 1.3], [1.25, 1.6], [1.7, 1.25]];
@@ -35,7 +35,7 @@ pub(super) fn pictures(palette: &Palette) -> Model {
     m
 }
 
-/// A painting about the origin before the plane `z = 0`: a landscape of colored bands.
+/// Returns a painting about the origin in front of the plane `z = 0`: a landscape of colored bands.
 fn painting(palette: &Palette, number: usize, [width, height]: [f64; 2]) -> Model {
     let mut m = Model::default();
     let (x, y) = (0.5 * width, 0.5 * height);
@@ -56,10 +56,10 @@ fn painting(palette: &Palette, number: usize, [width, height]: [f64; 2]) -> Mode
     m
 }
 
-/// Bands of color in a landscape.
+/// Number of color bands in a landscape.
 const BANDS: usize = 7;
 
-/// Their colors, from the bottom up.
+/// Paint indices of the bands of each landscape, from the bottom up.
 const LANDSCAPES: [[usize; BANDS]; 5] = [
     [6, 5, 4, 5, 1, 0, 0],
     [7, 6, 8, 2, 2, 9, 1],
@@ -68,20 +68,21 @@ const LANDSCAPES: [[usize; BANDS]; 5] = [
     [6, 4, 4, 3, 0, 9, 9],
 ];
 
-/// Height of the lower edge of a band of a landscape, both coordinates from −1 to 1.
+/// Returns the height of the lower edge of a landscape's band at `x`. Both coordinates run from −1 to 1.
 fn horizon(number: usize, band: usize, x: f64) -> f64 {
     if band == 0 || band == BANDS {
         return if band == 0 { -1.0 } else { 1.0 };
     }
     let (n, k) = (number as f64, band as f64);
     let even = 2.0 * k / BANDS as f64 - 1.0;
-    // Hills are steep in front and calm far away, and so are the clouds.
+    // The edges are wavier in the middle than near the bottom and the top.
     let swing = 0.11 - 0.02 * (k - 3.0).abs();
     even + swing * ((2.1 + 0.5 * (n * 0.7).sin()) * x + 2.3 * k + n).sin() + 0.03 * (7.0 * x + k * n).sin()
 }
 
-/// A flat box whose front, which looks along `z`, is a grid with cells of different colors; `point(i, j)` gets further
-/// right with `i` and up with `j`. Its back is not cut into cells.
+/// Adds a flat box whose front, which faces `+z`, is a grid with cells of different materials.
+///
+/// `point(i, j)` moves right with `i` and up with `j`. The back is not divided into cells.
 fn panel(
     m: &mut Model,
     [columns, rows]: [usize; 2],
@@ -105,7 +106,7 @@ fn panel(
     }
 }
 
-/// A tapestry about the origin before the plane `z = 0`, with a border, a lattice and lozenges.
+/// Returns a tapestry about the origin in front of the plane `z = 0`, with a border, a lattice and lozenges.
 fn tapestry(palette: &Palette) -> Model {
     let mut m = Model::default();
     let (x, y) = (0.9, 1.75);
@@ -128,7 +129,7 @@ fn tapestry(palette: &Palette) -> Model {
     m
 }
 
-/// A double door in its frame about the origin, before the plane `z = 0`.
+/// Returns a framed double door about the origin in front of the plane `z = 0`.
 fn door(palette: &Palette, half: f64) -> Model {
     let mut m = Model::default();
     let (height, frame) = (2.75, 0.2);

@@ -1,6 +1,6 @@
-//! Floor, walls with their niches, and ceilings: one closed surface with its fronts inward.
+//! Floor, walls with their niches, and ceilings: one closed surface whose fronts face inward.
 //!
-//! All of it is cut along the same lines, half a meter apart, so that neighbors share their edges.
+//! All parts use the same grid lines, half a meter apart, so that neighbors share their edges.
 
 use glam::DVec3;
 use sir_geom::MaterialId;
@@ -12,31 +12,31 @@ use crate::museum_stairs::palette::Palette;
 use crate::museum_stairs::size::{AISLE, CELL, EDGE, HALF_WIDTH, HEIGHT, LENGTH, SOUTH_EDGE, bay_middles};
 use crate::museum_stairs::{coffers, floor};
 
-/// A niche with a round arch. Its edges lie on the lines of cells.
+/// Niche with a round arch. Its edges lie on grid lines.
 #[derive(Clone, Copy)]
 pub(super) struct Niche {
-    /// Middle, from the left end of its wall.
+    /// Distance of its middle from the left end of its wall.
     pub(super) middle: f64,
     /// Height of its lower edge.
     pub(super) sill: f64,
     /// Height at which its arch begins.
     pub(super) spring: f64,
-    /// Half its width, and radius of its arch.
+    /// Half its width, equal to the radius of its arch.
     pub(super) radius: f64,
-    /// Line of cells above it.
+    /// Height of the grid line above it.
     pub(super) top: f64,
     pub(super) depth: f64,
 }
 
-/// The great niche over the landing.
+/// Great niche over the landing.
 pub(super) const APSE: Niche =
     Niche { middle: HALF_WIDTH, sill: 3.5, spring: 6.5, radius: 1.5, top: 8.5, depth: 1.1 };
 
-/// A niche in a side wall for a bust.
+/// Niche in a side wall for a bust.
 pub(super) const SMALL: Niche =
     Niche { middle: 0.0, sill: 1.0, spring: 2.5, radius: 0.75, top: 3.5, depth: 0.5 };
 
-/// The shell of the hall.
+/// Returns the shell of the hall.
 pub(super) fn shell(palette: &Palette) -> Model {
     let mut m = Model::default();
     let corner = |x: f64, z: f64| DVec3::new(x, 0.0, z);
@@ -67,7 +67,7 @@ pub(super) fn shell(palette: &Palette) -> Model {
         recessed(&mut m, west, Niche { middle: LENGTH - z, ..SMALL }, palette);
     }
 
-    // The walls of the raised middle, and the two heights of the ceiling.
+    // Walls of the raised middle, and the two heights of the ceiling.
     let attic = |corner: DVec3, right: DVec3| Wall { left: corner, right };
     wall(&mut m, attic(corner(EDGE, 0.0), DVec3::Z), [0.0, SOUTH_EDGE], [AISLE, HEIGHT], &[], paint);
     wall(&mut m, attic(corner(-EDGE, SOUTH_EDGE), -DVec3::Z), [0.0, SOUTH_EDGE], [AISLE, HEIGHT], &[], paint);
@@ -79,7 +79,7 @@ pub(super) fn shell(palette: &Palette) -> Model {
     m
 }
 
-/// The color of the walls at a height.
+/// Returns the material of the walls at a height.
 fn wall_paint(palette: &Palette, v: f64) -> MaterialId {
     match v {
         ..1.0 => palette.rosso,
@@ -91,7 +91,7 @@ fn wall_paint(palette: &Palette, v: f64) -> MaterialId {
     }
 }
 
-/// A part of a wall, with the fields around the niches left out up to their arches.
+/// Adds a part of a wall, with openings for the niches.
 fn wall(
     m: &mut Model,
     wall: Wall,
@@ -113,7 +113,7 @@ fn wall(
         }
     }
     for n in niches {
-        // From the right foot of the arch up, over and down to the left one, as on the arch itself.
+        // From the right foot of the arch up, across and down to the left foot, like the arch itself.
         let (l, r) = (n.middle - n.radius, n.middle + n.radius);
         let (across, beside) = (lines(l, r, CELL), heights(n.spring, n.top));
         let mut around: Vec<DVec3> = beside.iter().map(|&v| wall.at(r, v, 0.0)).collect();
@@ -123,7 +123,7 @@ fn wall(
     }
 }
 
-/// Lines of cells on the walls: edges of niches and colors are some of them.
+/// Heights of the grid lines on the walls. They include the edges of niches and of colors.
 const HEIGHTS: [f64; 16] =
     [0.0, 1.0, 1.75, 2.5, 3.5, 4.5, 5.25, 6.0, 6.5, 7.5, 8.5, 9.5, AISLE, 11.3, 12.1, HEIGHT];
 
@@ -131,16 +131,16 @@ fn heights(low: f64, high: f64) -> Vec<f64> {
     HEIGHTS.into_iter().filter(|v| (low..=high).contains(v)).collect()
 }
 
-/// Segments of the arches.
+/// Number of segments of an arch.
 const ARC: usize = 14;
 
-/// The sides and the back of a niche.
+/// Adds the sides and the back of a niche.
 fn recessed(m: &mut Model, wall: Wall, n: Niche, palette: &Palette) {
     let (l, r) = (n.middle - n.radius, n.middle + n.radius);
     let (across, jamb) = (lines(l, r, CELL), heights(n.sill, n.spring));
     let rows = jamb.len() - 1;
     m.sheet([across.len() - 1, rows - 1], |i, j| wall.at(across[i], jamb[j], n.depth), |_, _| palette.niche);
-    // The last row passes from the lines of cells to those of the half disc.
+    // The last row joins the grid to the half disc.
     let rings = half_rings(n.radius, ARC, CELL);
     let row = |u: &[f64], v: f64| u.iter().map(|&u| wall.at(u, v, n.depth)).collect::<Vec<_>>();
     let mut diameter: Vec<f64> = rings.iter().map(|ring| n.middle - ring.0).collect();
@@ -154,7 +154,7 @@ fn recessed(m: &mut Model, wall: Wall, n: Niche, palette: &Palette) {
     m.recess(&edge, wall.at(0.0, 0.0, n.depth) - wall.at(0.0, 0.0, 0.0), palette.pale);
 }
 
-/// A part of the ceiling over the gallery.
+/// Adds a part of the ceiling over the gallery.
 fn ceiling(m: &mut Model, [west, east]: [f64; 2], [north, south]: [f64; 2], material: MaterialId) {
     let (x, z) = (lines(west, east, CELL), lines(north, south, CELL));
     m.sheet([x.len() - 1, z.len() - 1], |i, j| DVec3::new(x[i], AISLE, z[j]), |_, _| material);

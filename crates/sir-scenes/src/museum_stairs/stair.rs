@@ -1,4 +1,4 @@
-//! The stair: a wide flight to a landing, from which two flights lead to the gallery.
+//! Stair: a wide flight to a landing, from which two flights lead to the gallery.
 
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
@@ -14,16 +14,16 @@ use crate::museum_stairs::size::{EDGE, FLIGHT, FOOT, GALLERY, LANDING, PARAPET, 
 pub(super) const CARPET: f64 = 1.15;
 /// Width of the carpet's border.
 pub(super) const BORDER: f64 = 0.09;
-/// How far the parapets rise above the edges of the steps.
+/// Height of the parapets above the edges of the steps.
 const CURB: f64 = 0.10;
 /// Half the width of the piers at the corners of the landing.
 const PIER: f64 = 0.5 * PARAPET + 0.02;
 
-/// The stair with its balustrades.
+/// Returns the stair with its balustrades.
 pub(super) fn stair(palette: &Palette) -> Model {
     let mut m = Model::default();
     let inner = FLIGHT - GAP;
-    // The carpet's cells lie between its edges and borders.
+    // Grid lines at the edges and borders of the carpet.
     let mut across = vec![-inner];
     for side in [-1.0, 1.0] {
         let edges = [CARPET, CARPET - BORDER, 0.4].map(|x| side * x);
@@ -36,7 +36,7 @@ pub(super) fn stair(palette: &Palette) -> Model {
         _ => palette.stone,
     };
 
-    // Along x in its own space; here from the foot toward −z.
+    // A flight runs along x in its own frame; this one runs from the foot toward −z.
     let central = flight(&across, 18, RISER, carpet);
     m.add(&central, DAffine3::from_cols(-DVec3::Z, DVec3::Y, DVec3::X, DVec3::new(0.0, GAP, FOOT)));
     let mut x = across.clone();
@@ -65,7 +65,7 @@ pub(super) fn stair(palette: &Palette) -> Model {
     m.grid_block([&x, &[GAP, 1.0, 2.0, LANDING], &z], landing);
     let east = flight(&lanes, 12, LANDING + RISER, side_carpet);
     m.add_at(&east, FLIGHT, GAP, 0.0);
-    // The mirror image: the same flight, turned and moved to the other side.
+    // Mirror image: the same flight, rotated and moved to the other side.
     let turned: Vec<f64> = lanes.iter().rev().map(|z| -z).collect();
     let west = flight(&turned, 12, LANDING + RISER, |z| side_carpet(-z));
     m.add(&west, DAffine3::from_cols(-DVec3::X, DVec3::Y, -DVec3::Z, DVec3::new(-FLIGHT, GAP, 0.0)));
@@ -75,7 +75,7 @@ pub(super) fn stair(palette: &Palette) -> Model {
     m
 }
 
-/// Steps along `x` from the origin, the first of the given height; `across` are the lines of cells along `z`.
+/// Returns steps along `x` from the origin. The first has the height `first`; `across` are the grid lines along `z`.
 fn flight(across: &[f64], steps: usize, first: f64, material: impl Fn(f64) -> MaterialId) -> Model {
     let mut m = Model::default();
     let height = |step: usize| first + RISER * step as f64 - GAP;
@@ -114,7 +114,7 @@ fn flight(across: &[f64], steps: usize, first: f64, material: impl Fn(f64) -> Ma
     m
 }
 
-/// The parapets of one half of the stair, their piers and balustrades.
+/// Adds the parapets of one half of the stair, with their piers and balustrades.
 fn parapets(m: &mut Model, palette: &Palette, side: f64) {
     let slope = RISER / TREAD;
     let x = FLIGHT + 0.5 * PARAPET;
@@ -123,7 +123,7 @@ fn parapets(m: &mut Model, palette: &Palette, side: f64) {
     }
     let [[_, _, corner], [_, _, newel]] = piers();
 
-    // Beside the central flight; the section is (z, y).
+    // Along the central flight; the section is (z, y).
     let (from, to) = (corner + PIER + GAP, newel - PIER - GAP);
     let edge = |z: f64| LANDING + CURB - slope * (z - SIDE);
     let section = [[from, GAP], [from, edge(from)], [to, edge(to)], [to, GAP]];
@@ -133,7 +133,7 @@ fn parapets(m: &mut Model, palette: &Palette, side: f64) {
     let top = |z: f64| DVec3::new(side * x, edge(z), z);
     m.add(&balustrade::between(palette, top(to), top(from)), DAffine3::IDENTITY);
 
-    // Before the side flight.
+    // In front of the side flight.
     let (from, to) = (FLIGHT + 2.0 * PIER + GAP, EDGE - GAP);
     let edge = |x: f64| LANDING + RISER + CURB + slope * (x - FLIGHT);
     let mut section =
@@ -146,12 +146,12 @@ fn parapets(m: &mut Model, palette: &Palette, side: f64) {
     let top = |x: f64| DVec3::new(side * x, edge(x), SIDE - 0.5 * PARAPET);
     m.add(&balustrade::between(palette, top(from), top(to)), DAffine3::IDENTITY);
 
-    // Where it meets the gallery.
+    // At the end of the balustrade on the gallery.
     let end = columns::pedestal(palette, 1.2);
     m.add_at(&end, side * (EDGE + PEDESTAL + 0.035), GALLERY + GAP, SIDE - PEDESTAL - 0.035);
 }
 
-/// A marble panel with a round bronze shield before a wall that looks along `z`.
+/// Adds a marble panel with a round bronze shield in front of a wall that faces `+z`.
 fn tondo(m: &mut Model, palette: &Palette, place: DVec3) {
     let mut panel = Model::default();
     panel.block([-1.05, -1.25, 2.0 * GAP], [1.05, 1.25, 0.05], 0.7, palette.verde);
@@ -173,12 +173,12 @@ fn tondo(m: &mut Model, palette: &Palette, place: DVec3) {
         [0.04, 0.27],
     ];
     shield.lathe(&profile, 28, palette.bronze);
-    // The axis of the lathe looks along z.
+    // The axis of the lathe becomes z.
     panel.add(&shield, DAffine3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y, DVec3::new(0.0, 0.0, 0.05 + GAP)));
     m.add(&panel, DAffine3::from_translation(place));
 }
 
-/// A square pier from the floor to a height, with a cap.
+/// Adds a square pier with a cap from the floor to a height.
 fn pier(m: &mut Model, palette: &Palette, [x, z]: [f64; 2], height: f64) {
     let mut slab = |half: f64, low: f64, high: f64| {
         m.block([x - half, low, z - half], [x + half, high, z + half], 0.6, palette.pale);
@@ -187,13 +187,14 @@ fn pier(m: &mut Model, palette: &Palette, [x, z]: [f64; 2], height: f64) {
     slab(PIER + 0.035, height - 0.10, height);
 }
 
-/// Distance from the middle, height and place of the piers: at the corner of the landing, and at the foot.
+/// Returns the distance from the middle, the height and the position `z` of two piers: at the corner of the landing and
+/// at the foot.
 fn piers() -> [[f64; 3]; 2] {
     let x = FLIGHT + PIER;
     [[x, LANDING + RISER + 1.42, SIDE - PARAPET + PIER], [x, RISER + 1.30, FOOT + PIER + GAP]]
 }
 
-/// Places for lamps: the tops of the piers.
+/// Returns the positions of lamps on the tops of the piers.
 pub(super) fn pier_tops() -> impl Iterator<Item = DVec3> {
     piers().into_iter().flat_map(|[x, y, z]| [-1.0, 1.0].map(|side| DVec3::new(side * x, y + GAP, z)))
 }

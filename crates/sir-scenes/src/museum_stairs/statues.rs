@@ -1,4 +1,4 @@
-//! Statues on their plinths.
+//! Statues on plinths, vases and benches.
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,7 +12,7 @@ use crate::museum_stairs::sculptor::{Figure, bust, figure};
 use crate::museum_stairs::shell::{APSE, SMALL};
 use crate::museum_stairs::size::{EDGE, FOOT, GALLERY, HALF_WIDTH, LENGTH, bay_middles};
 
-/// All statues.
+/// Returns all statues.
 pub(super) fn statues(palette: &Palette) -> Model {
     let mut m = Model::default();
     // Victory in the great niche.
@@ -51,7 +51,7 @@ pub(super) fn statues(palette: &Palette) -> Model {
     m
 }
 
-/// Busts in the niches of the side walls.
+/// Adds busts and amphorae in the niches of the side walls.
 fn busts(m: &mut Model, palette: &Palette) {
     let mut carved = Model::default();
     let bounds = [DVec3::new(-0.2555, -0.0431, -0.2407), DVec3::new(0.27, 0.74, 0.26)];
@@ -75,7 +75,7 @@ fn busts(m: &mut Model, palette: &Palette) {
     }
 }
 
-/// A plinth of the given half width and height, with a base and a cap.
+/// Adds a plinth of the given half width and height, with a base and a cap.
 fn plinth_at(m: &mut Model, material: MaterialId, [x, y, z]: [f64; 3], [half, height]: [f64; 2]) {
     let mut slab = |half: f64, low: f64, high: f64| {
         m.block([x - half, y + low, z - half], [x + half, y + high, z + half], 0.6, material);
@@ -96,7 +96,7 @@ fn carved(material: MaterialId, kind: Figure, cell: f64) -> Model {
     m
 }
 
-/// A trefoil knot that stands on a point of its tube, on the origin.
+/// Returns a trefoil knot above the origin that stands on the lowest point of its tube.
 fn knot(material: MaterialId) -> Model {
     let mut m = Model::default();
     let (rings, columns, tube) = (96, 10, 0.115);
@@ -117,7 +117,7 @@ fn knot(material: MaterialId) -> Model {
     m
 }
 
-/// A slender twisted body that tapers to a blade.
+/// Returns a slender twisted solid that tapers to a blade, on the origin.
 fn twisted(material: MaterialId) -> Model {
     let mut m = Model::default();
     let (rows, columns, height) = (32, 24, 2.2);
@@ -138,7 +138,7 @@ fn twisted(material: MaterialId) -> Model {
     m
 }
 
-/// A bowl for mixing wine, on the origin.
+/// Returns a krater (a bowl for mixing wine), on the origin.
 fn krater(palette: &Palette) -> Model {
     let mut m = Model::default();
     let outside = [
@@ -159,7 +159,7 @@ fn krater(palette: &Palette) -> Model {
     m
 }
 
-/// An amphora on the origin, `size` times 0.62 m high, with a painted band.
+/// Returns an amphora with painted bands, `size` times 0.62 m high, on the origin.
 pub(super) fn amphora(body: MaterialId, band: MaterialId, size: f64) -> Model {
     let mut m = Model::default();
     let outline = [
@@ -192,7 +192,7 @@ pub(super) fn amphora(body: MaterialId, band: MaterialId, size: f64) -> Model {
     m
 }
 
-/// Benches along the gallery's edge.
+/// Returns the benches on the floor along the gallery's edge.
 pub(super) fn benches(palette: &Palette) -> Model {
     let mut m = Model::default();
     for (side, places) in [(-1.0, [11.0, 15.0]), (1.0, [12.9, 15.4])] {

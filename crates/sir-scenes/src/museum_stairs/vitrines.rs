@@ -8,7 +8,7 @@ use crate::museum_stairs::palette::Palette;
 use crate::museum_stairs::size::{FOOT, SOUTH_EDGE};
 use crate::museum_stairs::statues::amphora;
 
-/// All vitrines.
+/// Returns all vitrines.
 pub(super) fn vitrines(palette: &Palette) -> Model {
     let mut m = Model::default();
     let colors = [
@@ -25,7 +25,7 @@ pub(super) fn vitrines(palette: &Palette) -> Model {
     m
 }
 
-/// A plinth with a cap on four posts, on the origin.
+/// Returns a plinth with a cap on four posts, on the origin.
 fn vitrine(palette: &Palette, [body, band]: [MaterialId; 2]) -> Model {
     let mut m = Model::default();
     let (half, plinth, clear) = (0.34, 0.92, 1.05);
@@ -45,7 +45,7 @@ fn vitrine(palette: &Palette, [body, band]: [MaterialId; 2]) -> Model {
         }
     }
     m.block([-half, high, -half], [half, high + 0.09, half], 0.6, palette.dark_wood);
-    // A hipped roof: a turned body with four sides.
+    // Hipped roof: a solid of revolution with four sides.
     let roof = [[half * std::f64::consts::SQRT_2 - 0.02, 0.0], [0.12, 0.16], [0.09, 0.19]];
     let mut hipped = Model::default();
     hipped.lathe(&roof, 4, palette.bronze);

@@ -1,4 +1,4 @@
-//! Bookcases and the books on them.
+//! Bookcases with books, books on tables, and a ladder.
 
 use glam::{DAffine3, DVec3};
 use sir_geom::MaterialId;
@@ -11,22 +11,23 @@ use crate::reading_room::palette::Palette;
 /// Thickness of boards \[m\].
 const BOARD: f64 = 0.035;
 
-/// A case for books, open at the front. It stands on the origin with its left rear corner; its front looks along `+z`
-/// and it is `width` wide along `x`.
+/// Bookcase, open at the front.
+///
+/// Its left rear corner stands on the origin, its front faces `+z`, and its width is along `x`.
 #[derive(Clone, Copy)]
 pub(super) struct Bookcase {
     pub(super) width: f64,
     pub(super) depth: f64,
     /// Height without the cornice.
     pub(super) height: f64,
-    /// Side by side.
+    /// Number of stacks side by side.
     pub(super) stacks: usize,
-    /// One above the other.
+    /// Number of shelves per stack.
     pub(super) shelves: usize,
 }
 
 impl Bookcase {
-    /// The case filled with books.
+    /// Returns the bookcase filled with books.
     pub(super) fn build(&self, palette: &Palette, random: &mut Random) -> Model {
         let mut m = Model::default();
         let wood = palette.walnut;
@@ -62,11 +63,11 @@ impl Bookcase {
         m
     }
 
-    /// A molding on top.
+    /// Adds a molding on top.
     fn cornice(&self, m: &mut Model, palette: &Palette) {
         let (y, out) = (self.height + GAP, 0.04);
         let mut turned = Model::default();
-        // Section seen along the case: x is the depth.
+        // Section seen along the case; x is the depth.
         let section = [
             [0.0, 0.0],
             [self.depth, 0.0],
@@ -76,13 +77,14 @@ impl Bookcase {
             [0.0, 0.10],
         ];
         turned.prism(&section, [-out, self.width + out], 0.6, palette.walnut);
-        // Turns the section's x to z and the prism's z to −x, from the far end of the case.
+        // The section's x becomes z and the prism's z becomes −x, from the far end of the case.
         let turn = DAffine3::from_cols(DVec3::Z, DVec3::Y, -DVec3::X, DVec3::new(self.width, y, 0.0));
         m.add(&turned, turn);
     }
 }
 
-/// Books that fill a space of the given width, height and depth, from the origin, with their spines at the front.
+/// Returns books that fill a space of the given width, height and depth from the origin, with their spines at the
+/// front.
 fn row_of_books(palette: &Palette, random: &mut Random, width: f64, height: f64, depth: f64) -> Model {
     let mut m = Model::default();
     let mut x = 0.0;
@@ -106,7 +108,7 @@ fn cover(palette: &Palette, random: &mut Random) -> MaterialId {
     palette.books[random.below(palette.books.len())]
 }
 
-/// A few upright books of one kind. Returns the width used.
+/// Adds a few upright books of one kind. Returns the width used.
 fn run(
     m: &mut Model,
     palette: &Palette,
@@ -119,7 +121,7 @@ fn run(
     let (mut material, tall) = (cover(palette, random), random.between(0.68, 0.93) * height);
     let thick = random.between(0.030, 0.066);
     let deep = random.between(0.60, 0.85) * depth;
-    // Volumes of one edition are alike; other neighbors are not.
+    // Volumes of one edition have the same size and cover; other books differ.
     let (edition, count) = (random.unit() < 0.4, 2 + random.below(7));
     let mut used = 0.0;
     for _ in 0..count {
@@ -140,7 +142,7 @@ fn run(
     used
 }
 
-/// A book that leans to the left. Returns the width used.
+/// Adds a book that leans to the left. Returns the width used.
 fn leaning_book(
     m: &mut Model,
     palette: &Palette,
@@ -158,7 +160,7 @@ fn leaning_book(
     h * angle.sin() + t * angle.cos() + 4.0 * GAP
 }
 
-/// Books lying on each other. Returns the width used.
+/// Adds a pile of lying books. Returns the width used.
 fn pile(m: &mut Model, palette: &Palette, random: &mut Random, from: f64, height: f64, depth: f64) -> f64 {
     let width = random.between(0.26, 0.32);
     let mut y = 0.0;
@@ -175,7 +177,7 @@ fn pile(m: &mut Model, palette: &Palette, random: &mut Random, from: f64, height
     width + 5.0 * GAP
 }
 
-/// A pile of books and an open one for a table, on the origin, about 0.5 m wide.
+/// Returns a pile of books and an open book for a table, on the origin, about 0.5 m wide.
 pub(super) fn books_on_table(palette: &Palette, random: &mut Random) -> Model {
     let mut m = Model::default();
     let mut y = 0.0;
@@ -187,7 +189,7 @@ pub(super) fn books_on_table(palette: &Palette, random: &mut Random) -> Model {
         m.add(&book, DAffine3::from_translation(DVec3::new(-0.2, y, 0.0)) * turn);
         y += t + GAP;
     }
-    // Two halves of pages that rise toward the fold, on an open cover.
+    // Two stacks of pages that rise toward the fold, on an open cover.
     let page = [[0.0, 0.006], [0.15, 0.006], [0.15, 0.016], [0.10, 0.028], [0.04, 0.034], [0.0, 0.022]];
     let mut open = Model::default();
     open.block([-0.16, 0.0, -0.12], [0.16, 0.005, 0.12], 1.0, cover(palette, random));
@@ -199,7 +201,7 @@ pub(super) fn books_on_table(palette: &Palette, random: &mut Random) -> Model {
     m
 }
 
-/// A ladder of the given height that leans with its upper end toward `−z`; its feet are at the origin.
+/// Returns a ladder of the given height with its feet at the origin. Its upper end leans toward `−z` by `reach`.
 pub(super) fn ladder(palette: &Palette, height: f64, reach: f64) -> Model {
     let mut upright = Model::default();
     let (half, length) = (0.22, (height * height + reach * reach).sqrt());

@@ -1,4 +1,4 @@
-//! Columns, the cornices on them with their hidden lamps, and the ribs of the vault.
+//! Columns, their cornices with hidden lamps, and the ribs of the vault.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use crate::model::{GAP, Model};
 use crate::reading_room::palette::Palette;
 use crate::reading_room::size::{ARC, BAY, BAYS, COLUMN, CORNICE, DAIS, HALF_WIDTH, LENGTH, SPRING};
 
-/// All that carries the vault.
+/// Returns the columns, the cornices and the ribs.
 pub(super) fn columns(palette: &Palette) -> Model {
     let mut m = Model::default();
     let ends = [0.32, LENGTH - 0.32];
@@ -29,7 +29,7 @@ pub(super) fn columns(palette: &Palette) -> Model {
     m
 }
 
-/// A column on a square plinth, standing on the origin.
+/// Returns a column on a square plinth, on the origin.
 fn column(palette: &Palette, height: f64) -> Model {
     let mut m = Model::default();
     let plinth = 0.12;
@@ -50,7 +50,7 @@ fn column(palette: &Palette, height: f64) -> Model {
     m
 }
 
-/// The cornice along the wall `x = 0`, with a trough in which a lamp shines upward, unseen from below.
+/// Returns the cornice along the wall `x = 0`, with a lamp in a trough that shines upward and is hidden from below.
 fn cornice(palette: &Palette) -> Model {
     let mut m = Model::default();
     let section = [
@@ -72,12 +72,12 @@ fn cornice(palette: &Palette) -> Model {
     m
 }
 
-/// A rib under the vault, about the origin.
+/// Returns a rib under the vault, about the origin.
 fn rib(palette: &Palette) -> Model {
     let mut m = Model::default();
     let half = 0.19;
     let low = 0.03;
-    // Corners of the section: (distance from the vault, z), around it.
+    // Corners of the section in order around it: (distance from the vault, z).
     let section = [[0.004, half], [0.004, -half], [0.12, -half], [0.17, -0.11], [0.17, 0.11], [0.12, half]];
     let at = |i: usize, j: usize| {
         let [below, z] = section[j % section.len()];

@@ -1,4 +1,4 @@
-//! The dais: steps, balustrade, what stands on it and in the niche behind it.
+//! Dais with steps and balustrade, the globe on it, and the niche behind it.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use crate::reading_room::size::{DAIS, DAIS_DEPTH, HALF_WIDTH, OPENING, TILE};
 /// Half the width of the steps \[m\].
 const STEPS: f64 = 1.5;
 
-/// The dais with its steps and balustrade.
+/// Returns the dais with its steps and balustrade.
 pub(super) fn dais(palette: &Palette) -> Model {
     let mut m = Model::default();
     let x = lines(-HALF_WIDTH + GAP, HALF_WIDTH - GAP, TILE);
@@ -32,7 +32,7 @@ pub(super) fn dais(palette: &Palette) -> Model {
     m
 }
 
-/// A balustrade along the front of the dais between two posts.
+/// Adds a balustrade along the front of the dais, with posts at `from` and `to`.
 fn balustrade(m: &mut Model, palette: &Palette, [from, to]: [f64; 2]) {
     let z = DAIS_DEPTH - 0.15;
     let floor = DAIS + GAP;
@@ -65,7 +65,7 @@ fn balustrade(m: &mut Model, palette: &Palette, [from, to]: [f64; 2]) {
     }
 }
 
-/// A frame around the niche that hides two lamps behind its edges, and an urn in the niche.
+/// Returns a frame around the niche that hides two lamps behind its edges, and an urn in the niche.
 pub(super) fn niche(palette: &Palette) -> Model {
     let mut m = Model::default();
     let edge = OPENING.radius;
@@ -109,7 +109,7 @@ pub(super) fn niche(palette: &Palette) -> Model {
     m
 }
 
-/// A terrestrial globe on a turned stand, on the origin.
+/// Returns a terrestrial globe on a turned stand, on the origin.
 pub(super) fn globe(palette: &Palette) -> Model {
     let mut m = Model::default();
     let stand = [

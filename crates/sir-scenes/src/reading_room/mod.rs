@@ -1,8 +1,8 @@
 //! A vaulted reading room.
 //!
-//! Light comes from three places, and none of it reaches most of the room directly: cool light of the sky through deep
-//! windows on one side, warm light from lamps that are hidden on the cornices and shine onto the vault, and small
-//! reading lamps under opaque shades. A red rug, wood and pale plaster tint what they pass on.
+//! There are three kinds of light, and none reaches most of the room directly: cool skylight through deep windows on
+//! one side, warm lamps that are hidden on the cornices and shine onto the vault, and small reading lamps under opaque
+//! shades. A red rug, wood and pale plaster tint the reflected light.
 
 mod bookcase;
 mod columns;
@@ -27,14 +27,14 @@ use palette::Palette;
 use size::{BAY, BAYS, DAIS, HALF_WIDTH, LENGTH};
 use table::TABLE_HEIGHT;
 
-/// A barrel-vaulted reading room, 8 m wide, 15 m long and 8.4 m high, with bookcases, tables, lamps and a dais. It is
-/// closed: no light leaves it.
+/// Returns a barrel-vaulted reading room, 8 m wide, 15 m long and 8.4 m high, with bookcases, tables, lamps and a dais.
 ///
-/// Cameras: `nave` from the door toward the dais, `dais` back toward the door, and `table` between the tables.
+/// The room is closed: no light escapes. The cameras are `nave` from the door toward the dais, `dais` back toward the
+/// door, and `table` between the tables.
 ///
 /// # Errors
 ///
-/// None that can occur with the numbers of the room; the signature is that of every scene.
+/// None that can occur with the dimensions of the room; the signature is the same for all scenes.
 pub fn reading_room() -> Result<Built, SceneError> {
     let mut builder = SceneBuilder::new();
     let palette = Palette::new(&mut builder);
@@ -62,14 +62,15 @@ pub fn reading_room() -> Result<Built, SceneError> {
     builder.build()
 }
 
-/// Tall cases between the columns opposite the windows, low ones under the windows, and a ladder.
+/// Returns tall bookcases between the columns opposite the windows, low ones under the windows, one on the dais, and a
+/// ladder.
 fn bookcases(palette: &Palette, random: &mut Random) -> Model {
     let mut m = Model::default();
     let tall = Bookcase { width: 2.36, depth: 0.4, height: 3.2, stacks: 2, shelves: 7 };
     let low = Bookcase { width: 2.36, depth: 0.34, height: 0.98, stacks: 2, shelves: 2 };
     let margin = 0.5 * (BAY - tall.width);
     for bay in 1..BAYS {
-        // The last bay has its column inside, before the end wall.
+        // The column of the last bay stands inside the bay, in front of the end wall.
         let narrower = if bay + 1 == BAYS { 0.4 } else { 0.0 };
         let tall = Bookcase { width: tall.width - narrower, ..tall };
         let low = Bookcase { width: low.width - narrower, ..low };
@@ -94,7 +95,7 @@ fn bookcases(palette: &Palette, random: &mut Random) -> Model {
     m
 }
 
-/// Two rows of tables with chairs, lamps and books.
+/// Returns two rows of tables and the librarian's table, with chairs, lamps and books.
 fn tables(palette: &Palette, random: &mut Random) -> Model {
     let mut m = Model::default();
     let (table, chair, lamp) = (table::table(palette), table::chair(palette), table::reading_lamp(palette));
@@ -131,7 +132,7 @@ fn tables(palette: &Palette, random: &mut Random) -> Model {
     m
 }
 
-/// A runner between the tables.
+/// Returns the rug between the tables.
 fn rug(palette: &Palette) -> Model {
     let mut m = Model::default();
     let x = [-0.7, -0.62, -0.54, -0.5, 0.0, 0.5, 0.54, 0.62, 0.7];

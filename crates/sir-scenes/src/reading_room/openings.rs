@@ -1,4 +1,4 @@
-//! Bars of the windows, and the door.
+//! Window bars and the door.
 
 use std::f64::consts::PI;
 
@@ -9,12 +9,12 @@ use crate::reading_room::palette::Palette;
 use crate::reading_room::shell::{LUNETTE_DEPTH, LUNETTE_RADIUS, WINDOW_DEPTH};
 use crate::reading_room::size::{BAY, BAYS, HALF_WIDTH, LENGTH, OPENING, SPRING};
 
-/// Bars in front of all panes, and the door opposite the dais.
+/// Returns the bars in front of all panes, and the door opposite the dais.
 pub(super) fn openings(palette: &Palette) -> Model {
     let mut m = Model::default();
     let bars = window_bars(palette);
     for bay in 0..BAYS {
-        // The bars are modelled in a wall that looks along +z; this one looks along +x.
+        // The bars are modeled in a wall that faces +z; this wall faces +x.
         let place = DAffine3::from_translation(DVec3::new(-HALF_WIDTH, 0.0, BAY * (bay as f64 + 0.5)));
         m.add(&bars, place * DAffine3::from_rotation_y(0.5 * PI));
     }
@@ -24,7 +24,7 @@ pub(super) fn openings(palette: &Palette) -> Model {
     m
 }
 
-/// Bars of an arched window about the origin, behind the plane `z = 0`.
+/// Returns the bars of an arched window about the origin, behind the plane `z = 0`.
 fn window_bars(palette: &Palette) -> Model {
     let mut m = Model::default();
     let half = 0.022;
@@ -48,7 +48,7 @@ fn window_bars(palette: &Palette) -> Model {
     m
 }
 
-/// Bars of the half-round window about the origin: rays from a hub, in front of the plane `z = 0`.
+/// Returns the bars of the half-round window about the origin: rays from a hub, in front of the plane `z = 0`.
 fn lunette_bars(palette: &Palette) -> Model {
     let mut m = Model::default();
     let half = 0.03;
@@ -63,7 +63,7 @@ fn lunette_bars(palette: &Palette) -> Model {
     m
 }
 
-/// An arch-shaped bar.
+/// Returns a half-round bar.
 fn half_ring(palette: &Palette, radius: f64, width: f64) -> Model {
     let segments = 16;
     let mut m = Model::default();
@@ -78,7 +78,7 @@ fn half_ring(palette: &Palette, radius: f64, width: f64) -> Model {
     m
 }
 
-/// A double door in its frame about the origin, before the plane `z = 0`.
+/// Returns a framed double door about the origin, in front of the plane `z = 0`.
 fn door_and_frame(palette: &Palette) -> Model {
     let mut m = Model::default();
     let (half, height, frame) = (0.95, 2.6, 0.16);

@@ -1,10 +1,10 @@
-//! The materials of the room.
+//! Materials of the room.
 
 use sir_geom::{Material, MaterialId, Rgb, SceneBuilder};
 
 use crate::model::furnish::lamp;
 
-/// Numbers of the materials.
+/// Indices of the materials.
 pub(super) struct Palette {
     pub(super) plaster: MaterialId,
     pub(super) vault: MaterialId,
@@ -25,17 +25,17 @@ pub(super) struct Palette {
     pub(super) sea: MaterialId,
     pub(super) paper: MaterialId,
     pub(super) books: Vec<MaterialId>,
-    /// Emits the light of the sky.
+    /// Light of the sky.
     pub(super) sky: MaterialId,
-    /// Emits the light of the strips that are hidden on the cornices.
+    /// Light of the strips hidden on the cornices.
     pub(super) cove_lamp: MaterialId,
-    /// Emits the light of the strips that are hidden in the niche.
+    /// Light of the strips hidden in the niche.
     pub(super) niche_lamp: MaterialId,
-    /// Emits the light of the reading lamps.
+    /// Light of the reading lamps.
     pub(super) bulb: MaterialId,
 }
 
-/// Covers of the books.
+/// Reflectances of the book covers.
 const BOOKS: [[f64; 3]; 14] = [
     [0.30, 0.05, 0.04],
     [0.42, 0.09, 0.05],

@@ -1,4 +1,4 @@
-//! Floor, walls with their arched openings, and vault: one closed surface with its fronts inward.
+//! Floor, walls with their arched openings, and vault: one closed surface whose fronts face inward.
 
 use std::f64::consts::PI;
 
@@ -20,10 +20,10 @@ pub(super) const LUNETTE_DEPTH: f64 = 0.5;
 /// Radius of the half-round window \[m\].
 pub(super) const LUNETTE_RADIUS: f64 = 2.5;
 
-/// Heights of the lines of cells on the walls \[m\]; sill and springing of the openings are two of them.
+/// Heights of the grid lines on the walls \[m\]. They include the sill and the springing of the openings.
 const WALL_LINES: [f64; 9] = [0.0, 0.6, OPENING.sill, 1.75, 2.3, OPENING.spring, 3.4, 3.9, SPRING];
 
-/// The shell of the room.
+/// Returns the shell of the room.
 pub(super) fn shell(palette: &Palette) -> Model {
     let mut m = Model::default();
     let corner = |x: f64, z: f64| DVec3::new(x * HALF_WIDTH, 0.0, z);
@@ -86,7 +86,7 @@ fn plain_wall(m: &mut Model, wall: Wall, [from, to]: [f64; 2], material: Materia
     m.sheet([u.len() - 1, WALL_LINES.len() - 1], |i, j| wall.at(u[i], WALL_LINES[j], 0.0), |_, _| material);
 }
 
-/// One bay of a wall, from `u` on, with an arched recess in its middle that ends in a pane.
+/// Adds one bay of a wall, starting at `u`, with an arched recess in its middle that ends in a pane.
 fn wall_with_opening(m: &mut Model, wall: Wall, u: f64, depth: f64, [material, pane]: [MaterialId; 2]) {
     let center = u + 0.5 * BAY;
     let (left, right) = (center - OPENING.radius, center + OPENING.radius);
@@ -96,7 +96,7 @@ fn wall_with_opening(m: &mut Model, wall: Wall, u: f64, depth: f64, [material, p
     let below = WALL_LINES.iter().take_while(|v| **v <= OPENING.sill).copied().collect::<Vec<_>>();
     m.sheet([across.len() - 1, below.len() - 1], |i, j| wall.at(across[i], below[j], 0.0), |_, _| material);
 
-    // Around the arch: from its right foot up, over and down to the left foot, as on the arch itself.
+    // Around the arch: from its right foot up, across and down to the left foot, like the arch itself.
     let beside = WALL_LINES.iter().filter(|v| **v >= OPENING.spring && **v < SPRING);
     let mut around: Vec<DVec3> = beside.clone().map(|&v| wall.at(right, v, 0.0)).collect();
     around.extend(across.iter().rev().map(|&u| wall.at(u, SPRING, 0.0)));

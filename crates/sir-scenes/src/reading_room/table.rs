@@ -1,4 +1,4 @@
-//! Tables, chairs and the lamps on the tables.
+//! Tables, chairs and reading lamps.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use crate::reading_room::palette::Palette;
 /// Height of the table tops \[m\].
 pub(super) const TABLE_HEIGHT: f64 = 0.77;
 
-/// A long table about the origin: 1.0 m along `x`, 2.4 m along `z`, on turned legs, with a leather top.
+/// Returns a long table about the origin: 1.0 m along `x`, 2.4 m along `z`, on turned legs, with a leather top.
 pub(super) fn table(palette: &Palette) -> Model {
     let mut m = Model::default();
     let (x, z) = (0.5, 1.2);
@@ -51,7 +51,7 @@ pub(super) fn table(palette: &Palette) -> Model {
     m
 }
 
-/// A chair on the origin that looks along `−z`.
+/// Returns a chair on the origin that faces `−z`.
 pub(super) fn chair(palette: &Palette) -> Model {
     let mut m = Model::default();
     let (wood, w) = (palette.walnut, 0.215);
@@ -71,7 +71,8 @@ pub(super) fn chair(palette: &Palette) -> Model {
     m
 }
 
-/// A reading lamp on the origin: brass foot, green shade with a pale lining, and a bulb under it.
+/// Returns a reading lamp on the origin, with a brass foot, a green shade with a pale lining, and a bulb under the
+/// shade.
 pub(super) fn reading_lamp(palette: &Palette) -> Model {
     let mut m = Model::default();
     let foot = [

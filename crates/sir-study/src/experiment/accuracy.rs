@@ -1,4 +1,4 @@
-//! How far results are from a reference.
+//! The error of results against a reference.
 
 use serde::Serialize;
 use sir_geom::Rgb;
@@ -8,7 +8,7 @@ use crate::error::StudyError;
 use crate::experiment::runs::Done;
 use crate::experiment::subject::{DIRECT, TABLE};
 
-/// A number for luminance and for each band.
+/// Numbers for luminance and each band.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Bands {
     /// Rec. 709 luminance.
@@ -21,32 +21,33 @@ pub(crate) struct Bands {
     pub(crate) blue: f64,
 }
 
-/// How far a result is from the reference.
+/// Error of a result against the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Accuracy {
-    /// Root of the area-weighted mean square of the difference of the radiosities, relative to the mean of the reference.
+    /// Root mean square of the difference of the radiosities, weighted by area, relative to the mean of the reference.
     pub(crate) relative_rms: Bands,
-    /// Area-weighted mean of the difference of the radiosities, relative to the mean of the reference.
+    /// Mean of the difference of the radiosities, weighted by area, relative to the mean of the reference.
     pub(crate) relative_bias: Bands,
 }
 
-/// A run with many lines.
+/// Run with many lines, with which results are compared.
 pub(crate) struct Reference {
     pub(crate) table: Table,
-    /// Power of its reflected light, in bands of radiosity \[W\].
+    /// Power of the light that is reflected after the first reflection, per band: the power in radiosity minus that
+    /// after the first shot \[W\].
     pub(crate) reflected: Rgb,
     pub(crate) seconds: f64,
 }
 
 impl Reference {
-    /// Reads what the run has written.
+    /// Reads the tables of a run.
     pub(crate) fn read(run: &Done) -> Result<Self, StudyError> {
         let table = run.table(TABLE)?;
         let reflected = power(&table) - power(&run.table(DIRECT)?);
         Ok(Self { table, reflected, seconds: run.report.time.seconds })
     }
 
-    /// How far a table is from it.
+    /// Returns the error of a table against the reference.
     pub(crate) fn accuracy(&self, table: &Table) -> Result<Accuracy, StudyError> {
         let c = compare(&self.table, table)?;
         let [red, green, blue] = c.bands;
@@ -59,7 +60,7 @@ impl Reference {
         Ok(Accuracy { relative_rms: of(|b| b.relative_rms), relative_bias: of(|b| b.relative_bias) })
     }
 
-    /// How much more reflected light there is than in the reference, relative to that.
+    /// Returns the difference of the reflected light from that of the reference, relative to the latter.
     pub(crate) fn reflected_bias(&self, reflected: Rgb) -> Bands {
         let relative = |value: &dyn Fn(Rgb) -> f64| {
             let (ours, theirs) = (value(reflected), value(self.reflected));
@@ -73,7 +74,7 @@ impl Reference {
         }
     }
 
-    /// The error that a table states itself, on the scale of [`Accuracy::relative_rms`], per band.
+    /// Returns the error that a table states itself, per band, on the scale of [`Accuracy::relative_rms`].
     pub(crate) fn stated(&self, table: &Table) -> [f64; 3] {
         let area: f64 = table.rows.iter().map(|row| row.area).sum();
         let squares: Rgb = table.rows.iter().map(|row| row.area * row.error * row.error).sum();
@@ -82,7 +83,7 @@ impl Reference {
     }
 }
 
-/// Power that leaves all surfaces \[W\].
+/// Returns the power that leaves all surfaces \[W\].
 pub(crate) fn power(table: &Table) -> Rgb {
     table.rows.iter().map(|row| row.area * row.radiosity).sum()
 }

@@ -1,33 +1,33 @@
-//! How much is done, and how long the rest will take.
+//! Progress of the experiment, and an estimate of the remaining time.
 
 use std::collections::BTreeMap;
 
 use sir_pipeline::format::duration;
 
-/// Runs to be made, and those that have been.
+/// Pending runs, and the cost of those made.
 #[derive(Debug, Default)]
 pub(crate) struct Agenda {
-    /// Cost of each run by its name: lines per worker.
+    /// Cost of each pending run by its name: lines per worker.
     ahead: BTreeMap<String, f64>,
     total: usize,
-    /// Cost of the runs that were made, and seconds that they took.
+    /// Total cost of the runs made so far, and their total time \[s\].
     spent: (f64, f64),
 }
 
 impl Agenda {
-    /// Adds a run to those ahead.
+    /// Adds a run to the pending ones.
     pub(crate) fn add(&mut self, name: String, cost: f64) {
         if self.ahead.insert(name, cost).is_none() {
             self.total += 1;
         }
     }
 
-    /// Which run of how many is the next one.
+    /// Returns the number of the next run and the total, as text.
     pub(crate) fn place(&self) -> String {
         format!("run {} of {}", self.total - self.ahead.len() + 1, self.total)
     }
 
-    /// A run is done: it took some seconds, or none if it was there already.
+    /// Marks a run as done. `seconds` is `None` if its result existed already.
     pub(crate) fn done(&mut self, name: &str, seconds: Option<f64>) {
         let cost = self.ahead.remove(name).unwrap_or(0.0);
         if let Some(seconds) = seconds {
@@ -35,7 +35,7 @@ impl Agenda {
         }
     }
 
-    /// What is left, as a text for people; empty if nothing is, or nothing is known.
+    /// Returns the remaining time as text; it is empty if no run is pending or the time is unknown.
     pub(crate) fn left(&self) -> String {
         let (cost, seconds) = self.spent;
         let ahead: f64 = self.ahead.values().sum();

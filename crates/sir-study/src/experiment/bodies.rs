@@ -1,4 +1,4 @@
-//! Part `domains`: how many global lines miss the scene.
+//! Part `domains`: the share of global lines that miss the scene.
 
 use serde::Serialize;
 use sir_radiosity::Model;
@@ -10,39 +10,39 @@ use crate::experiment::markdown::{Grid, percent};
 use crate::experiment::runs::Runs;
 use sir_pipeline::plan::DomainKind;
 
-/// Lines through each body, before they are scaled, and how few they may be.
+/// Number of lines through each domain before scaling, and the minimum after it.
 const LINES: (u64, u64) = (1_000_000, 100_000);
 
-/// A body, and the lines through it.
+/// Domain, with the share of lines that miss the scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Miss {
-    /// `Sphere`, `Box` or `Hull`.
+    /// Kind of domain: `Sphere`, `Box` or `Hull`.
     pub(crate) domain: String,
-    /// Its surface \[m²\].
+    /// Surface of the domain \[m²\].
     pub(crate) surface: f64,
-    /// Share of the lines that meet nothing.
+    /// Share of the lines that hit nothing.
     pub(crate) empty_share: f64,
 }
 
-/// What the part finds.
+/// Results of the part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Bodies {
-    /// Lines through each.
+    /// Number of lines through each domain.
     pub(crate) lines: u64,
-    /// The bodies.
+    /// Results for each domain.
     pub(crate) bodies: Vec<Miss>,
-    /// Volume of the bounding sphere over that of the bounding box; none if the box is flat.
+    /// Volume of the bounding sphere over that of the bounding box; `None` if the box is flat.
     pub(crate) sphere_to_box: Option<f64>,
 }
 
-/// Traces the lines.
+/// Traces lines through each domain.
 pub(crate) fn find(runs: &Runs, model: &Model, scale: f64) -> Result<Bodies, StudyError> {
     let lines = scaled(LINES.0, scale, LINES.1);
     let miss = |kind: DomainKind| -> Result<Miss, StudyError> {
         let domain = kind.around(&model.scene);
         let mut empty = 0u64;
         count(runs, model, &domain, 0..lines, |crossings| empty += u64::from(crossings == 0))?;
-        // A hull that has no volume is a box: the name is that of what was asked for.
+        // A hull without volume is replaced by a box; the name is that of the requested domain.
         Ok(Miss {
             domain: format!("{kind:?}"),
             surface: domain.surface(),
@@ -59,16 +59,17 @@ pub(crate) fn find(runs: &Runs, model: &Model, scale: f64) -> Result<Bodies, Stu
 }
 
 impl Bodies {
-    /// Share of the lines through the sphere that meet nothing.
+    /// Returns the share of the lines through the sphere that hit nothing.
     pub(crate) fn empty_in_sphere(&self) -> Option<f64> {
         self.bodies.iter().find(|miss| miss.domain == "Sphere").map(|miss| miss.empty_share)
     }
 
-    /// The section of the report.
+    /// Returns the section of the report.
     pub(crate) fn section(&self) -> String {
-        let columns = ["domain", "surface [m²]", "lines that pass the hull by", "lines that meet nothing"];
+        let columns = ["domain", "surface [m²]", "lines that miss the hull", "lines that hit nothing"];
         let mut grid = Grid::new(&columns);
-        // Lines through a convex body meet a smaller one in it with a probability of the ratio of the surfaces.
+        // The probability that a line through a convex body crosses a convex body inside it is the ratio of their
+        // surfaces.
         let least = self.bodies.iter().map(|miss| miss.surface).fold(f64::INFINITY, f64::min);
         for Miss { domain, surface, empty_share } in &self.bodies {
             let past = if *surface > 0.0 { 1.0 - least / surface } else { 0.0 };
@@ -77,14 +78,14 @@ impl Bodies {
         let filled = self.sphere_to_box.map_or_else(String::new, |ratio| {
             format!(
                 "The bounding box fills {} of the bounding sphere, whose volume is therefore {} larger. The \
-                 share of lines that pass a convex body by depends on surfaces, not on volumes.\n\n",
+                 share of lines that miss a convex body depends on surfaces, not on volumes.\n\n",
                 percent(1.0 / ratio),
                 percent(ratio - 1.0)
             )
         });
         format!(
-            "### Lines that miss the scene\n\n{} lines through each body around the scene. How many pass \
-             the convex hull by follows from the surfaces; the others were counted:\n\n{}{filled}",
+            "### Lines that miss the scene\n\n{} lines through each domain. The share that misses the convex \
+             hull follows from the surfaces; the share that hits nothing was counted:\n\n{}{filled}",
             markdown::count(self.lines),
             grid.end()
         )

@@ -1,4 +1,4 @@
-//! The whole of the experiment: from pipelines to the report.
+//! The whole experiment, from pipelines to the report.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,27 +23,27 @@ use crate::experiment::subject::Subject;
 use crate::scaling::error::ScalingError;
 use crate::scaling::launch::Launcher;
 
-/// The pipelines of the paper's two scenes.
+/// Pipelines of the paper's two scenes.
 const SCENES: [&str; 2] = ["scenes/museum-stairs/pipeline.ron", "scenes/airplane-cabin/pipeline.ron"];
 
-/// Where new directories are made, and their name.
+/// Parent and name of new output directories.
 const OUT: (&str, &str) = ("results", "experiment");
 
-/// Makes the runs and writes the report; returns its files. Ends early if `stop` becomes true.
+/// Makes the runs, writes the report, and returns the paths of its files. Ends early if `stop` becomes true.
 ///
 /// # Errors
 ///
-/// If a pipeline is missing or wrong, a run fails, or files cannot be written.
+/// If a pipeline is missing or invalid, a run fails, or files cannot be written.
 pub fn experiment(
     options: &ExperimentOptions,
     progress: Arc<dyn Progress>,
     stop: Arc<AtomicBool>,
 ) -> Result<Vec<PathBuf>, StudyError> {
-    // Mistakes are told before anything runs.
+    // Reports mistakes before anything runs.
     let subjects = subjects(options)?;
     let cores = sir_parallel::cores();
     let plan = options.plan(cores, sir_parallel::HAS_MPI);
-    // Who does not measure speed-ups needs no MPI.
+    // Only measuring speed-ups needs MPI.
     let most_ranks = if options.parts().contains(&Part::Scaling) { plan.most_ranks() } else { 1 };
     let launcher = Launcher::new(&options.mpirun, most_ranks, stop)?;
     let folder = folder(options.out.as_deref())?;
@@ -68,7 +68,7 @@ pub fn experiment(
             scene::find(&mut runs, subject, options, &plan).map_err(|error| name_folder(error, &folder))?;
         findings.scenes.push(found);
         findings.date = machine::today();
-        // What is finished can be read while the next scene is on its way.
+        // The results so far can be read while the next scene is computed.
         write_file(&folder.join("report.json"), &findings.json())?;
         write_file(&folder.join("report.md"), &findings.markdown())?;
     }
@@ -94,7 +94,8 @@ fn subjects(options: &ExperimentOptions) -> Result<Vec<Subject>, StudyError> {
     Ok(subjects)
 }
 
-/// The output directory, from the root: other processes, perhaps on other machines, get it.
+/// Creates the output directory. Returns its absolute path, because it is passed to other processes, perhaps on other
+/// machines.
 fn folder(given: Option<&Path>) -> Result<PathBuf, StudyError> {
     let Some(path) = given else {
         return Ok(absolute(&make_new(Path::new(OUT.0), OUT.1)?));
@@ -103,7 +104,7 @@ fn folder(given: Option<&Path>) -> Result<PathBuf, StudyError> {
     Ok(absolute(path))
 }
 
-/// Says where an interrupted experiment goes on.
+/// Adds the output directory, where the experiment can be continued, to the error of an interrupt.
 fn name_folder(error: StudyError, folder: &Path) -> StudyError {
     match error {
         StudyError::Scaling(ScalingError::Interrupted) => {

@@ -1,4 +1,4 @@
-//! Counting what global lines meet, in this process and by one thread.
+//! Crossings of global lines, counted in this process by one thread.
 
 use std::ops::Range;
 
@@ -8,10 +8,10 @@ use sir_radiosity::Model;
 use crate::error::StudyError;
 use crate::experiment::runs::Runs;
 
-/// Lines that are drawn before they are traced together.
+/// Number of lines that are traced together.
 const BLOCK: u64 = 1 << 12;
 
-/// Traces some of the lines that are there to learn about a scene; `visit` gets the number of crossings of each, in order.
+/// Traces a range of the probe lines of a scene. Calls `visit` with the number of crossings of each line, in order.
 pub(crate) fn count(
     runs: &Runs,
     model: &Model,
@@ -32,7 +32,7 @@ pub(crate) fn count(
     Ok(())
 }
 
-/// So many lines times the scale, but at least some.
+/// Returns a number of lines times the scale, but at least `least`.
 pub(crate) fn scaled(lines: u64, scale: f64, least: u64) -> u64 {
     ((lines as f64 * scale).round() as u64).max(least)
 }

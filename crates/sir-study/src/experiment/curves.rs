@@ -1,4 +1,4 @@
-//! A diagram of a few curves.
+//! Diagrams of a few curves.
 
 use std::io;
 
@@ -8,20 +8,20 @@ use plotters::prelude::*;
 use crate::scaling::axis::{Axis, draw_axes};
 use crate::scaling::legend::{Failure, GRAY, INK, Pixel, write};
 
-/// What is shown.
+/// Content of a diagram.
 pub(crate) struct Diagram<'a> {
     pub(crate) title: &'a str,
     pub(crate) x_label: &'a str,
     pub(crate) y_label: &'a str,
-    /// Where the horizontal axis ends; it begins at 0, as the other one.
+    /// End of the horizontal axis. Both axes start at 0.
     pub(crate) x_last: f64,
-    /// A place on the horizontal axis that is marked, and why.
+    /// Marked position on the horizontal axis, and its label.
     pub(crate) mark: (f64, &'a str),
     /// Names and points of the curves.
     pub(crate) curves: &'a [(&'a str, Vec<(f64, f64)>)],
 }
 
-/// Distinct for the color-blind, too (Okabe and Ito).
+/// Colors of the curves, distinguishable for color-blind people, too (Okabe and Ito).
 const COLORS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115)];
 
 const SIZE: (u32, u32) = (760, 480);
@@ -29,7 +29,7 @@ const TITLE: u32 = 44;
 const LEGEND: u32 = 36;
 
 impl Diagram<'_> {
-    /// The diagram as SVG.
+    /// Draws the diagram as SVG.
     pub(crate) fn svg(&self) -> io::Result<String> {
         let mut text = String::new();
         self.draw(&mut text).map_err(io::Error::other)?;
@@ -44,7 +44,8 @@ impl Diagram<'_> {
         let (area, _) = below.split_vertically(SIZE.1 - TITLE - LEGEND);
         let largest = self.curves.iter().flat_map(|c| &c.1).map(|p| p.1).fold(0.0, f64::max);
         let y_last = if largest > 0.0 { 1.06 * largest } else { 1.0 };
-        // A tenth of the largest power of ten below, which the axis makes larger as it needs.
+        // The smallest step between labels is a tenth of the largest power of ten below `y_last`. The axis increases it
+        // as needed.
         let exponent = y_last.log10().floor() as i32 - 1;
         let decimals = usize::try_from(-exponent).unwrap_or(0);
         let mut chart = ChartBuilder::on(&area)

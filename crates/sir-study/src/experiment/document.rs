@@ -1,4 +1,4 @@
-//! The report: as JSON for programs, and as Markdown for people.
+//! The report, as JSON for programs and as Markdown for readers.
 
 use serde::Serialize;
 
@@ -20,7 +20,7 @@ use crate::scaling::workers::counted;
 /// Version of the layout of `report.json`.
 pub(crate) const VERSION: u32 = 1;
 
-/// Everything that was found.
+/// All results of the experiment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Findings {
     /// Version of this layout: [`VERSION`].
@@ -33,30 +33,30 @@ pub(crate) struct Findings {
     pub(crate) date: String,
     /// The machine.
     pub(crate) machine: Machine,
-    /// What the numbers of lines of the pipelines were multiplied by.
+    /// Factor on the numbers of lines of the pipelines.
     pub(crate) scale: f64,
-    /// Lines of the references as a multiple of those.
+    /// Lines of the reference runs as a multiple of these scaled numbers.
     pub(crate) reference: f64,
-    /// What was done.
+    /// Parts that were done.
     pub(crate) parts: Vec<Part>,
-    /// The scenes.
+    /// Results for each scene.
     pub(crate) scenes: Vec<SceneFindings>,
 }
 
-/// What was found about a scene. Parts that were not asked for are missing.
+/// Results for a scene. Parts that were not requested are missing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct SceneFindings {
-    /// Its name.
+    /// Name of the scene.
     pub(crate) name: String,
-    /// Its pipeline, as it was named.
+    /// Path of the pipeline, as it was given.
     pub(crate) pipeline: String,
-    /// Triangles.
+    /// Number of triangles.
     pub(crate) triangles: usize,
-    /// Patches.
+    /// Number of patches.
     pub(crate) patches: usize,
     /// Lines of the pipeline, scaled.
     pub(crate) lines: Lines,
-    /// Times, speed-ups, efficiencies.
+    /// Times, speed-ups and efficiencies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) scaling: Option<Speed>,
     /// Error against the reference.
@@ -65,7 +65,7 @@ pub(crate) struct SceneFindings {
     /// Error over the share of local lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) mix: Option<Mix>,
-    /// Lines that miss the scene.
+    /// Share of lines that miss the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) domains: Option<Bodies>,
     /// Cost of lines.
@@ -74,20 +74,20 @@ pub(crate) struct SceneFindings {
     /// Replicas and batches.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) farm: Option<Farm>,
-    /// Pictures: the one that is shown, and the others, as files beside the report.
+    /// Paths of the images, relative to the report. The one that the report shows is first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) pictures: Option<Vec<String>>,
     /// Claims of the paper.
     pub(crate) claims: Vec<Claim>,
 }
 
-/// Names of a scene's diagrams.
+/// Returns the file names of a scene's diagrams.
 pub(crate) fn figures(name: &str) -> [String; 2] {
     [format!("{name}-scaling.svg"), format!("{name}-mix.svg")]
 }
 
 impl SceneFindings {
-    /// What the paper claims, about the parts that were done.
+    /// Judges the claims of the paper about the parts that were done.
     pub(crate) fn judge(&self) -> Vec<Claim> {
         [
             self.scaling.as_ref().map(verdict::of_speed),
@@ -139,13 +139,13 @@ fn pictures(name: &str, files: &[String]) -> String {
 }
 
 impl Findings {
-    /// All numbers, for programs.
+    /// Returns all numbers as JSON.
     pub(crate) fn json(&self) -> String {
-        // A tree of plain structs; numbers that are not finite become `null`.
+        // Serializing cannot fail: this is a tree of plain structs. Non-finite numbers become `null`.
         serde_json::to_string_pretty(self).map(|json| json + "\n").unwrap_or_default()
     }
 
-    /// The report for people.
+    /// Returns the report as Markdown.
     pub(crate) fn markdown(&self) -> String {
         let Self { program, command, date, machine, scale, .. } = self;
         let mut text = format!(
@@ -168,13 +168,13 @@ impl Findings {
         text.trim_end().to_owned() + "\n"
     }
 
-    /// The claims, and the rules by which they were judged.
+    /// Returns the table of claims, and the rules by which they were judged.
     fn summary(&self) -> String {
         let claims =
             || self.scenes.iter().flat_map(|scene| scene.claims.iter().map(move |claim| (scene, claim)));
         let mut rules: Vec<&str> = Vec::new();
         let mut grid = Grid::of_words(&["claim of the paper", "scene", "here", "verdict", "rule"]);
-        // Claims side by side, each for all scenes.
+        // Groups the rows by claim, each with all scenes.
         let mut names: Vec<&str> = Vec::new();
         for (_, claim) in claims() {
             if !names.contains(&claim.claim.as_str()) {
@@ -202,14 +202,14 @@ impl Findings {
         let rules: String =
             (1..).zip(&rules).map(|(number, rule): (usize, _)| format!("{number}. {rule}.\n")).collect();
         let smaller = if self.scale < 1.0 {
-            "With so few lines, verdicts on speed, errors and replicas are about a smaller task than the \
+            "With so few lines, verdicts on speed, errors and replicas apply to a smaller task than the \
              paper's.\n\n"
         } else {
             ""
         };
         format!(
             "## Summary\n\n{}A claim is *confirmed* if its rule holds, *open* if too little was measured to \
-             tell, else *not confirmed*:\n\n{rules}\n{smaller}",
+             tell, otherwise *not confirmed*:\n\n{rules}\n{smaller}",
             grid.end()
         )
     }

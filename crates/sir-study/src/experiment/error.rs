@@ -1,23 +1,23 @@
-//! Why an experiment fails.
+//! The error type of the experiment.
 
 use std::path::PathBuf;
 
 use sir_pipeline::ErrorKind;
 use thiserror::Error;
 
-/// Why the experiment cannot be done.
+/// Failure of the experiment.
 #[derive(Debug, Error)]
 pub enum ExperimentError {
-    /// No pipelines were named, and the usual ones are not there.
+    /// No pipelines were given, and a default one does not exist.
     #[error(
-        "there is no {}; start the experiment in the folder of the project, which has the scenes, or name other pipelines",
+        "there is no {}; start the experiment in the project folder, which has the scenes, or name other pipelines",
         path.display()
     )]
     NoScenes {
-        /// Where one of them should be.
+        /// Path of the missing pipeline.
         path: PathBuf,
     },
-    /// There is nothing to measure.
+    /// The pipeline has no `Multipath` stage, so there is nothing to measure.
     #[error(
         "{} has no `Multipath` stage, which the experiment is about; add for instance `Multipath(lines: \
          1_000_000)` after `FirstShot`", path.display()
@@ -26,10 +26,10 @@ pub enum ExperimentError {
         /// The pipeline.
         path: PathBuf,
     },
-    /// Two pipelines would write to the same place.
+    /// Two pipelines have the same name and would write to the same directory.
     #[error("two of the pipelines are called {name}; rename the file or the folder of one")]
     SameName {
-        /// Their name.
+        /// Name of both pipelines.
         name: String,
     },
     /// The scene file cannot be read.
@@ -37,7 +37,7 @@ pub enum ExperimentError {
     Scene {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// A picture of the report cannot be written.
@@ -45,13 +45,13 @@ pub enum ExperimentError {
     Picture {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// Error of drawing or of the operating system.
         source: std::io::Error,
     },
-    /// Ctrl-C or SIGTERM.
+    /// Interrupted by Ctrl-C or SIGTERM.
     #[error("interrupted; start the same experiment with the directory {} to continue", directory.display())]
     Interrupted {
-        /// Where the finished runs are.
+        /// Output directory with the finished runs.
         directory: PathBuf,
     },
 }

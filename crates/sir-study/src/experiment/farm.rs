@@ -1,4 +1,4 @@
-//! Part `farm`: what the mean of independent replicas loses.
+//! Part `farm`: the light that the mean of independent replicas loses.
 
 use serde::Serialize;
 
@@ -12,39 +12,39 @@ use crate::scaling::table::seconds;
 use sir_pipeline::plan::{Replicas, Transport};
 use sir_pipeline::report::Report;
 
-/// Numbers of replicas.
+/// Numbers of replicas to compare.
 const REPLICAS: [u64; 3] = [1, 8, 64];
 
-/// A transport, and what it makes of the reflected light.
+/// Transport, with the accuracy of its reflected light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Transported {
-    /// `Replicas` or `Batches`.
+    /// Name of the transport: `Replicas` or `Batches`.
     pub(crate) transport: &'static str,
-    /// How many, of replicas.
+    /// Number of replicas, if the transport is `Replicas`.
     pub(crate) replicas: Option<u64>,
-    /// Power of the reflected light against that of the reference, minus 1.
+    /// Power of the reflected light relative to that of the reference, minus 1.
     pub(crate) reflected_bias: Bands,
     /// Error of the radiosity against the reference.
     pub(crate) relative_rms: Bands,
-    /// Share of what surfaces reflect that was not sent on. Batches make up for it.
+    /// Unshot share of the power that surfaces reflect. Batches extrapolate it.
     pub(crate) unshot_share: f64,
-    /// Seconds of multipath, on all cores.
+    /// Time of multipath on all cores \[s\].
     pub(crate) seconds: f64,
 }
 
-/// What the part finds.
+/// Results of the part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Farm {
-    /// Replicas, fewest first, and then batches.
+    /// Replicas, smallest number first, followed by batches.
     pub(crate) transports: Vec<Transported>,
 }
 
-/// The transports that are compared, with the names of their runs.
+/// Returns the transports to compare, with the names of their runs.
 fn transports(subject: &Subject) -> Vec<(String, Transport)> {
     let replicas = REPLICAS.into_iter().filter(|&replicas| replicas <= subject.lines.global);
     let replicas = replicas
         .map(|count| (format!("farm-{count:02}"), Transport::Replicas(Replicas { count, tail: Some(0) })));
-    // The run with the pictures is one in batches already, if the pipeline asks for them.
+    // If the pipeline uses batches, the run with the images already is a run in batches.
     let batches =
         (subject.transport != Transport::Batches).then(|| ("farm-batches".into(), Transport::Batches));
     replicas.chain(batches).collect()
@@ -54,7 +54,7 @@ fn wanted(runs: &Runs, subject: &Subject, (name, transport): &(String, Transport
     Wanted::new(name, Changes { transport: transport.clone(), ..subject.changes() }, runs.cores)
 }
 
-/// Announces all runs.
+/// Adds all runs to the agenda.
 pub(crate) fn plan(runs: &mut Runs, subject: &Subject) {
     for transport in transports(subject) {
         let wanted = wanted(runs, subject, &transport);
@@ -62,7 +62,7 @@ pub(crate) fn plan(runs: &mut Runs, subject: &Subject) {
     }
 }
 
-/// Makes the runs and compares them. `full` is the pipeline's own run, whose first shot all of them share.
+/// Makes the runs and compares them. `full` is the run of the pipeline itself; all runs have the same first shot.
 pub(crate) fn find(
     runs: &mut Runs,
     subject: &Subject,
@@ -96,7 +96,7 @@ pub(crate) fn find(
     Ok(Farm { transports: found })
 }
 
-/// Unshot power of multipath over what it was given, all bands together.
+/// Returns the unshot power of multipath over the power that it was given, summed over all bands.
 fn unshot_share(report: &Report) -> f64 {
     let lines = report.stages.iter().find(|s| s.name == "Multipath").and_then(|s| s.lines.as_ref());
     lines.map_or(0.0, |lines| {
@@ -106,12 +106,12 @@ fn unshot_share(report: &Report) -> f64 {
 }
 
 impl Farm {
-    /// The reflected light of so many replicas, in luminance, against the reference.
+    /// Returns the relative bias of the reflected luminance for a number of replicas.
     pub(crate) fn bias(&self, replicas: u64) -> Option<f64> {
         self.transports.iter().find(|t| t.replicas == Some(replicas)).map(|t| t.reflected_bias.luminance)
     }
 
-    /// The section of the report.
+    /// Returns the section of the report.
     pub(crate) fn section(&self) -> String {
         let columns = [
             "transport",
@@ -120,7 +120,7 @@ impl Farm {
             "green",
             "blue",
             "relative RMS",
-            "not sent on",
+            "unshot",
             "time [s]",
         ];
         let mut grid = Grid::new(&columns);
@@ -134,10 +134,10 @@ impl Farm {
         }
         format!(
             "### Replicas and batches\n\nThe paper's processors compute independent replicas, whose mean is \
-             the result; each loses what it has not sent on when its lines end (`tail: 0`). Reflected light \
-             is the power that surfaces reflect after the first reflection of the direct light, against the \
-             reference; the RMS is that of luminance of all light. Batches make up for what was not sent \
-             on.\n\n{}",
+             the result; each replica loses the power that is unshot when its lines end (`tail: 0`). \
+             Reflected light is the power that surfaces reflect after the first reflection of the direct \
+             light, against the reference; the RMS is that of the luminance of all light. Batches \
+             extrapolate the unshot power.\n\n{}",
             grid.end()
         )
     }

@@ -1,24 +1,24 @@
-//! Numbers of lines: scaled, shared, and such that they take equally long.
+//! Numbers of lines: scaled, divided between the stages, or chosen for equal time.
 
 use serde::Serialize;
 
 use sir_pipeline::plan::{Replicas, Transport};
 
-/// Lines of the two stages.
+/// Numbers of lines of the two stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Lines {
-    /// Local lines, of the first shot.
+    /// Number of local lines, for the first shot.
     pub(crate) local: u64,
-    /// Global lines, of multipath.
+    /// Number of global lines, for multipath.
     pub(crate) global: u64,
 }
 
 /// Lines per second of each stage on one thread.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Rates {
-    /// Of local lines \[1/s\].
+    /// Rate of local lines \[1/s\].
     pub(crate) local: f64,
-    /// Of global lines \[1/s\].
+    /// Rate of global lines \[1/s\].
     pub(crate) global: f64,
 }
 
@@ -27,19 +27,19 @@ fn whole(lines: f64) -> u64 {
 }
 
 impl Lines {
-    /// All of them.
+    /// Returns the total number of lines.
     #[must_use]
     pub(crate) fn total(self) -> u64 {
         self.local.saturating_add(self.global)
     }
 
-    /// `factor` times as many, at least one of each.
+    /// Returns both numbers multiplied by `factor`, and at least 1.
     #[must_use]
     pub(crate) fn times(self, factor: f64) -> Self {
         Self { local: whole(self.local as f64 * factor), global: whole(self.global as f64 * factor) }
     }
 
-    /// As many in all, of which this share is local.
+    /// Returns the same total number of lines, with this share of local lines.
     #[must_use]
     pub(crate) fn with_share(self, share: f64) -> Self {
         let total = self.total().max(2);
@@ -47,13 +47,13 @@ impl Lines {
         Self { local, global: total - local }
     }
 
-    /// Seconds at these rates.
+    /// Returns the time at these rates \[s\].
     #[must_use]
     pub(crate) fn seconds(self, rates: Rates) -> f64 {
         self.local as f64 / rates.local + self.global as f64 / rates.global
     }
 
-    /// As many as take equally long at these rates, of which this share is local.
+    /// Returns numbers of lines with this share of local lines that take the same time at these rates.
     #[must_use]
     pub(crate) fn in_equal_time(self, share: f64, rates: Rates) -> Self {
         let per_line = share / rates.local + (1.0 - share) / rates.global;
@@ -62,7 +62,7 @@ impl Lines {
     }
 }
 
-/// A transport for another number of global lines: the tail stays as large a share of them.
+/// Adapts a transport to another number of global lines. The tail keeps its share of the lines.
 #[must_use]
 pub(crate) fn fitted(transport: &Transport, lines: u64, new_lines: u64) -> Transport {
     let scaled = |tail: u64| {

@@ -1,24 +1,24 @@
-//! When and where the experiment was made.
+//! Date, machine and command line of the experiment.
 
 use std::fs;
 
 use serde::Serialize;
 
-/// The machine.
+/// Machine on which the experiment was made.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Machine {
-    /// Model of the processor, if it is known.
+    /// Model of the processor, if known.
     pub(crate) cpu: Option<String>,
-    /// Cores that this process may use.
+    /// Number of cores that this process may use.
     pub(crate) cores: usize,
-    /// Memory \[bytes\], if it is known.
+    /// Memory \[bytes\], if known.
     pub(crate) memory: Option<u64>,
-    /// The operating system, and for which kind of processor.
+    /// Operating system and processor architecture.
     pub(crate) system: String,
 }
 
 impl Machine {
-    /// This machine.
+    /// Describes this machine.
     #[must_use]
     pub(crate) fn this() -> Self {
         let read = |path| fs::read_to_string(path).unwrap_or_default();
@@ -34,7 +34,7 @@ impl Machine {
     }
 }
 
-/// The first value of a name in a text of lines `name : value`.
+/// Returns the first value of a name in a text of lines `name : value`.
 fn field(text: &str, name: &str) -> Option<String> {
     let pairs = text.lines().filter_map(|line| line.split_once(':'));
     pairs
@@ -43,13 +43,13 @@ fn field(text: &str, name: &str) -> Option<String> {
         .map(|(_, v)| v.to_owned())
 }
 
-/// Today's date in Greenwich, such as `2026-11-24`.
+/// Returns today's date in UTC, such as `2026-11-24`.
 #[must_use]
 pub(crate) fn today() -> String {
     jiff::tz::TimeZone::UTC.to_datetime(jiff::Timestamp::now()).date().to_string()
 }
 
-/// The command line of this process, quoted where a shell needs it.
+/// Returns the command line of this process, quoted where a shell needs it.
 #[must_use]
 pub(crate) fn command_line() -> String {
     let words = std::env::args().skip(1).map(|word| {

@@ -1,17 +1,17 @@
-//! Tables and numbers in Markdown.
+//! Formats of tables and numbers in Markdown.
 
-/// A table with its first column on the left and numbers on the right.
+/// Markdown table. The first column is left-aligned.
 pub(crate) struct Grid {
     text: String,
 }
 
 impl Grid {
-    /// A table with these columns.
+    /// Starts a table with these columns, right-aligned for numbers.
     pub(crate) fn new(columns: &[&str]) -> Self {
         Self::aligned(columns, "--:")
     }
 
-    /// A table of words.
+    /// Starts a table with these columns, left-aligned for words.
     pub(crate) fn of_words(columns: &[&str]) -> Self {
         Self::aligned(columns, "---")
     }
@@ -30,13 +30,13 @@ impl Grid {
         self.text += &format!("| {} |\n", cells.join(" | "));
     }
 
-    /// The table, with an empty line after it.
+    /// Returns the table, followed by an empty line.
     pub(crate) fn end(self) -> String {
         self.text + "\n"
     }
 }
 
-/// A share in percent, with three digits of what is small.
+/// Formats a share in percent, with about three digits.
 pub(crate) fn percent(share: f64) -> String {
     let value = 100.0 * share;
     let decimals = match value.abs() {
@@ -48,22 +48,22 @@ pub(crate) fn percent(share: f64) -> String {
     format!("{value:.decimals$} %")
 }
 
-/// The same with its sign.
+/// Formats a share in percent with its sign.
 pub(crate) fn signed_percent(share: f64) -> String {
     if share >= 0.0 { format!("+{}", percent(share)) } else { percent(share).replace('-', "−") }
 }
 
-/// A share that is a round number of percent.
+/// Formats a share in whole percent.
 pub(crate) fn whole_percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
 }
 
-/// A number of lines or patches, grouped by thousands.
+/// Formats a number of lines or patches, grouped by thousands.
 pub(crate) fn count(n: u64) -> String {
     sir_pipeline::format::grouped(n).replace('_', ",")
 }
 
-/// A size of memory.
+/// Formats an amount of memory in megabytes.
 pub(crate) fn megabytes(bytes: Option<u64>) -> String {
     bytes.map_or("-".into(), |bytes| format!("{:.0} MB", bytes as f64 / 1e6))
 }

@@ -1,4 +1,4 @@
-//! Part `mix`: which share of local lines is best.
+//! Part `mix`: the best share of local lines.
 
 use std::io;
 
@@ -15,21 +15,21 @@ use crate::experiment::speed;
 use crate::experiment::subject::{Changes, Subject, TABLE};
 use crate::scaling::table::seconds;
 
-/// Shares of local lines that are tried \[%\].
+/// Shares of local lines to compare \[%\].
 const SHARES: [u32; 10] = [5, 10, 20, 30, 40, 50, 60, 70, 80, 90];
 
-/// Of the pipeline's lines, to save time.
-const FEWER: f64 = 0.25;
+/// Share of the pipeline's lines that is traced, to save time.
+const LINE_SHARE: f64 = 0.25;
 
-/// Errors up to this factor of the smallest are as good as that.
-const AS_GOOD: f64 = 1.05;
+/// Factor on the smallest error up to which other errors count as equally good.
+const EQUALLY_GOOD: f64 = 1.05;
 
-/// A mixture of lines, and its error.
+/// Mixture of local and global lines, with its error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Mixture {
-    /// Share of local lines that was asked for.
+    /// Requested share of local lines.
     pub(crate) share: f64,
-    /// Lines.
+    /// Numbers of lines.
     pub(crate) lines: Lines,
     /// Measured time of the first shot and multipath \[s\], on all cores.
     pub(crate) seconds: f64,
@@ -38,12 +38,12 @@ pub(crate) struct Mixture {
     pub(crate) accuracy: Accuracy,
 }
 
-/// The best of some mixtures.
+/// Best of several mixtures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Best {
-    /// Its share of local lines.
+    /// Share of local lines of the best mixture.
     pub(crate) share: f64,
-    /// Its relative RMS in luminance.
+    /// Relative RMS of its luminance.
     pub(crate) relative_rms: f64,
     /// Smallest share whose error is at most 5 % larger.
     pub(crate) from: f64,
@@ -51,24 +51,24 @@ pub(crate) struct Best {
     pub(crate) to: f64,
 }
 
-/// What the part finds.
+/// Results of the part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Mix {
-    /// Lines that are shared: a quarter of the pipeline's, scaled.
+    /// Lines to divide between the stages: a quarter of the pipeline's, scaled.
     pub(crate) lines: Lines,
     /// Rates of the sequential run.
     pub(crate) rates: Rates,
-    /// As many lines in all.
+    /// Mixtures with the same total number of lines.
     pub(crate) equal_lines: Vec<Mixture>,
-    /// As many as take equally long at the rates.
+    /// Mixtures that take the same time at the rates.
     pub(crate) equal_time: Vec<Mixture>,
-    /// The best of the former.
+    /// Best mixture with an equal number of lines.
     pub(crate) best_of_lines: Option<Best>,
-    /// The best of the latter.
+    /// Best mixture with equal time.
     pub(crate) best_of_time: Option<Best>,
 }
 
-/// The two ways of choosing numbers of lines.
+/// Names of the two ways to choose the numbers of lines.
 const KINDS: [&str; 2] = ["lines", "time"];
 
 fn wanted(runs: &Runs, subject: &Subject, kind: &str, percent: u32, lines: Lines) -> Wanted {
@@ -76,10 +76,10 @@ fn wanted(runs: &Runs, subject: &Subject, kind: &str, percent: u32, lines: Lines
     Wanted::new(&format!("mix-{kind}-{percent:02}"), changes, runs.cores)
 }
 
-/// Announces all runs. How many lines take equally long is not known before the sequential run.
+/// Adds all runs to the agenda. The numbers of lines for equal time are only known after the sequential run.
 pub(crate) fn plan(runs: &mut Runs, subject: &Subject) {
     for (kind, percent) in KINDS.iter().flat_map(|kind| SHARES.map(|percent| (kind, percent))) {
-        let wanted = wanted(runs, subject, kind, percent, subject.lines.times(FEWER));
+        let wanted = wanted(runs, subject, kind, percent, subject.lines.times(LINE_SHARE));
         runs.plan(subject, &wanted);
     }
 }
@@ -87,7 +87,7 @@ pub(crate) fn plan(runs: &mut Runs, subject: &Subject) {
 /// Makes the runs and compares them.
 pub(crate) fn find(runs: &mut Runs, subject: &Subject, reference: &Reference) -> Result<Mix, StudyError> {
     let rates = speed::rates(runs, subject)?;
-    let lines = subject.lines.times(FEWER);
+    let lines = subject.lines.times(LINE_SHARE);
     let mut mixtures = |kind, of: &dyn Fn(f64) -> Lines| -> Result<Vec<Mixture>, StudyError> {
         let one = |percent: u32| {
             let share = f64::from(percent) / 100.0;
@@ -104,22 +104,22 @@ pub(crate) fn find(runs: &mut Runs, subject: &Subject, reference: &Reference) ->
     Ok(Mix { lines, rates, equal_lines, equal_time, best_of_lines, best_of_time })
 }
 
-/// The mixture with the smallest error, and the shares around it that are as good.
+/// Returns the mixture with the smallest error, and the range of shares around it that are equally good.
 fn best(mixtures: &[Mixture]) -> Option<Best> {
     let rms = |m: &Mixture| m.accuracy.relative_rms.luminance;
     let best = mixtures.iter().min_by(|a, b| rms(a).total_cmp(&rms(b)))?;
-    let good = mixtures.iter().filter(|m| rms(m) <= AS_GOOD * rms(best));
+    let good = mixtures.iter().filter(|m| rms(m) <= EQUALLY_GOOD * rms(best));
     let (from, to) = good.fold((best.share, best.share), |(a, b), m| (a.min(m.share), b.max(m.share)));
     Some(Best { share: best.share, relative_rms: rms(best), from, to })
 }
 
 impl Best {
-    /// Whether a share is as good as the best.
+    /// Returns true if a share is as good as the best one.
     pub(crate) fn includes(&self, share: f64) -> bool {
         (self.from - 1e-9..=self.to + 1e-9).contains(&share)
     }
 
-    /// Where the minimum is, and how flat.
+    /// Describes the minimum and its flatness.
     pub(crate) fn text(&self) -> String {
         format!(
             "{} at {} local lines, within 5 % of that from {} to {}",
@@ -132,7 +132,7 @@ impl Best {
 }
 
 impl Mix {
-    /// Errors over the share of local lines.
+    /// Draws the errors over the share of local lines.
     pub(crate) fn svg(&self, name: &str) -> io::Result<String> {
         let points = |mixtures: &[Mixture]| -> Vec<(f64, f64)> {
             mixtures.iter().map(|m| (100.0 * m.share, 100.0 * m.accuracy.relative_rms.luminance)).collect()
@@ -151,14 +151,14 @@ impl Mix {
         diagram.svg()
     }
 
-    /// The section of the report; `figure` is the file of the diagram.
+    /// Returns the section of the report; `figure` is the file name of the diagram.
     pub(crate) fn section(&self, figure: &str) -> String {
         let mut text = format!(
             "### Local and global lines\n\nA quarter of the lines ({} in all), divided between the first \
-             shot and multipath, against the reference. For equal time the numbers of lines are such that \
-             both stages take {:.3} s on one thread at the rates of the sequential run ({} local and {} \
-             global lines per second). Times are those measured on all cores, so they also show what does \
-             not depend on the lines.\n\n",
+             shot and multipath, against the reference. For equal time, the numbers of lines are chosen so \
+             that both stages take {:.3} s on one thread at the rates of the sequential run ({} local and {} \
+             global lines per second). Times were measured on all cores, so they include work that does not \
+             depend on the number of lines.\n\n",
             count(self.lines.total()),
             self.lines.seconds(self.rates),
             count(self.rates.local as u64),

@@ -1,13 +1,14 @@
-//! Section 5 of Martínez, Forés and Martín (2009), repeated on any pipelines: `sir experiment`.
+//! Repetition of section 5 of Martínez, Forés and Martín (2009) on any pipelines: `sir experiment`.
 //!
-//! The program runs *itself* on pipelines that are derived from those it is given, one run after the other, and compares
-//! their results; what needs no solution it counts in its own process. Each run has a directory that is kept, with its
-//! pipeline and its report: an experiment that was interrupted goes on with the runs that are missing.
+//! The program runs *itself* on pipelines derived from the given ones, one run after the other, and compares their
+//! results. Statistics that need no solution are counted in its own process. The directory of each run is kept, with
+//! its pipeline and its report, so that an interrupted experiment continues with the missing runs.
 //!
-//! * `subject`: a pipeline, and those derived from it; `runs`: making them, once; `scene`: what is made for one.
-//! * A module for each part finds numbers and writes a section: `speed` (scaling), `precision` (error), `mix`, `bodies`
-//!   (domains), `spread`, `farm`.
-//! * `paper`: what was published; `verdict`: whether the numbers agree; `document`: the report.
+//! * `subject`: a pipeline, and the pipelines derived from it; `runs`: makes each run once; `scene`: all parts of the
+//!   experiment on one scene.
+//! * A module for each part computes numbers and writes a section: `speed` (scaling), `precision` (error), `mix`,
+//!   `bodies` (domains), `spread`, `farm`.
+//! * `paper`: the published numbers; `verdict`: the comparison with them; `document`: the report.
 
 mod accuracy;
 mod agenda;

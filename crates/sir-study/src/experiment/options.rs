@@ -1,4 +1,4 @@
-//! What to redo, and how.
+//! The options of the experiment.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -7,45 +7,47 @@ use serde::Serialize;
 
 use crate::scaling::workers::Plan;
 
-/// What to redo, and how.
+/// Options of the experiment.
 #[derive(Clone, Debug)]
 pub struct ExperimentOptions {
-    /// Pipeline files; if empty, those of the museum stairs and of the airplane cabin, in `scenes` of the current folder.
+    /// Pipeline files; if empty, those of the museum stairs and of the airplane cabin, in `scenes` in the current
+    /// folder.
     pub pipelines: Vec<PathBuf>,
-    /// Where to write; `None` for a new directory `results/experiment`. In the directory of an earlier one, finished runs are not
-    /// repeated.
+    /// Output directory; `None` for a new directory `results/experiment`. In the directory of an earlier experiment,
+    /// finished runs are not repeated.
     pub out: Option<PathBuf>,
-    /// What all numbers of lines are multiplied by, above 0 and at most 1. Patches stay.
+    /// Factor on all numbers of lines, above 0 and at most 1. The patches stay the same.
     pub scale: f64,
     /// Numbers of threads to measure speed-ups with; if empty, 1 up to the number of cores.
     pub threads: Vec<NonZeroUsize>,
-    /// Numbers of processes of one thread each to measure speed-ups with; if empty, 1 up to the number of cores, if built with MPI.
+    /// Numbers of processes of one thread each to measure speed-ups with; if empty, 1 up to the number of cores, if
+    /// built with MPI.
     pub ranks: Vec<NonZeroUsize>,
-    /// What starts several processes, as in [`ScalingOptions`](crate::scaling::ScalingOptions).
+    /// Command that starts several processes, as in [`ScalingOptions`](crate::scaling::ScalingOptions).
     pub mpirun: String,
-    /// Lines of the reference, to which results are compared, as a multiple of those of the pipeline.
+    /// Lines of the reference run, with which results are compared, as a multiple of the pipeline's.
     pub reference: f64,
-    /// What to do; if empty, everything.
+    /// Parts to do; if empty, all parts.
     pub parts: Vec<Part>,
 }
 
-/// A part of the experiment.
+/// Part of the experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Part {
     /// Times, speed-ups and efficiencies of threads and ranks.
     Scaling,
-    /// How far the result is from a run with many more lines.
+    /// Error against a run with many more lines.
     Error,
-    /// Which share of local lines is best.
+    /// Best share of local lines.
     Mix,
-    /// How many global lines miss the scene.
+    /// Share of global lines that miss the scene.
     Domains,
-    /// How evenly the work of lines is shared.
+    /// Spread of the cost of lines.
     Spread,
-    /// What averaging independent replicas loses.
+    /// Light that the mean of independent replicas loses.
     Farm,
-    /// The picture.
+    /// Images of the pipeline.
     Pictures,
 }
 
@@ -56,14 +58,15 @@ impl Part {
 }
 
 impl ExperimentOptions {
-    /// The parts to do, in their order, each once.
+    /// Returns the parts to do, in their order, each once.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {
         let is_wanted = |part: &Part| self.parts.is_empty() || self.parts.contains(part);
         Part::ALL.into_iter().filter(is_wanted).collect()
     }
 
-    /// On which workers the speed-up is measured, on a machine with so many cores.
+    /// Returns the plan for measuring the speed-up on a machine with `cores` cores. `mpi` is true if the program was
+    /// built with MPI.
     #[must_use]
     pub fn plan(&self, cores: NonZeroUsize, mpi: bool) -> Plan {
         let all: Vec<NonZeroUsize> = (1..=cores.get()).filter_map(NonZeroUsize::new).collect();

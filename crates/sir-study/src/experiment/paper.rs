@@ -1,4 +1,4 @@
-//! What the paper reports.
+//! The numbers that the paper reports.
 //!
 //! Martínez, R., Forés, J. and Martín, I. (2009): *Parallel Global-Line Monte Carlo Radiosity*, section 5.
 
@@ -9,52 +9,52 @@ use crate::scaling::statistics::{Overhead, Part, Spread};
 use crate::scaling::study::Row;
 use crate::scaling::workers::Workers;
 
-/// The publication, for the report.
+/// Citation of the paper, for the report.
 pub(crate) const CITATION: &str =
     "Martínez, Forés and Martín (2009), \"Parallel Global-Line Monte Carlo Radiosity\", section 5";
 
-/// On what the authors have measured.
+/// Machine on which the authors measured.
 pub(crate) const MACHINE: &str = "four HP ProLiant DL145 servers, each with two AMD Opteron 244 at 1.8 GHz \
                                   and 2 GB of memory, on a network of 100 Mbit/s";
 
-/// Processors of the parallel runs whose times are reported.
+/// Number of processors of the parallel runs whose times are reported.
 pub(crate) const P: usize = 8;
 
-/// Efficiency that is reported for several numbers of processors.
+/// Reported efficiency for several numbers of processors.
 pub(crate) const EFFICIENCY: f64 = 0.9;
 
-/// Share of local lines that is said to be best.
+/// Best share of local lines, according to the paper.
 pub(crate) const BEST_SHARE: f64 = 0.5;
 
-/// Share of global lines that is said to miss the scene.
+/// Share of global lines that miss the scene, according to the paper.
 pub(crate) const EMPTY_SHARE: f64 = 0.3;
 
-/// Volume of the bounding sphere over that of the bounding box, as it is said.
+/// Volume of the bounding sphere over that of the bounding box, according to the paper.
 pub(crate) const SPHERE_TO_BOX: f64 = 1.3;
 
 /// Times of a stage \[s\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Times {
-    /// One after the other.
+    /// Time of the sequential run.
     pub(crate) sequential: f64,
-    /// On eight processors.
+    /// Time on eight processors.
     pub(crate) parallel: f64,
 }
 
-/// A scene of the paper.
+/// Scene of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Published {
-    /// The folder of its pipeline.
+    /// Folder of the scene's pipeline.
     pub(crate) name: &'static str,
-    /// Patches.
+    /// Number of patches.
     pub(crate) patches: usize,
-    /// Lines.
+    /// Numbers of lines.
     pub(crate) lines: Lines,
     /// Times of the first shot.
     pub(crate) first_shot: Times,
     /// Times of multipath.
     pub(crate) multipath: Times,
-    /// Times of the whole.
+    /// Times of the whole run.
     pub(crate) whole: Times,
 }
 
@@ -79,10 +79,11 @@ const SCENES: [Published; 2] = [
     },
 ];
 
-/// Largest relative difference of the numbers of patches: whole subdivisions cannot give any number.
+/// Largest relative difference of the numbers of patches. They may differ, because subdivision cannot give every
+/// number.
 const SAME_PATCHES: f64 = 1e-3;
 
-/// The scene of the paper with this name, if it has as many patches and lines.
+/// Returns the scene of the paper with this name, if the numbers of patches and lines match.
 #[must_use]
 pub(crate) fn published(name: &str, patches: usize, lines: Lines) -> Option<Published> {
     let apart = |scene: &Published| (patches as f64 / scene.patches as f64 - 1.0).abs();
@@ -92,7 +93,7 @@ pub(crate) fn published(name: &str, patches: usize, lines: Lines) -> Option<Publ
 }
 
 impl Times {
-    /// Speed-up and efficiency.
+    /// Computes speed-up and efficiency.
     #[must_use]
     pub(crate) fn part(self) -> Part {
         let [one, many] = [self.sequential, self.parallel].map(|t| Spread { median: t, min: t, max: t });
@@ -101,7 +102,7 @@ impl Times {
 }
 
 impl Published {
-    /// The scene's point in a diagram of speed-ups.
+    /// Returns the scene's point in a diagram of speed-ups.
     #[must_use]
     pub(crate) fn row(&self) -> Row {
         let nothing = Overhead { seconds: Spread { median: 0.0, min: 0.0, max: 0.0 }, share: 0.0 };

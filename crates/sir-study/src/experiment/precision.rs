@@ -1,4 +1,4 @@
-//! Part `error`: how far the pipeline's result is from the reference.
+//! Part `error`: the error of the pipeline's result against the reference.
 
 use serde::Serialize;
 use sir_view::Table;
@@ -9,21 +9,21 @@ use crate::experiment::lines::Lines;
 use crate::experiment::markdown::{Grid, count, percent, signed_percent};
 use sir_pipeline::format::duration;
 
-/// What the part finds.
+/// Results of the part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Precision {
-    /// Lines of the run.
+    /// Numbers of lines of the run.
     pub(crate) lines: Lines,
-    /// Lines of the reference.
+    /// Numbers of lines of the reference.
     pub(crate) reference_lines: Lines,
-    /// Seconds of the reference.
+    /// Time of the reference \[s\].
     pub(crate) reference_seconds: f64,
-    /// How far apart they are.
+    /// Error of the run against the reference.
     #[serde(flatten)]
     pub(crate) accuracy: Accuracy,
-    /// What the run says of its own error, on the same scale: red, green, blue.
+    /// Error that the run states itself, on the same scale: red, green, blue.
     pub(crate) stated: [f64; 3],
-    /// What the reference says of its own.
+    /// Error that the reference states itself, on the same scale.
     pub(crate) reference_stated: [f64; 3],
 }
 
@@ -44,15 +44,15 @@ pub(crate) fn find(
 }
 
 impl Precision {
-    /// The section of the report.
+    /// Returns the section of the report.
     pub(crate) fn section(&self) -> String {
         let Accuracy { relative_rms: rms, relative_bias: bias } = self.accuracy;
         let mut grid = Grid::new(&[
             "",
             "relative RMS",
             "relative bias",
-            "error that the run states",
-            "that the reference states",
+            "error stated by the run",
+            "error stated by the reference",
         ]);
         let stated = |list: &[f64; 3], k: Option<usize>| k.map_or("-".into(), |k| percent(list[k]));
         for (name, of, k) in [
@@ -72,7 +72,7 @@ impl Precision {
         format!(
             "### Error\n\nRadiosity of the run with {} local and {} global lines against the reference with \
              {} and {}, with another seed ({}). Everything is weighted by area and relative to the mean \
-             radiosity of the reference, whose own error is in the RMS, too.\n\n{}",
+             radiosity of the reference. The RMS includes the error of the reference.\n\n{}",
             count(self.lines.local),
             count(self.lines.global),
             count(self.reference_lines.local),

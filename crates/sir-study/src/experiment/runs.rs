@@ -1,4 +1,4 @@
-//! Runs of derived pipelines, each in a directory of its own that is kept.
+//! Runs of derived pipelines. Each run has its own directory, which is kept.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -25,28 +25,28 @@ use sir_pipeline::{ErrorKind, Progress};
 /// Name of the pipeline file in a run's directory.
 const PIPELINE: &str = "pipeline.ron";
 
-/// A run that is wanted.
+/// Description of a run to make.
 #[derive(Clone, Debug)]
 pub(crate) struct Wanted {
-    /// Its name among the runs of a subject.
+    /// Name of the run, unique among the runs of a subject.
     pub(crate) name: String,
     pub(crate) changes: Changes,
     pub(crate) workers: Workers,
-    /// Whether its time counts: it is then never interrupted by checkpoints, nor put together from two runs, and its
-    /// table is not kept.
+    /// True if the time of the run is evaluated. The run then writes no checkpoints, is never resumed, and its table is
+    /// not kept.
     pub(crate) timed: bool,
 }
 
-/// A run that is done.
+/// Finished run.
 pub(crate) struct Done {
     pub(crate) directory: PathBuf,
     pub(crate) report: Report,
 }
 
-/// Makes runs.
+/// Runs in the output directory; missing ones are made on demand.
 pub(crate) struct Runs {
     pub(crate) launcher: Launcher,
-    /// The output directory, from the root.
+    /// Absolute path of the output directory.
     pub(crate) folder: PathBuf,
     pub(crate) cores: NonZeroUsize,
     pub(crate) agenda: Agenda,
@@ -54,7 +54,7 @@ pub(crate) struct Runs {
 }
 
 impl Wanted {
-    /// A run on all cores of the machine.
+    /// Returns a run on all cores of the machine.
     pub(crate) fn new(name: &str, changes: Changes, cores: NonZeroUsize) -> Self {
         let workers = Workers { ranks: NonZeroUsize::MIN, threads: cores };
         Self { name: name.into(), changes, workers, timed: false }
@@ -66,20 +66,20 @@ impl Wanted {
 }
 
 impl Done {
-    /// A table of the run.
+    /// Reads a table of the run.
     pub(crate) fn table(&self, name: &str) -> Result<Table, StudyError> {
         Ok(Table::read(&self.directory.join(name))?)
     }
 }
 
 impl Runs {
-    /// Announces a run.
+    /// Adds a run to the agenda.
     pub(crate) fn plan(&mut self, subject: &Subject, wanted: &Wanted) {
         let workers = wanted.workers.count().min(self.cores.get());
         self.agenda.add(wanted.label(subject), wanted.changes.lines.total() as f64 / workers as f64);
     }
 
-    /// Makes a run, unless it has been made.
+    /// Makes a run, unless its result already exists.
     pub(crate) fn get(&mut self, subject: &Subject, wanted: &Wanted) -> Result<Done, StudyError> {
         self.launcher.check_stop()?;
         let label = wanted.label(subject);
@@ -93,7 +93,7 @@ impl Runs {
         let watch = Stopwatch::start();
         let report = self.make(&directory, &text, wanted)?;
         if wanted.timed {
-            // All of them are the same, and large. What cannot be removed does no harm.
+            // The tables of timed runs are all the same, and large. A failure to remove one does no harm.
             let _ = fs::remove_file(directory.join(TABLE));
         }
         self.agenda.done(&label, Some(watch.seconds()));
@@ -101,14 +101,14 @@ impl Runs {
         Ok(Done { directory, report })
     }
 
-    /// Runs a pipeline, or goes on where an interrupted run of it has saved its state.
+    /// Runs a pipeline, or resumes an interrupted run of it from its checkpoint.
     fn make(&self, directory: &Path, text: &str, wanted: &Wanted) -> Result<Report, StudyError> {
         fs::create_dir_all(directory).map_err(sir_pipeline::Error::directory(directory))?;
         let pipeline = directory.join(PIPELINE);
         let same = fs::read_to_string(&pipeline).is_ok_and(|old| old == text);
         if same && !wanted.timed && directory.join(CHECKPOINT).exists() {
             match self.launcher.execute(wanted.workers, &["resume".as_ref(), directory.as_os_str()]) {
-                // Of another program or scene: begin again.
+                // The checkpoint is from another program or scene: start a new run.
                 Err(error) if error.kind() == ErrorKind::Usage => {}
                 done => return done,
             }
@@ -127,7 +127,7 @@ impl Runs {
     }
 }
 
-/// What was made of this pipeline by this program, if all of it is there.
+/// Returns the report of a finished run of this pipeline by this program, if all its files exist.
 fn finished(directory: &Path, text: &str, timed: bool) -> Option<Report> {
     let report = read_report(directory).ok()?;
     let complete = timed || report.outputs.iter().all(|output| directory.join(&output.path).exists());

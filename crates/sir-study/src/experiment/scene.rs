@@ -16,18 +16,18 @@ use sir_pipeline::NoProgress;
 use sir_pipeline::plan::Output;
 use sir_pipeline::prepare::prepare;
 
-/// Parts that compare with the reference.
+/// Parts that compare results with the reference.
 const COMPARING: [Part; 3] = [Part::Error, Part::Mix, Part::Farm];
 
-/// Parts that need the pipeline's own run, with its pictures.
+/// Parts that need a run of the pipeline itself, with its images.
 const FULL: [Part; 3] = [Part::Error, Part::Farm, Part::Pictures];
 
-/// The pipeline itself.
+/// Returns the run of the pipeline itself.
 fn full(runs: &Runs, subject: &Subject) -> Wanted {
     Wanted::new("full", Changes { direct: true, pictures: true, ..subject.changes() }, runs.cores)
 }
 
-/// Many more lines, and other random numbers.
+/// Returns the reference run, with many more lines and other random numbers.
 fn reference(runs: &Runs, subject: &Subject, factor: f64) -> Wanted {
     let lines = subject.lines.times(factor);
     let changes = Changes {
@@ -40,7 +40,7 @@ fn reference(runs: &Runs, subject: &Subject, factor: f64) -> Wanted {
     Wanted::new("reference", changes, runs.cores)
 }
 
-/// Announces all runs of a scene.
+/// Adds all runs of a scene to the agenda.
 pub(crate) fn plan(runs: &mut Runs, subject: &Subject, options: &ExperimentOptions, plan: &Plan) {
     let parts = options.parts();
     let any = |some: &[Part]| some.iter().any(|part| parts.contains(part));
@@ -64,7 +64,7 @@ pub(crate) fn plan(runs: &mut Runs, subject: &Subject, options: &ExperimentOptio
     }
 }
 
-/// Does what was asked for.
+/// Makes the runs of the requested parts and evaluates them.
 pub(crate) fn find(
     runs: &mut Runs,
     subject: &Subject,
@@ -107,7 +107,7 @@ pub(crate) fn find(
     Ok(found)
 }
 
-/// The parts that need no solution. The scene leaves the memory before others are run.
+/// Does the parts that need no solution. The scene is dropped from memory before other parts run.
 fn in_this_process(
     runs: &Runs,
     subject: &Subject,
@@ -145,12 +145,12 @@ fn in_this_process(
     })
 }
 
-/// Copies the picture that the report shows, the first one that can be shown, beside it; returns all pictures, that
-/// one first.
+/// Copies the image that the report shows, the first PNG, next to the report. Returns the paths of all images, that one
+/// first.
 fn pictures(runs: &Runs, subject: &Subject, full: &Done) -> Result<Vec<String>, StudyError> {
     let is_png = |path: &std::path::Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
     let mut paths: Vec<_> = subject.pictures().map(Output::path).collect();
-    // The order stays, but for the first one.
+    // Moves the first PNG to the front; the others keep their order.
     if let Some(first) = paths.iter().position(|path| is_png(path)) {
         paths[..=first].rotate_right(1);
     }

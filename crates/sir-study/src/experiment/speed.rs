@@ -1,4 +1,4 @@
-//! Part `scaling`: times, speed-ups and efficiencies, as figures 6 and 7 of the paper show them.
+//! Part `scaling`: times, speed-ups and efficiencies, as in figures 6 and 7 of the paper.
 
 use std::io;
 
@@ -20,10 +20,10 @@ use crate::scaling::workers::{Plan, Workers};
 use sir_pipeline::NoProgress;
 use sir_pipeline::report::Report;
 
-/// How long the parts of one run took \[s\], and its memory.
+/// Times of the parts of one run \[s\], and its memory.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Stages {
-    /// Who shared the work.
+    /// Ranks and threads.
     #[serde(flatten)]
     pub(crate) workers: Workers,
     /// Reading the scene and making patches.
@@ -34,33 +34,33 @@ pub(crate) struct Stages {
     pub(crate) multipath: f64,
     /// Writing the table.
     pub(crate) saving: f64,
-    /// Everything.
+    /// The whole run.
     pub(crate) whole: f64,
-    /// Most memory in use, of the largest rank \[bytes\].
+    /// Peak memory of the largest rank \[bytes\].
     pub(crate) peak_memory: Option<u64>,
 }
 
-/// What the part finds.
+/// Results of the part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Speed {
     /// Speed-ups and efficiencies.
     pub(crate) study: Study,
     /// Times of all stages, in the order of the study's rows.
     pub(crate) stages: Vec<Stages>,
-    /// What the paper reports, if it is the same task.
+    /// Numbers of the paper, if the task is the same.
     pub(crate) published: Option<Published>,
 }
 
-/// Takes a part of a run from its row.
+/// Function that takes a part of a run from its row.
 type Pick = fn(&Row) -> Option<Part>;
 
-/// The run on these workers.
+/// Returns the run on these workers.
 pub(crate) fn wanted(subject: &Subject, workers: Workers) -> Wanted {
     let name = format!("scaling-{}x{}", workers.ranks, workers.threads);
     Wanted { name, changes: subject.changes(), workers, timed: true }
 }
 
-/// Lines per second of the sequential run.
+/// Returns the lines per second of the sequential run.
 pub(crate) fn rates(runs: &mut Runs, subject: &Subject) -> Result<Rates, StudyError> {
     let report = runs.get(subject, &wanted(subject, Workers::BASELINE))?.report;
     let rate = |name, lines: u64| lines as f64 / time(&report, &[name]).max(1e-9);
@@ -70,7 +70,7 @@ pub(crate) fn rates(runs: &mut Runs, subject: &Subject) -> Result<Rates, StudyEr
     })
 }
 
-/// Seconds of the stages with these names.
+/// Returns the total time of the stages with these names \[s\].
 pub(crate) fn time(report: &Report, names: &[&str]) -> f64 {
     report.stages.iter().filter(|s| names.contains(&s.name.as_str())).map(|s| s.time.seconds).sum()
 }
@@ -101,13 +101,13 @@ pub(crate) fn find(
 }
 
 impl Speed {
-    /// Figures 6 and 7.
+    /// Draws figures 6 and 7.
     pub(crate) fn svg(&self) -> io::Result<String> {
         let others: Vec<Row> = self.published.iter().map(Published::row).collect();
         svg_beside(&self.study, &others, "paper")
     }
 
-    /// The section of the report; `figure` is the file of the diagram.
+    /// Returns the section of the report; `figure` is the file name of the diagram.
     pub(crate) fn section(&self, figure: &str, scale: f64) -> String {
         let columns = [
             "workers",
@@ -126,8 +126,8 @@ impl Speed {
         }
         let mut text = format!(
             "### Speed-up and efficiency\n\n{}Loading is reading the scene and making patches; saving is \
-             the table. Memory is that of the largest rank.\n\n{}\n![Speed-up and efficiency over the \
-             number of workers]({figure})\n\n",
+             writing the table. Memory is that of the largest rank.\n\n{}\n![Speed-up and efficiency over \
+             the number of workers]({figure})\n\n",
             grid.end(),
             markdown(&self.study)
         );
@@ -136,21 +136,21 @@ impl Speed {
                 --features mpi`).\n\n";
         }
         if let Some(published) = &self.published {
-            text += &self.beside(published, scale);
+            text += &self.comparison(published, scale);
         }
         text
     }
 
-    /// Our times beside those of the paper.
-    fn beside(&self, published: &Published, scale: f64) -> String {
+    /// Returns the comparison of these times with those of the paper.
+    fn comparison(&self, published: &Published, scale: f64) -> String {
         let mut text = format!(
-            "The paper has measured a scene of the same subject with as many patches and lines, but not \
-             this one, on {MACHINE}. Its speed-ups and efficiencies are computed from its times.\n\n"
+            "The paper measured a different scene of the same subject, with the same numbers of patches and \
+             lines, on {MACHINE}. Its speed-ups and efficiencies are computed from its times.\n\n"
         );
         if scale < 1.0 {
             text += &format!(
                 "**Here only {scale} times as many lines were traced**, so times cannot be compared, and \
-                 whatever does not depend on the number of lines weighs more here.\n\n"
+                 work that does not depend on the number of lines weighs more here.\n\n"
             );
         }
         let mut grid = Grid::new(&["", "T(1) [s]", "T(8) [s]", "S(8)", "E(8)"]);

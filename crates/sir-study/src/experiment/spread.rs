@@ -1,4 +1,4 @@
-//! Part `spread`: how evenly the work of global lines is shared.
+//! Part `spread`: the spread of the cost of global lines.
 
 use serde::Serialize;
 use sir_radiosity::Model;
@@ -13,47 +13,47 @@ use crate::experiment::subject::Subject;
 use crate::scaling::table::seconds;
 use sir_pipeline::stopwatch::Stopwatch;
 
-/// Lines, before they are scaled, and how few they may be.
+/// Number of lines before scaling, and the minimum after it.
 const LINES: (u64, u64) = (4_000_000, 200_000);
 
-/// Lines of a block.
+/// Numbers of lines of a block.
 const BLOCKS: [usize; 4] = [1, 100, 10_000, 1_000_000];
 
-/// How much the mean number of crossings differs from one block of lines to another.
+/// Spread of the mean number of crossings between blocks of lines.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct BlockSpread {
-    /// Lines of a block.
+    /// Number of lines of a block.
     pub(crate) lines: usize,
-    /// Blocks.
+    /// Number of blocks.
     pub(crate) blocks: usize,
-    /// Standard deviation of a block's mean, relative to the mean of all.
+    /// Standard deviation of a block's mean, relative to the mean of all lines.
     pub(crate) relative_deviation: f64,
 }
 
-/// One of eight equal shares of the lines.
+/// Statistics of one of eight equal shares of the lines.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Share {
     /// Crossings per line, relative to the mean of all lines, minus 1.
     pub(crate) deviation: f64,
-    /// Seconds to draw the lines and to find their crossings.
+    /// Time to draw the lines and find their crossings \[s\].
     pub(crate) seconds: f64,
 }
 
-/// What the part finds.
+/// Results of the part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Unevenness {
-    /// Lines traced.
+    /// Number of lines traced.
     pub(crate) lines: u64,
     /// Mean number of crossings of a line.
     pub(crate) mean: f64,
-    /// Standard deviation of this number.
+    /// Standard deviation of the number of crossings of a line.
     pub(crate) deviation: f64,
-    /// The same for blocks.
+    /// Spread between blocks of lines.
     pub(crate) blocks: Vec<BlockSpread>,
-    /// Eight equal shares of the lines.
+    /// Statistics of eight equal shares of the lines.
     pub(crate) shares: Vec<Share>,
-    /// Standard deviation to expect of one of eight equal shares of the pipeline's global lines, scaled, relative to
-    /// the mean.
+    /// Expected standard deviation of one of eight equal shares of the pipeline's scaled number of global lines,
+    /// relative to the mean.
     pub(crate) expected: f64,
 }
 
@@ -68,7 +68,7 @@ pub(crate) fn find(
     let domain = subject.domain.around(&model.scene);
     let mut counts = Vec::with_capacity(share as usize * P);
     let mut times = Vec::new();
-    // So that the first share does not find cold caches.
+    // Warms the caches for the first share.
     count(runs, model, &domain, 0..share.min(20_000), |_| {})?;
     for k in 0..P as u64 {
         let watch = Stopwatch::start();
@@ -78,7 +78,7 @@ pub(crate) fn find(
     Ok(Unevenness::of(&counts, &times, subject.lines.global))
 }
 
-/// Mean and standard deviation.
+/// Returns the mean and the standard deviation.
 fn moments(values: &[f64]) -> (f64, f64) {
     let n = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -86,7 +86,7 @@ fn moments(values: &[f64]) -> (f64, f64) {
     (mean, (square / (n - 1.0).max(1.0)).sqrt())
 }
 
-/// The means of blocks; what is left over at the end is not used.
+/// Returns the means of blocks of `lines` lines. An incomplete block at the end is ignored.
 fn means(counts: &[u32], lines: usize) -> Vec<f64> {
     let mean = |block: &[u32]| block.iter().map(|&c| f64::from(c)).sum::<f64>() / lines as f64;
     counts.chunks_exact(lines).map(mean).collect()
@@ -114,12 +114,12 @@ impl Unevenness {
         }
     }
 
-    /// The largest deviation of a share from the mean.
+    /// Returns the largest absolute deviation of a share from the mean.
     pub(crate) fn largest(&self) -> f64 {
         self.shares.iter().map(|share| share.deviation.abs()).fold(0.0, f64::max)
     }
 
-    /// The section of the report.
+    /// Returns the section of the report.
     pub(crate) fn section(&self) -> String {
         let mut blocks = Grid::new(&["lines of a block", "blocks", "standard deviation of a block's mean"]);
         for b in &self.blocks {
@@ -134,11 +134,11 @@ impl Unevenness {
             shares.row([format!("{number}"), signed_percent(share.deviation), seconds(share.seconds)]);
         }
         format!(
-            "### Cost of a line\n\n{} global lines meet {:.2} surfaces each; the standard deviation from \
-             line to line is {:.2}. In blocks of lines it evens out:\n\n{}{P} equal shares of them, traced \
-             one after the other by one thread (times are for drawing lines and finding crossings, and have \
-             the noise of the machine in them):\n\n{}The largest deviation is {}. Of {P} equal shares of \
-             the pipeline's global lines, a standard deviation of {} is to be expected.\n\n",
+            "### Cost of a line\n\n{} global lines cross {:.2} surfaces each on average; the standard deviation \
+             between lines is {:.2}. It averages out in blocks of lines:\n\n{}{P} equal shares of the lines, \
+             traced one after the other by one thread (times are for drawing lines and finding crossings, \
+             and include the noise of the machine):\n\n{}The largest deviation is {}. For {P} equal shares \
+             of the pipeline's global lines, the expected standard deviation is {}.\n\n",
             markdown::count(self.lines),
             self.mean,
             self.deviation,

@@ -1,4 +1,4 @@
-//! What is experimented on: a pipeline, and others that are derived from it.
+//! The subject of the experiment: a pipeline, and the pipelines derived from it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,33 +16,33 @@ use sir_pipeline::plan::{
 use sir_pipeline::run::{absolute, run_name};
 use sir_pipeline::text::Span;
 
-/// Name of the tables of derived pipelines, with all light.
+/// File name of the tables of all light in derived pipelines.
 pub(crate) const TABLE: &str = "patches.npy";
 
-/// Name of the tables after the first shot.
+/// File name of the tables after the first shot.
 pub(crate) const DIRECT: &str = "direct.npy";
 
-/// A pipeline whose numbers of lines can be changed.
+/// Pipeline whose numbers of lines can be changed.
 pub(crate) struct Subject {
     pub(crate) name: String,
     pub(crate) pipeline: Pipeline,
-    /// Lines of the pipeline.
+    /// Numbers of lines of the pipeline.
     pub(crate) asked: Lines,
-    /// The same times the scale.
+    /// Numbers of lines times the scale.
     pub(crate) lines: Lines,
     pub(crate) transport: Transport,
     pub(crate) domain: DomainKind,
-    /// SHA-256 of the scene file: another file of this name makes other runs.
+    /// SHA-256 of the scene file, so that runs with a changed scene file are distinct.
     digest: String,
 }
 
-/// How a derived pipeline differs from the one it is derived from.
+/// Changes of a derived pipeline relative to the original one.
 #[derive(Clone, Debug)]
 pub(crate) struct Changes {
     pub(crate) lines: Lines,
     pub(crate) transport: Transport,
     pub(crate) seed: u64,
-    /// Whether the direct light is saved, too.
+    /// True if the direct light is also saved.
     pub(crate) direct: bool,
     pub(crate) pictures: bool,
 }
@@ -77,12 +77,12 @@ impl Subject {
         })
     }
 
-    /// The pipeline's transport for so many global lines.
+    /// Returns the pipeline's transport, adapted to a number of global lines.
     pub(crate) fn transport_of(&self, lines: u64) -> Transport {
         fitted(&self.transport, self.asked.global, lines)
     }
 
-    /// The pipeline itself, with its lines times the scale.
+    /// Returns the changes of the pipeline itself, with its lines times the scale.
     pub(crate) fn changes(&self) -> Changes {
         Changes {
             lines: self.lines,
@@ -93,12 +93,12 @@ impl Subject {
         }
     }
 
-    /// The pictures that the pipeline asks for.
+    /// Returns the images among the pipeline's outputs.
     pub(crate) fn pictures(&self) -> impl Iterator<Item = &Output> {
         self.pipeline.outputs().filter(|output| matches!(output, Output::Image(_)))
     }
 
-    /// The text of a derived pipeline.
+    /// Returns the text of a derived pipeline.
     pub(crate) fn derived(&self, changes: &Changes) -> String {
         let table = |name: &str| Output::Table(Table { path: PathBuf::from(name) });
         let mut actions = Vec::new();
@@ -108,7 +108,8 @@ impl Subject {
                     actions.push(Action::Load(Load { path: absolute(&load.path), ..load.clone() }))
                 }
                 kept @ (Action::Light(_) | Action::Subdivide(_)) => actions.push(kept.clone()),
-                // The paper knows of no focus, and replicas cannot have it; the experiment measures patches, not sensors.
+                // `Focus` is left out because the paper does not have it and replicas do not support it. Sensors are
+                // left out because the experiment measures patches.
                 _ => {}
             }
         }

@@ -1,6 +1,6 @@
-//! What the paper claims, and whether the numbers here agree.
+//! The claims of the paper, and verdicts on them.
 //!
-//! Every verdict follows from measured numbers by a rule that the report states.
+//! Each verdict follows from measured numbers by a rule that the report states.
 
 use serde::Serialize;
 
@@ -13,54 +13,54 @@ use crate::experiment::speed::Speed;
 use crate::experiment::spread::Unevenness;
 use crate::scaling::study::Row;
 
-/// Whether a claim holds here.
+/// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Verdict {
-    /// The numbers agree with it.
+    /// The numbers agree with the claim.
     Confirmed,
-    /// They do not.
+    /// The numbers disagree with the claim.
     Refuted,
-    /// There are not enough of them.
+    /// There are too few numbers to tell.
     Open,
 }
 
-/// A claim, and what was found.
+/// Claim with its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Claim {
-    /// What the paper says, in short.
+    /// Summary of the paper's statement.
     pub(crate) claim: String,
-    /// What was found.
+    /// Result of the experiment.
     pub(crate) here: String,
-    /// Whether it agrees.
+    /// Verdict.
     pub(crate) verdict: Verdict,
-    /// When it is taken to agree.
+    /// Condition under which the result agrees with the claim.
     pub(crate) rule: String,
 }
 
-/// How far an efficiency may be below the paper's.
+/// Largest difference by which an efficiency may be below the paper's.
 const EFFICIENCY_SLACK: f64 = 0.05;
 
-/// How much efficiencies may differ to be constant.
-const CONSTANT: f64 = 0.1;
+/// Largest difference between efficiencies that count as constant.
+const MAX_EFFICIENCY_RANGE: f64 = 0.1;
 
-/// How many numbers of workers it takes to say that efficiency is constant.
-const SEVERAL: usize = 3;
+/// Number of different numbers of workers needed for a verdict on constant efficiency.
+const MIN_WORKER_COUNTS: usize = 3;
 
-/// Largest share of a run that is little communication.
-const LITTLE: f64 = 0.05;
+/// Largest share of communication in a run that counts as very little.
+const MAX_COMMUNICATION: f64 = 0.05;
 
-/// How far a share of empty lines may be from the paper's.
+/// Largest deviation of the share of empty lines from the paper's.
 const EMPTY_SLACK: f64 = 0.05;
 
-/// How far a ratio of volumes may be from the paper's.
+/// Largest deviation of the ratio of volumes from the paper's.
 const VOLUME_SLACK: f64 = 0.1;
 
-/// Largest deviation of the cost of one of eight shares of lines that are almost the same.
-const EVEN: f64 = 0.01;
+/// Largest relative deviation of the cost of one of eight shares of lines that counts as even.
+const MAX_COST_DEVIATION: f64 = 0.01;
 
-/// Largest loss of light that is none.
-const NO_LOSS: f64 = 0.005;
+/// Largest loss of light that counts as none.
+const MAX_LOSS: f64 = 0.005;
 
 impl Verdict {
     fn of(agrees: Option<bool>) -> Self {
@@ -71,7 +71,7 @@ impl Verdict {
         }
     }
 
-    /// A word for people.
+    /// Returns the verdict as text for the report.
     pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Confirmed => "confirmed",
@@ -85,12 +85,12 @@ fn claim(claim: String, rule: String, here: String, agrees: Option<bool>) -> Cla
     Claim { claim, here, verdict: Verdict::of(agrees), rule }
 }
 
-/// Smallest and largest of some numbers.
+/// Returns the smallest and the largest of some numbers.
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.fold(None, |range, x| range.map_or(Some((x, x)), |(a, b): (f64, f64)| Some((a.min(x), b.max(x)))))
 }
 
-/// Claims about speed-up. Only rows with several workers, but not more than cores, say something of them.
+/// Judges the claims about speed-up. Only rows with several workers, but not more than cores, are considered.
 pub(crate) fn of_speed(speed: &Speed) -> Vec<Claim> {
     let rows = || speed.study.rows.iter().filter(|row| row.p > 1 && !row.more_than_cores);
     let (threads, ranks): (Vec<&Row>, Vec<&Row>) = rows().partition(|row| row.workers.ranks.get() == 1);
@@ -101,20 +101,20 @@ pub(crate) fn of_speed(speed: &Speed) -> Vec<Claim> {
     let communication = range(ranks.iter().map(|row| row.communication.share));
     claims.push(claim(
         "communication costs very little".into(),
-        format!("with ranks, it is at most {} of the whole run", whole_percent(LITTLE)),
+        format!("with ranks, it is at most {} of the whole run", whole_percent(MAX_COMMUNICATION)),
         communication.map_or_else(
             || "not measured with ranks".into(),
             |(_, b)| format!("up to {} of the run, waiting included", percent(b)),
         ),
-        communication.map(|(_, b)| b <= LITTLE),
+        communication.map(|(_, b)| b <= MAX_COMMUNICATION),
     ));
     claims
 }
 
-/// Claims about the efficiency of one kind of workers.
+/// Judges the claims about the efficiency of one kind of workers.
 fn of_efficiency(kind: &str, rows: &[&Row]) -> Vec<Claim> {
     let efficiencies = range(rows.iter().map(|row| row.whole.efficiency));
-    let several = efficiencies.filter(|_| rows.len() >= SEVERAL);
+    let several = efficiencies.filter(|_| rows.len() >= MIN_WORKER_COUNTS);
     let numbers = rows.iter().map(|row| row.p.to_string()).collect::<Vec<_>>().join(", ");
     let too_few = || match rows.len() {
         0 => "measured with no more than one worker".to_owned(),
@@ -140,15 +140,15 @@ fn of_efficiency(kind: &str, rows: &[&Row]) -> Vec<Claim> {
         claim(
             format!("efficiency stays constant with more processors ({kind})"),
             format!(
-                "the efficiencies of at least {SEVERAL} numbers of workers above 1 differ by at most {CONSTANT}"
+                "the efficiencies of at least {MIN_WORKER_COUNTS} numbers of workers above 1 differ by at most {MAX_EFFICIENCY_RANGE}"
             ),
             several.map_or_else(too_few, |(a, b)| format!("E differs by {:.2} for p = {numbers}", b - a)),
-            several.map(|(a, b)| b - a <= CONSTANT),
+            several.map(|(a, b)| b - a <= MAX_EFFICIENCY_RANGE),
         ),
     ]
 }
 
-/// Claims about the share of local lines.
+/// Judges the claims about the share of local lines.
 pub(crate) fn of_mix(mix: &Mix) -> Vec<Claim> {
     let best = |what: &str, best: Option<Best>| {
         claim(
@@ -161,10 +161,10 @@ pub(crate) fn of_mix(mix: &Mix) -> Vec<Claim> {
             best.map(|best| best.includes(BEST_SHARE)),
         )
     };
-    vec![best("of equally many lines", mix.best_of_lines), best("in equal time", mix.best_of_time)]
+    vec![best("with an equal number of lines", mix.best_of_lines), best("in equal time", mix.best_of_time)]
 }
 
-/// Claims about the bounding sphere.
+/// Judges the claims about the bounding sphere.
 pub(crate) fn of_bodies(bodies: &Bodies) -> Vec<Claim> {
     let (empty, ratio) = (bodies.empty_in_sphere(), bodies.sphere_to_box);
     vec![
@@ -186,34 +186,34 @@ pub(crate) fn of_bodies(bodies: &Bodies) -> Vec<Claim> {
     ]
 }
 
-/// The claim about the cost of lines.
+/// Judges the claim about the cost of lines.
 pub(crate) fn of_spread(spread: &Unevenness) -> Vec<Claim> {
     vec![claim(
-        "the cost of global lines differs much, but evens out over many of them".into(),
+        "the cost of global lines varies much, but averages out over many of them".into(),
         format!(
             "none of {P} equal shares of the lines has crossings that differ from the mean by more than {}",
-            whole_percent(EVEN)
+            whole_percent(MAX_COST_DEVIATION)
         ),
         format!(
-            "at most {} apart for {} lines each",
+            "within {} of the mean for {} lines each",
             percent(spread.largest()),
             super::markdown::count(spread.lines / P as u64)
         ),
-        (!spread.shares.is_empty()).then(|| spread.largest() <= EVEN),
+        (!spread.shares.is_empty()).then(|| spread.largest() <= MAX_COST_DEVIATION),
     )]
 }
 
-/// What the paper takes for granted about its replicas.
+/// Judges the implicit assumption of the paper about its replicas.
 pub(crate) fn of_farm(farm: &Farm) -> Vec<Claim> {
     let bias = farm.bias(P as u64);
     vec![claim(
         format!("the mean of {P} replicas is as good as one solution with all lines (implied)"),
-        format!("the reflected light of {P} replicas is that of the reference within {}", percent(NO_LOSS)),
+        format!("the reflected light of {P} replicas is that of the reference within {}", percent(MAX_LOSS)),
         bias.map_or_else(
             || "too few lines".into(),
             |bias| format!("{} reflected light", signed_percent(bias)),
         ),
-        bias.map(|bias| bias.abs() <= NO_LOSS),
+        bias.map(|bias| bias.abs() <= MAX_LOSS),
     )]
 }
 
@@ -224,7 +224,7 @@ mod tests {
     use crate::scaling::workers::Plan;
     use std::num::NonZeroUsize;
 
-    /// Verdicts on runs of 1, 2, … threads that take so long.
+    /// Returns verdicts on runs of 1, 2, … threads with these times \[s\].
     fn verdicts(cores: usize, seconds: &[f64]) -> Vec<Verdict> {
         let threads: Vec<_> = (1..=seconds.len()).filter_map(NonZeroUsize::new).collect();
         let plan = Plan::each(&[NonZeroUsize::MIN], &threads, NonZeroUsize::MIN);
@@ -242,7 +242,7 @@ mod tests {
         use Verdict::{Confirmed, Open, Refuted};
         assert_eq!(verdicts(4, &[12.0, 6.5, 4.4, 3.4]), [Confirmed, Confirmed, Open]);
         assert_eq!(verdicts(4, &[12.0, 6.5, 5.5, 4.5]), [Refuted, Refuted, Open]);
-        // Two numbers of workers are no trend, and more workers than cores say nothing.
+        // Two numbers of workers are no trend, and rows with more workers than cores do not count.
         assert_eq!(verdicts(2, &[12.0, 6.5, 6.0, 6.0]), [Confirmed, Open, Open]);
         assert_eq!(verdicts(1, &[12.0]), [Open, Open, Open]);
     }

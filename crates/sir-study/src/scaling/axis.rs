@@ -1,4 +1,4 @@
-//! Axes with labels at round numbers.
+//! Axes of diagrams with labels at round numbers.
 
 use std::ops::Range;
 
@@ -7,26 +7,27 @@ use plotters::prelude::*;
 
 use crate::scaling::legend::{Failure, INK};
 
-/// An axis from 0.
+/// Axis that starts at 0.
 ///
-/// `plotters` would put labels at fractions of workers, and offers places of one's own for whole numbers
-/// only.
+/// The default axis of `plotters` puts labels at fractions of workers, and `plotters` accepts explicit label positions
+/// only for integer axes.
 pub(crate) struct Axis {
     last: f64,
     ticks: Vec<f64>,
 }
 
 impl Axis {
-    /// Ends at `last`; the labels are whole multiples of `least` apart.
+    /// Returns an axis from 0 to `last`; the distance between labels is a whole multiple of `least`.
     pub(crate) fn new(last: f64, least: f64) -> Self {
         Self { last, ticks: ticks(last, least) }
     }
 }
 
-/// A chart on two such axes.
+/// Chart with two such axes.
 type Chart<'c, 't> = ChartContext<'c, SVGBackend<'t>, Cartesian2d<Axis, Axis>>;
 
-/// Draws the axes of a chart, with horizontal lines at the labels, what the axes show, and so many decimals upward.
+/// Draws the axes of a chart with their titles, horizontal lines at the labels, and labels with `decimals` decimals on
+/// the vertical axis.
 pub(crate) fn draw_axes(
     chart: &mut Chart<'_, '_>,
     (x, y): (&str, &str),
@@ -56,7 +57,7 @@ impl Ranged for Axis {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        // Thin lines between the labels are not wanted.
+        // No thin lines between the labels.
         if hint.weight().allow_light_points() { Vec::new() } else { self.ticks.clone() }
     }
 
@@ -65,12 +66,12 @@ impl Ranged for Axis {
     }
 }
 
-/// Places of labels on an axis from 0 to `last`, ten at most: multiples of `least` times 1, 2, 5, 10, 20, …
+/// Returns the positions of at most ten labels on an axis from 0 to `last`: multiples of `least` times 1, 2, 5, 10, …
 fn ticks(last: f64, least: f64) -> Vec<f64> {
-    const MOST: f64 = 9.0;
+    const MAX_STEPS: f64 = 9.0;
     let mut step = least;
     for factor in [2.0, 2.5, 2.0].into_iter().cycle() {
-        if last / step < MOST {
+        if last / step < MAX_STEPS {
             break;
         }
         step *= factor;
@@ -94,7 +95,7 @@ mod tests {
     fn values_are_mapped_to_pixels() {
         let axis = Axis::new(8.0, 1.0);
         assert_eq!([0.0, 2.0, 8.0].map(|x| axis.map(&x, (100, 180))), [100, 120, 180]);
-        // Downwards, as rows of pixels are counted.
+        // Pixel rows are counted downward.
         assert_eq!([0.0, 2.0, 8.0].map(|y| axis.map(&y, (180, 100))), [180, 160, 100]);
     }
 }

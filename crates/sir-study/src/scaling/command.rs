@@ -1,4 +1,4 @@
-//! The whole of a measurement: from a pipeline to the files.
+//! The whole measurement, from a pipeline to the files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,29 +19,29 @@ use crate::scaling::options::ScalingOptions;
 use crate::scaling::study::Study;
 use crate::scaling::workers::Workers;
 
-/// Where new directories are made, as those of runs.
+/// Parent of new output directories, the same as for runs.
 const RESULTS: &str = "results";
 
-/// A measurement, and where it was written.
+/// Measurement and its files.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// Times, speed-ups and efficiencies.
     pub study: Study,
-    /// The files that people may want to open.
+    /// Paths of the files.
     pub files: Vec<PathBuf>,
 }
 
-/// Measures, and writes the files; ends early if `stop` becomes true.
+/// Measures the speed-up of a pipeline and writes the files. Ends early if `stop` becomes true.
 ///
 /// # Errors
 ///
-/// If the pipeline is wrong, a run fails or has another result than the others, or files cannot be written.
+/// If the pipeline is invalid, a run fails or has a different result from the others, or files cannot be written.
 pub fn scaling(
     options: &ScalingOptions,
     progress: &dyn Progress,
     stop: Arc<AtomicBool>,
 ) -> Result<Measured, StudyError> {
-    // A mistake in the pipeline is told once, before anything runs.
+    // Reports mistakes in the pipeline once, before anything runs.
     let pipeline = Pipeline::read(&options.pipeline)?;
     let cores = sir_parallel::cores();
     let plan = options.plan(cores);
@@ -49,7 +49,7 @@ pub fn scaling(
     let name = run_name(&pipeline.path);
     let folder = Folder::make(options.out.as_deref(), &format!("{name}-scaling"))?;
     if plan.baseline_added {
-        progress.message(&format!("{} is measured, too: speed-ups are relative to it", Workers::BASELINE));
+        progress.message(&format!("{} is also measured: speed-ups are relative to it", Workers::BASELINE));
     }
     let path = absolute(&pipeline.path);
     let run = &mut |workers| launcher.run(&path, workers, &folder.path);
@@ -61,16 +61,16 @@ pub fn scaling(
     Ok(Measured { study, files: folder.list() })
 }
 
-/// The output directory.
+/// Output directory.
 struct Folder {
-    /// From the root: other processes, perhaps on other machines, get it.
+    /// Absolute path, because it is passed to other processes, perhaps on other machines.
     path: PathBuf,
-    /// Whether it was not there before.
+    /// True if this measurement created it.
     new: bool,
 }
 
 impl Folder {
-    /// The one that was asked for, or a new one of this name.
+    /// Creates the directory `given`, or a new one named `name`.
     fn make(given: Option<&Path>, name: &str) -> Result<Self, StudyError> {
         let Some(path) = given else {
             return Ok(Self { path: absolute(&make_new(Path::new(RESULTS), name)?), new: true });
@@ -83,15 +83,15 @@ impl Folder {
         Ok(Self { path: absolute(path), new })
     }
 
-    /// Removes it after a failure, unless it was there before or has something in it.
+    /// Removes the directory after a failure, unless it existed before or is not empty.
     fn remove(&self) {
         if self.new {
-            // It fails if there is something, and that is as it should be.
+            // Fails if the directory is not empty, as intended.
             let _ = fs::remove_dir(&self.path);
         }
     }
 
-    /// The files in it that people may want to open.
+    /// Returns the paths of the files.
     fn list(&self) -> Vec<PathBuf> {
         let names = ["scaling.svg", "scaling.md", "scaling.csv", files::JSON];
         names.iter().map(|name| self.path.join(name)).collect()

@@ -1,4 +1,4 @@
-//! Why a measurement fails.
+//! The error type of a measurement of speed-ups.
 
 use std::io;
 use std::path::PathBuf;
@@ -8,10 +8,10 @@ use thiserror::Error;
 
 use crate::scaling::workers::Workers;
 
-/// Why speed-ups cannot be measured.
+/// Failure of a measurement of speed-ups.
 #[derive(Debug, Error)]
 pub enum ScalingError {
-    /// Ranks were asked for, but the program cannot talk to them.
+    /// Several ranks were requested, but the program was built without MPI.
     #[error(
         "this program was built without MPI and runs on 1 rank only; build it with \
          `cargo build --release --features mpi`, or measure 1 rank only"
@@ -23,9 +23,9 @@ pub enum ScalingError {
          libopenmpi-dev libclang-dev`), or name another program that starts the processes of a run"
     )]
     Mpirun {
-        /// The program that was tried.
+        /// Program that was tried.
         command: String,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// The program cannot start itself.
@@ -34,50 +34,50 @@ pub enum ScalingError {
     /// A run failed.
     #[error("the run on {workers} failed ({status}):\n{stderr}")]
     Run {
-        /// Its workers.
+        /// Workers of the run.
         workers: Workers,
-        /// How it ended.
+        /// Exit status of the run.
         status: String,
-        /// Kind of its failure.
+        /// Kind of failure.
         kind: ErrorKind,
-        /// What it said.
+        /// Text that the run printed on standard error.
         stderr: String,
     },
-    /// A run ended well, but what it printed is no report.
+    /// A run succeeded, but its output is not a report.
     #[error(
-        "the run on {workers} printed no report ({why}); does the program that starts its processes pass on \
-         their standard output?"
+        "the run on {workers} printed no report ({why}); check that the program that starts its processes passes \
+         on their standard output"
     )]
     NoReport {
-        /// Its workers.
+        /// Workers of the run.
         workers: Workers,
-        /// What is wrong with what it printed.
+        /// Reason why the output is not a report.
         why: String,
     },
-    /// Two runs of one pipeline have different results.
+    /// Two runs of the same pipeline have different results.
     #[error(
-        "{} (repeat {}) gave another result than {} (repeat {}): {what}; a result must not depend on who \
-         computes it: this is a bug of SIR, please report it with the pipeline",
+        "{} (repeat {}) gave a different result from {} (repeat {}): {what}; results must not depend on the \
+         workers: this is a bug of SIR, please report it with the pipeline",
         this.0, this.1, first.0, first.1
     )]
     DifferentResults {
         /// Workers and repeat of the run that differs.
         this: (Workers, usize),
-        /// Those of the first run.
+        /// Workers and repeat of the first run.
         first: (Workers, usize),
-        /// What differs, and in which stage.
+        /// Difference, and the stage that has it.
         what: String,
     },
-    /// Somebody edits what is measured.
+    /// The input was edited during the measurement.
     #[error("the pipeline, its scene or the program was changed during the measurement; start it again")]
     Changed,
-    /// The directory that was asked for has a measurement already.
+    /// The requested directory already holds a measurement.
     #[error("{} holds another scaling study; choose another directory", directory.display())]
     Exists {
         /// The directory.
         directory: PathBuf,
     },
-    /// Ctrl-C or SIGTERM.
+    /// Interrupted by Ctrl-C or SIGTERM.
     #[error("interrupted; nothing was written")]
     Interrupted,
 }

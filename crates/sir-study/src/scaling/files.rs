@@ -1,4 +1,4 @@
-//! The files of a measurement.
+//! The output files of a measurement.
 
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -8,10 +8,10 @@ use crate::scaling::statistics::{Overhead, Part, Spread};
 use crate::scaling::study::{Row, Study};
 use crate::scaling::{plot, table};
 
-/// The file that tells that a directory has a measurement: it is written last.
+/// Name of the JSON file. It is written last, so its presence shows that a directory holds a measurement.
 pub(crate) const JSON: &str = "scaling.json";
 
-/// Writes the measurements as CSV, Markdown, picture and JSON.
+/// Writes the measurements as CSV, Markdown, SVG and JSON.
 ///
 /// # Errors
 ///
@@ -27,14 +27,14 @@ pub fn write(study: &Study, directory: &Path) -> Result<(), StudyError> {
     file(JSON, Ok(json(study)))
 }
 
-/// All numbers, for programs.
+/// Returns all numbers as JSON.
 #[must_use]
 pub fn json(study: &Study) -> String {
-    // A tree of plain structs and finite numbers.
+    // Serializing cannot fail: the study is a tree of plain structs and finite numbers.
     serde_json::to_string_pretty(study).map(|json| json + "\n").unwrap_or_default()
 }
 
-/// One line per combination. What the pipeline does not have is left empty.
+/// Returns all numbers as CSV with a line per combination. Cells of stages that the pipeline does not have are empty.
 #[must_use]
 pub fn csv(study: &Study) -> String {
     let mut names: Vec<String> = ["p", "ranks", "threads", "more_than_cores"].map(str::to_owned).into();

@@ -1,4 +1,4 @@
-//! Running this program again, on other workers.
+//! Starting this program again with other numbers of ranks and threads.
 
 use std::ffi::OsStr;
 use std::io;
@@ -13,24 +13,26 @@ use crate::scaling::workers::Workers;
 use sir_pipeline::ErrorKind;
 use sir_pipeline::report::Report;
 
-/// Open MPI refuses to start as root, as which one is in a container, unless it is told twice. Others ignore
-/// it.
+/// Variables that allow Open MPI to run as root, which is usual in containers. It requires both; other MPI libraries
+/// ignore them.
 const ROOT: [(&str, &str); 2] = [("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")];
 
-/// Checkpoints cost time that has nothing to do with the number of workers: runs whose time counts make none.
+/// Options that turn off checkpoints. They cost time that is unrelated to the number of workers, so timed runs write
+/// none.
 pub(crate) const NO_CHECKPOINTS: [&str; 2] = ["--checkpoint-every", "1000000"];
 
-/// Starts runs of pipelines.
+/// Launcher of runs of pipelines.
 pub(crate) struct Launcher {
     program: PathBuf,
-    /// What starts several processes, with its arguments.
+    /// Command that starts several processes, with its arguments.
     mpirun: Vec<String>,
-    /// Set by Ctrl-C, which the children get, too.
+    /// True after Ctrl-C, which child processes also receive.
     stop: Arc<AtomicBool>,
 }
 
 impl Launcher {
-    /// Checks that runs on so many ranks can be started: better now than after hours on one.
+    /// Checks that runs on up to `most_ranks` ranks can be started, so that this does not fail after hours of runs on
+    /// one rank.
     pub(crate) fn new(mpirun: &str, most_ranks: usize, stop: Arc<AtomicBool>) -> Result<Self, ScalingError> {
         let mpirun: Vec<String> = mpirun.split_whitespace().map(str::to_owned).collect();
         if most_ranks > 1 {
@@ -38,7 +40,7 @@ impl Launcher {
                 return Err(ScalingError::NoMpi);
             }
             let command = mpirun.first().cloned().unwrap_or_default();
-            // What it answers does not matter: not every launcher knows this option.
+            // The answer does not matter, because not every launcher knows this option.
             let tried = Command::new(&command).arg("--version").stdin(Stdio::null()).output();
             tried.map_err(|source| ScalingError::Mpirun { command, source })?;
         }
@@ -46,8 +48,8 @@ impl Launcher {
         Ok(Self { program, mpirun, stop })
     }
 
-    /// Runs a pipeline, whose path is from the root, in a temporary directory inside `folder`, where there is room for the
-    /// real results, too.
+    /// Runs a pipeline, given by its absolute path, in a temporary directory inside `folder`, where there is space for
+    /// the real results, too.
     pub(crate) fn run(&self, pipeline: &Path, workers: Workers, folder: &Path) -> Result<Report, StudyError> {
         self.check_stop()?;
         let directory = tempfile::Builder::new().prefix(".run-").tempdir_in(folder);
@@ -56,7 +58,7 @@ impl Launcher {
         self.execute(workers, &[&words, &NO_CHECKPOINTS.map(OsStr::new)[..]].concat())
     }
 
-    /// Starts this program with some words of a command line that prints a report, such as those of `sir run`.
+    /// Runs this program with the arguments `words`, of a command that prints a report, such as `sir run`.
     pub(crate) fn execute(&self, workers: Workers, words: &[&OsStr]) -> Result<Report, StudyError> {
         self.check_stop()?;
         let output = self.command(workers, words).output();
@@ -78,7 +80,7 @@ impl Launcher {
         }
     }
 
-    /// The command line of one run.
+    /// Returns the command line of one run.
     fn command(&self, workers: Workers, words: &[&OsStr]) -> Command {
         let mut command = match self.mpirun.split_first() {
             Some((mpirun, options)) if workers.ranks.get() > 1 => {
@@ -94,7 +96,7 @@ impl Launcher {
     }
 }
 
-/// The report of a run that has ended, or why there is none.
+/// Returns the report of a run that has ended, or the reason why there is none.
 fn read(workers: Workers, output: &Output) -> Result<Report, ScalingError> {
     if !output.status.success() {
         return Err(ScalingError::Run {
@@ -108,7 +110,7 @@ fn read(workers: Workers, output: &Output) -> Result<Report, ScalingError> {
         .map_err(|error| ScalingError::NoReport { workers, why: error.to_string() })
 }
 
-/// Returns the kind of failure that an exit code of `sir` stands for; `sir --help` lists them.
+/// Returns the kind of failure for an exit code of `sir`; `sir --help` lists the codes.
 fn kind(status: ExitStatus) -> ErrorKind {
     match status.code() {
         Some(2) => ErrorKind::Usage,
@@ -163,16 +165,16 @@ mod tests {
     #[test]
     fn what_goes_wrong_in_a_run_is_told() {
         let folder = tempfile::tempdir().unwrap();
-        let told = |launcher: &Launcher| {
+        let error_of = |launcher: &Launcher| {
             launcher.run(Path::new("/a/room.ron"), workers(1), folder.path()).unwrap_err()
         };
         assert!(
-            sir_pipeline::chain(&told(&launcher("/no/such/program")))
+            sir_pipeline::chain(&error_of(&launcher("/no/such/program")))
                 .starts_with("cannot start this program again: ")
         );
         let stopped = launcher("true");
         stopped.stop.store(true, Relaxed);
-        assert_eq!(told(&stopped).kind(), ErrorKind::Interrupted);
+        assert_eq!(error_of(&stopped).kind(), ErrorKind::Interrupted);
         // Every run leaves nothing behind.
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }

@@ -1,4 +1,4 @@
-//! Lines with marks, and the legend that explains them.
+//! Lines with marks, and their legend.
 
 use plotters::coord::Shift;
 use plotters::drawing::DrawingAreaErrorKind;
@@ -8,31 +8,31 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::scaling::series::{Kind, Stage};
 
-/// The picture.
+/// Drawing area.
 pub(crate) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Why something cannot be drawn.
+/// Error of drawing.
 pub(crate) type Failure = DrawingAreaErrorKind<std::io::Error>;
 
-/// A place on the picture, in pixels from its upper left corner.
+/// Position in pixels from the upper left corner of the drawing.
 pub(crate) type Pixel = (i32, i32);
 
-/// Of the ideal lines, and of that which shows the number of cores.
+/// Color of the ideal lines and of the line at the number of cores.
 pub(crate) const GRAY: RGBColor = RGBColor(150, 150, 150);
 
-/// Of letters and axes.
+/// Color of text and axes.
 pub(crate) const INK: RGBColor = RGBColor(50, 50, 50);
 
-/// Height of a row of the legend.
+/// Height of a row of the legend, in pixels.
 pub(crate) const ROW: i32 = 24;
 
-/// Distance from one column of the legend to the next.
+/// Width of a column of the legend, in pixels.
 const COLUMN: i32 = 110;
 
-/// Half the length of the lines in the legend.
+/// Half the length of the lines in the legend, in pixels.
 const SAMPLE: i32 = 24;
 
-/// Draws the points of a series, and the line that joins them.
+/// Draws the line that joins the points of a series.
 pub(crate) fn draw_line(
     canvas: &Canvas<'_>,
     points: &[Pixel],
@@ -47,31 +47,31 @@ pub(crate) fn draw_line(
     }
 }
 
-/// Draws a mark. Those of ranks are empty, so that one sees what is below them.
+/// Draws a mark. Marks of ranks are outlines, so that what is below them stays visible.
 pub(crate) fn draw_mark(canvas: &Canvas<'_>, at: Pixel, kind: &Kind, stage: &Stage) -> Result<(), Failure> {
     if kind.mark.is_empty() {
         return canvas.draw(&Circle::new(at, 3 + stage.width as i32 / 2, stage.color.filled()));
     }
-    // Two corners more than there are: the line ends where it has begun, and goes round the first corner.
+    // Repeats the first two corners: the first closes the outline, the second joins its ends.
     let corners = kind.mark.iter().chain(kind.mark.iter().take(2)).map(|(x, y)| (at.0 + x, at.1 + y));
     canvas.draw(&PathElement::new(corners.collect::<Vec<_>>(), stage.color.stroke_width(2)))
 }
 
-/// Writes a text whose middle, or whose left end, is at a place.
+/// Draws a text whose center or left end is at a position.
 pub(crate) fn write(
     canvas: &Canvas<'_>,
     text: &str,
     at: Pixel,
-    centerd: bool,
+    centered: bool,
     size: i32,
     color: RGBColor,
 ) -> Result<(), Failure> {
     let style = TextStyle::from(("sans-serif", size).into_font()).color(&color);
-    let anchor = if centerd { HPos::Center } else { HPos::Left };
+    let anchor = if centered { HPos::Center } else { HPos::Left };
     canvas.draw(&Text::new(text.to_owned(), at, style.pos(Pos::new(anchor, VPos::Center))))
 }
 
-/// Draws the legend, centerd below `top`: a column for every stage, a row for every kind of workers.
+/// Draws the legend, centered below `top`: a column for each stage, a row for each kind of workers.
 pub(crate) fn draw_legend(
     canvas: &Canvas<'_>,
     top: i32,
@@ -79,7 +79,7 @@ pub(crate) fn draw_legend(
     kinds: &[Kind],
 ) -> Result<(), Failure> {
     let letters = kinds.iter().map(|kind| kind.label.len() as i32).max().unwrap_or(0);
-    // Columns after the names of the kinds: the stages, and the ideal.
+    // After the names of the kinds, there is a column for each stage and one for the ideal.
     let names = 7 * letters + 20;
     let width = names + COLUMN * (stages.len() as i32 + 1);
     let left = (canvas.dim_in_pixel().0 as i32 - width) / 2;

@@ -1,4 +1,4 @@
-//! Measuring: all runs of a plan, one after the other.
+//! The measurement: all runs of a plan, one after the other.
 
 use crate::error::StudyError;
 use crate::scaling::same;
@@ -10,13 +10,13 @@ use sir_pipeline::format::duration;
 use sir_pipeline::report::Report;
 use sir_pipeline::stopwatch::Stopwatch;
 
-/// Makes the runs of a plan with `run`, one at a time and interleaved, and evaluates their times. `name` is
-/// that of the pipeline, `cores` the number of cores of the machine.
+/// Makes the runs of a plan by calling `run`, one at a time and interleaved, and evaluates their times. `name` is the
+/// name of the pipeline, `cores` the number of cores of the machine.
 ///
 /// # Errors
 ///
-/// Those of `run`, or [`ScalingError::DifferentResults`](crate::scaling::error::ScalingError::DifferentResults) if the result
-/// of a run is not that of the first one.
+/// Those of `run`, or [`ScalingError::DifferentResults`](crate::scaling::error::ScalingError::DifferentResults) if the
+/// result of a run differs from that of the first one.
 pub fn measure(
     name: &str,
     cores: usize,
@@ -49,12 +49,12 @@ pub fn measure(
     Ok(Study::new(name, cores, plan, &timings))
 }
 
-/// Time that is left \[s\], if every run takes as long as in the last round; unknown in the first one. `None`
-/// at the end, too.
+/// Estimates the remaining time \[s\], assuming that every run takes as long as in the last round. Returns `None` in
+/// the first round, where it is unknown, and at the end.
 fn remaining(seconds: &[f64], round: usize, total: usize) -> Option<f64> {
     let last = seconds.len().checked_sub(round).map(|start| &seconds[start..])?;
     let left = total.saturating_sub(seconds.len());
-    // The last round began with what comes next.
+    // The oldest of the last `round` runs had the combination that comes next.
     (left > 0).then(|| last.iter().cycle().take(left).sum())
 }
 

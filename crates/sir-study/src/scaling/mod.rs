@@ -1,15 +1,14 @@
-//! How much faster more workers are: `sir scaling`.
+//! Speed-up by more threads and ranks: `sir scaling`.
 //!
-//! As Martínez, Forés and Martín (2009) do, the speed-up `S(p) = T(1) / T(p)` and the efficiency
-//! `E(p) = S(p) / p` of `p` workers are reported for the first shot, for multipath, and for the whole run.
+//! As in Martínez, Forés and Martín (2009), the speed-up `S(p) = T(1) / T(p)` and the efficiency `E(p) = S(p) / p` of
+//! `p` workers are reported for the first shot, for multipath, and for the whole run.
 //!
-//! The program runs *itself*, once per measurement, and reads the report of the run: memory that an earlier
-//! run left warm, or threads that it left behind, cannot help or hinder a later one, and ranks are started as
-//! they always are. As every run makes the same result, bit by bit, a measurement is a test, too: it fails if
-//! one does not.
+//! The program runs *itself* once per measurement and reads the report of the run. Warm memory or threads left by an
+//! earlier run neither help nor hinder a later one, and ranks are started as usual. Since every run must give the same
+//! result, bit by bit, a measurement is also a test: it fails if a result differs.
 //!
-//! * [`scaling`]: the whole of it. [`Plan`]: which combinations of ranks and threads, and in which order.
-//! * [`measure`]: makes the runs, by a function that is given to it.
+//! * [`scaling`]: the whole measurement. [`Plan`]: the combinations of ranks and threads, and their order.
+//! * [`measure`]: makes the runs by calling a function.
 //! * [`Study`]: times, speed-ups and efficiencies, as [`text`], [`markdown`], [`csv`], [`json`] and [`svg`].
 
 pub(crate) mod axis;

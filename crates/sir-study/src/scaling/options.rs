@@ -1,15 +1,15 @@
-//! What to measure.
+//! The options of a measurement of speed-ups.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use crate::scaling::workers::Plan;
 
-/// What starts several processes on one machine. Without the options, Open MPI refuses more ranks than cores,
-/// and binds each rank, with all of its threads, to one core.
+/// Command that starts several processes on one machine. Without these options, Open MPI refuses more ranks than cores,
+/// and binds each rank, with all its threads, to one core.
 pub const MPIRUN: &str = "mpirun --oversubscribe --bind-to none";
 
-/// What to measure.
+/// Options of a measurement of speed-ups.
 #[derive(Clone, Debug)]
 pub struct ScalingOptions {
     /// The pipeline file.
@@ -18,16 +18,16 @@ pub struct ScalingOptions {
     pub threads: Vec<NonZeroUsize>,
     /// Numbers of processes. Every number of ranks is run with every number of threads.
     pub ranks: Vec<NonZeroUsize>,
-    /// Runs of each combination.
+    /// Number of runs of each combination.
     pub repeats: NonZeroUsize,
-    /// Where to write; `None` for a new directory `results/NAME-scaling`.
+    /// Output directory; `None` for a new directory `results/NAME-scaling`.
     pub out: Option<PathBuf>,
-    /// What starts several processes; it is split at spaces, and `-n RANKS sir run …` is added.
+    /// Command that starts several processes. It is split at spaces, and `-n RANKS sir run …` is appended.
     pub mpirun: String,
 }
 
 impl ScalingOptions {
-    /// What they ask for, on a machine with so many cores.
+    /// Returns the plan of the runs on a machine with `cores` cores.
     #[must_use]
     pub fn plan(&self, cores: NonZeroUsize) -> Plan {
         if self.threads.is_empty() {
@@ -38,7 +38,7 @@ impl ScalingOptions {
     }
 }
 
-/// 1, 2, 4, … and `last`.
+/// Returns the powers of two below `last`, followed by `last`.
 fn powers_of_two(last: NonZeroUsize) -> Vec<NonZeroUsize> {
     let powers = std::iter::successors(Some(NonZeroUsize::MIN), |n| {
         n.checked_mul(NonZeroUsize::MIN.saturating_add(1))

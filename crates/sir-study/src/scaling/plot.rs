@@ -1,4 +1,4 @@
-//! The picture: speed-up and efficiency over the number of workers.
+//! The diagrams of speed-up and efficiency over the number of workers.
 
 use std::io;
 
@@ -18,23 +18,23 @@ const WIDTH: u32 = 1000;
 const TITLE: u32 = 44;
 const PANELS: u32 = 400;
 
-/// How far axes go beyond what they show.
-const ROOM: f64 = 1.06;
+/// Length of axes relative to the largest value.
+const MARGIN: f64 = 1.06;
 
-/// The speed-ups, and beside them the efficiencies, as SVG.
+/// Draws the speed-ups and, next to them, the efficiencies as SVG.
 ///
 /// # Errors
 ///
-/// None that are known: it is drawn in memory.
+/// No errors are known, because drawing happens in memory.
 pub fn svg(study: &Study) -> io::Result<String> {
     svg_beside(study, &[], "")
 }
 
-/// As [`svg`], with some points that others have measured, and their name.
+/// Does the same as [`svg`], with additional points `others` that are labeled `name`.
 ///
 /// # Errors
 ///
-/// As [`svg`].
+/// The same as [`svg`].
 pub fn svg_beside(study: &Study, others: &[Row], name: &str) -> io::Result<String> {
     let mut text = String::new();
     draw(study, others, name, &mut text).map_err(io::Error::other)?;
@@ -63,13 +63,13 @@ fn draw(study: &Study, others: &[Row], name: &str, text: &mut String) -> Result<
         label: "speed-up S(p) = T(1) / T(p)",
         value: |part| part.speed_up,
         ideal: [(0.0, 0.0), (most, most)],
-        last: ROOM * most,
+        last: MARGIN * most,
         least_step: 1.0,
     };
     let efficiencies = Panel {
         label: "efficiency E(p) = S(p) / p",
         value: |part| part.efficiency,
-        ideal: [(0.0, 1.0), (ROOM * most, 1.0)],
+        ideal: [(0.0, 1.0), (MARGIN * most, 1.0)],
         last: 1.1,
         least_step: 0.2,
     };
@@ -81,18 +81,18 @@ fn draw(study: &Study, others: &[Row], name: &str, text: &mut String) -> Result<
 
 /// One of the two diagrams.
 struct Panel {
-    /// Beside the vertical axis.
+    /// Title of the vertical axis.
     label: &'static str,
     value: fn(Part) -> f64,
     ideal: [(f64, f64); 2],
-    /// Where the vertical axis ends, unless there are larger values.
+    /// End of the vertical axis, unless there are larger values.
     last: f64,
     /// Smallest distance of the labels on the vertical axis.
     least_step: f64,
 }
 
 impl Panel {
-    /// Draws it into `area`, which is a part of `canvas`.
+    /// Draws the diagram into `area`, which is a part of `canvas`.
     fn draw(
         &self,
         (cores, rows): (usize, &[Row]),
@@ -103,8 +103,8 @@ impl Panel {
     ) -> Result<(), Failure> {
         let value = |stage: &Stage, row: usize| (stage.part)(&rows[row]).map(self.value);
         let all = (0..rows.len()).flat_map(|row| stages.iter().filter_map(move |stage| value(stage, row)));
-        let y_last = all.fold(self.last, |last, y| last.max(ROOM * y));
-        let x_last = ROOM * rows.iter().map(|row| row.p).max().unwrap_or(1) as f64;
+        let y_last = all.fold(self.last, |last, y| last.max(MARGIN * y));
+        let x_last = MARGIN * rows.iter().map(|row| row.p).max().unwrap_or(1) as f64;
         let mut chart = ChartBuilder::on(area)
             .margin(14)
             .x_label_area_size(48)
@@ -116,7 +116,7 @@ impl Panel {
         let ideal = self.ideal.map(|(x, y)| at(x, y));
         canvas.draw(&PathElement::new(ideal.to_vec(), GRAY.stroke_width(1)))?;
         let place = cores as f64;
-        if place < x_last / ROOM {
+        if place < x_last / MARGIN {
             let (x, top) = at(place, y_last);
             let line = vec![(x, top + 18), at(place, 0.0)];
             canvas.draw(&DashedPathElement::new(line, 2, 3, GRAY.stroke_width(1)))?;
@@ -130,7 +130,7 @@ impl Panel {
         for (stage, kind) in series() {
             draw_line(canvas, &points(stage, &kind.rows), kind, stage)?;
         }
-        // On top of all lines.
+        // Marks are drawn after all lines, on top of them.
         for (stage, kind) in series() {
             for point in points(stage, &kind.marked) {
                 draw_mark(canvas, point, kind, stage)?;

@@ -1,10 +1,10 @@
-//! All runs of a measurement must have the same result.
+//! The check that all runs of a measurement have the same result.
 
 use crate::scaling::error::ScalingError;
 use crate::scaling::workers::Workers;
 use sir_pipeline::report::{Report, StageReport};
 
-/// A run: its workers, and which repeat it is, from 1.
+/// Identification of a run: its workers and its repeat, from 1.
 pub(crate) type Which = (Workers, usize);
 
 /// Checks that a run has the same result as the first one.
@@ -17,7 +17,7 @@ pub(crate) fn check(first: (Which, &Report), this: (Which, &Report)) -> Result<(
     }
     let different = |what| Err(ScalingError::DifferentResults { this: this.0, first: first.0, what });
     if a.stages.len() != b.stages.len() {
-        return different("it has another number of stages".into());
+        return different("it has a different number of stages".into());
     }
     match a.stages.iter().zip(&b.stages).find_map(|(a, b)| difference(a, b)) {
         Some(what) => different(what),
@@ -25,7 +25,7 @@ pub(crate) fn check(first: (Which, &Report), this: (Which, &Report)) -> Result<(
     }
 }
 
-/// What is different in a stage, besides the time.
+/// Returns the difference between two stages, apart from the time, if there is one.
 fn difference(a: &StageReport, b: &StageReport) -> Option<String> {
     if a.name != b.name {
         return Some(format!("`{}` instead of `{}`", b.name, a.name));
@@ -37,7 +37,7 @@ fn difference(a: &StageReport, b: &StageReport) -> Option<String> {
             format!("balance {:?} instead of {:?}", b.balance, a.balance)
         }
         (lines_a, lines_b) if (lines_a, &a.light, a.repeats) != (lines_b, &b.light, b.repeats) => {
-            "the same tallies and balance, but other counts or errors".into()
+            "the same tallies and balance, but different counts or errors".into()
         }
         _ => return a.stages.iter().zip(&b.stages).find_map(|(a, b)| difference(a, b)),
     };

@@ -1,4 +1,4 @@
-//! What the pictures show: stages of the pipeline, and kinds of workers.
+//! The series of the diagrams: stages of the pipeline, and kinds of workers.
 
 use plotters::style::RGBColor;
 
@@ -6,12 +6,14 @@ use crate::scaling::statistics::Part;
 use crate::scaling::study::{Row, Study};
 use crate::scaling::workers::{Workers, counted};
 
-/// A part of the run, and how its lines look. The colors differ for the color-blind, too (Okabe and Ito).
+/// Part of the run, with the style of its lines. The colors are distinguishable for color-blind people, too (Okabe and
+/// Ito).
 #[derive(Clone, Copy)]
 pub(crate) struct Stage {
     pub(crate) name: &'static str,
     pub(crate) color: RGBColor,
-    /// Width of its lines in pixels. The whole run is often where one of the stages is, and then below it.
+    /// Width of the lines in pixels. The line of the whole run often coincides with that of a stage, and is then below
+    /// it.
     pub(crate) width: u32,
     pub(crate) part: fn(&Row) -> Option<Part>,
 }
@@ -22,38 +24,38 @@ const STAGES: [Stage; 3] = [
     Stage { name: "whole run", color: RGBColor(90, 90, 90), width: 4, part: |row| Some(row.whole) },
 ];
 
-/// The parts that the pipeline has.
+/// Returns the parts that the pipeline has.
 pub(crate) fn stages(study: &Study) -> Vec<Stage> {
     STAGES.into_iter().filter(|stage| study.rows.iter().any(|row| (stage.part)(row).is_some())).collect()
 }
 
-/// Combinations that are joined by a line: from one to the next only the number of threads changes, or that
-/// of ranks.
+/// Combinations that a line joins. From one to the next, only the number of threads changes, or only the number of
+/// ranks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Kind {
     pub(crate) label: String,
-    /// Numbers of rows, fewest workers first.
+    /// Indices of rows, fewest workers first.
     pub(crate) rows: Vec<usize>,
-    /// Those of the rows that have a mark.
+    /// Indices of the rows that have a mark.
     pub(crate) marked: Vec<usize>,
     /// Corners of the mark at each point; a disc if there are none.
     pub(crate) mark: &'static [(i32, i32)],
-    /// Ranks have dashed lines.
+    /// True for dashed lines, which ranks have.
     pub(crate) dashed: bool,
 }
 
-/// Two strokes across each other.
+/// Cross: two strokes.
 const CROSS: &[(i32, i32)] = &[(-6, -6), (6, 6), (0, 0), (6, -6), (-6, 6), (0, 0)];
 
 impl Kind {
-    /// What others have measured: crosses.
+    /// Returns a series of published measurements, drawn as crosses.
     pub(crate) fn published(name: &str, rows: std::ops::Range<usize>) -> Self {
         let rows: Vec<usize> = rows.collect();
         Self { label: name.into(), rows: rows.clone(), marked: rows, mark: CROSS, dashed: true }
     }
 }
 
-/// A triangle, a square, a diamond, and a triangle on its head.
+/// Triangle, square, diamond, and inverted triangle.
 const MARKS: [&[(i32, i32)]; 4] = [
     &[(0, -6), (6, 5), (-6, 5)],
     &[(-4, -4), (4, -4), (4, 4), (-4, 4)],
@@ -61,7 +63,7 @@ const MARKS: [&[(i32, i32)]; 4] = [
     &[(0, 6), (6, -5), (-6, -5)],
 ];
 
-/// One kind for the threads of one rank, and one for the ranks of each number of threads.
+/// Returns a kind for the threads of one rank, and a kind for the ranks of each number of threads.
 pub(crate) fn kinds(study: &Study) -> Vec<Kind> {
     let rows = |wanted: &dyn Fn(Workers) -> bool| -> Vec<usize> {
         let rows = study.rows.iter().enumerate();
@@ -72,7 +74,7 @@ pub(crate) fn kinds(study: &Study) -> Vec<Kind> {
     let mut threads: Vec<usize> = workers.filter(|w| w.ranks.get() > 1).map(|w| w.threads.get()).collect();
     threads.sort_unstable();
     threads.dedup();
-    // The baseline alone says nothing of threads.
+    // The baseline alone is no series of threads.
     let alone = (one_rank.len() > 1 || threads.is_empty()).then(|| Kind {
         label: "threads".into(),
         rows: one_rank.clone(),
@@ -84,7 +86,7 @@ pub(crate) fn kinds(study: &Study) -> Vec<Kind> {
     let ranks = threads.iter().zip(MARKS.iter().cycle()).map(|(&t, mark)| Kind {
         label: if t == 1 { "ranks".into() } else { format!("ranks of {}", counted(t, "thread")) },
         rows: rows(&|workers| workers.threads.get() == t),
-        // A line begins at one rank, where the mark is that of threads.
+        // A line begins at one rank, where the mark of threads is drawn.
         marked: rows(&|workers| workers.threads.get() == t && workers.ranks.get() >= least_ranks),
         mark,
         dashed: true,

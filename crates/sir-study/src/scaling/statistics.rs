@@ -1,20 +1,20 @@
-//! Medians, speed-ups and efficiencies.
+//! Statistics of measured times: medians, speed-ups and efficiencies.
 
 use serde::Serialize;
 
-/// Several measurements of one thing.
+/// Summary of several measurements of the same quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// The one in the middle, or the mean of the two in the middle.
+    /// Median: the middle value, or the mean of the two middle values.
     pub median: f64,
-    /// The smallest.
+    /// Smallest value.
     pub min: f64,
-    /// The largest.
+    /// Largest value.
     pub max: f64,
 }
 
 impl Spread {
-    /// Of some values; `None` if there are none.
+    /// Summarizes values; returns `None` if there are none.
     #[must_use]
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.into_iter().collect();
@@ -25,22 +25,22 @@ impl Spread {
     }
 }
 
-/// How a part of the run scales.
+/// Time, speed-up and efficiency of a part of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Part {
-    /// Its time `T(p)` \[s\].
+    /// Time `T(p)` \[s\].
     pub seconds: Spread,
-    /// `S(p) = T(1) / T(p)`, of medians.
+    /// Speed-up `S(p) = T(1) / T(p)`, from medians.
     pub speed_up: f64,
-    /// `E(p) = S(p) / p`.
+    /// Efficiency `E(p) = S(p) / p`.
     pub efficiency: f64,
 }
 
 impl Part {
-    /// Compares a time with that of one worker.
+    /// Computes speed-up and efficiency of `p` workers from the time `one` of one worker.
     #[must_use]
     pub fn new(one: Spread, seconds: Spread, p: usize) -> Self {
-        // Clocks tick in nanoseconds: a time of nothing is no reason for a speed-up of infinity.
+        // Times are at least a nanosecond, the resolution of clocks, so that a time of zero gives no infinite speed-up.
         let speed_up = one.median.max(1e-9) / seconds.median.max(1e-9);
         Self { seconds, speed_up, efficiency: speed_up / p.max(1) as f64 }
     }
@@ -49,14 +49,14 @@ impl Part {
 /// Time that is not spent on lines.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Overhead {
-    /// Its time \[s\].
+    /// Time \[s\].
     pub seconds: Spread,
-    /// Its share of the time of the whole run, of medians.
+    /// Share of the time in the whole run, from medians.
     pub share: f64,
 }
 
 impl Overhead {
-    /// Compares a time with that of the whole run.
+    /// Computes the share of a time in the time of the whole run.
     #[must_use]
     pub fn new(seconds: Spread, whole: Spread) -> Self {
         Self { seconds, share: seconds.median / whole.median.max(1e-9) }

@@ -1,4 +1,4 @@
-//! All numbers of a measurement.
+//! The numbers of a measurement.
 
 use serde::Serialize;
 
@@ -10,23 +10,23 @@ use sir_pipeline::report::Report;
 /// Version of the layout of `scaling.json`.
 pub const VERSION: u32 = 1;
 
-/// How long the parts of one run took \[s\].
+/// Times of the parts of one run \[s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
     /// The first shot, if the pipeline has one.
     pub first_shot: Option<f64>,
     /// Multipath, if the pipeline has it.
     pub multipath: Option<f64>,
-    /// Everything, from reading the scene to writing the files.
+    /// The whole run, from reading the scene to writing the files.
     pub whole: f64,
-    /// In both stages together: time in which no lines were traced.
+    /// Time of both stages together in which no lines were traced.
     pub sequential: f64,
-    /// In both stages together: time for exchanging numbers with other ranks, and for waiting for them.
+    /// Time of both stages together for exchanging numbers with other ranks, and for waiting for them.
     pub communication: f64,
 }
 
 impl Timing {
-    /// What a report says.
+    /// Takes the times from a report.
     #[must_use]
     pub fn of(report: &Report) -> Self {
         let all = report.stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.stages));
@@ -42,15 +42,15 @@ impl Timing {
     }
 }
 
-/// The measurements of one combination.
+/// Measurements of one combination.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Number of workers `p`.
     pub p: usize,
-    /// What they are.
+    /// Ranks and threads.
     #[serde(flatten)]
     pub workers: Workers,
-    /// Whether there are more of them than the machine has cores.
+    /// True if there are more workers than the machine has cores.
     pub more_than_cores: bool,
     /// The first shot, if the pipeline has one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,30 +66,30 @@ pub struct Row {
     pub communication: Overhead,
 }
 
-/// What `sir scaling` finds out.
+/// Result of `sir scaling`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Study {
     /// Version of this layout: [`VERSION`].
     pub version: u32,
     /// Name of the pipeline.
     pub name: String,
-    /// Cores of the machine.
+    /// Number of cores of the machine.
     pub cores: usize,
-    /// Runs of each combination.
+    /// Number of runs of each combination.
     pub repeats: usize,
-    /// Whose times are `T(1)`.
+    /// Workers whose times are `T(1)`.
     pub baseline: Workers,
-    /// Whether nobody asked for the baseline.
+    /// True if the baseline was added although it was not requested.
     pub baseline_added: bool,
-    /// The combinations, fewest workers first.
+    /// Measurements of all combinations, fewest workers first.
     pub rows: Vec<Row>,
 }
 
 impl Study {
-    /// Evaluates the times of all runs: those of each combination of the plan, in its order.
+    /// Evaluates the times of all runs. `timings` has those of each combination, in the order of the plan.
     #[must_use]
     pub fn new(name: &str, cores: usize, plan: &Plan, timings: &[Vec<Timing>]) -> Self {
-        // The plan begins with the baseline.
+        // The first combination of the plan is the baseline.
         let one = timings.first().map_or(&[][..], Vec::as_slice);
         let rows = plan.workers.iter().zip(timings);
         Self {
@@ -103,7 +103,7 @@ impl Study {
         }
     }
 
-    /// What a reader of the numbers has to know, a sentence or two each.
+    /// Returns notes that explain the numbers, a sentence or two each.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let times = match self.repeats {
@@ -121,7 +121,7 @@ impl Study {
         ]
     }
 
-    /// What the mark at rows with more workers than cores means, if there are any.
+    /// Returns the meaning of the mark at rows with more workers than cores, if there are such rows.
     #[must_use]
     pub fn mark(&self) -> Option<&'static str> {
         let marked = self.rows.iter().any(|row| row.more_than_cores);
@@ -130,10 +130,10 @@ impl Study {
     }
 }
 
-/// Marks rows with more workers than cores.
+/// Mark of rows with more workers than cores.
 pub(super) const MARK: &str = "*";
 
-/// Of one of the times of some runs; `None` if they do not have it.
+/// Summarizes one of the times of some runs; returns `None` if no run has it.
 fn spread(timings: &[Timing], time: fn(&Timing) -> Option<f64>) -> Option<Spread> {
     Spread::of(timings.iter().filter_map(time))
 }

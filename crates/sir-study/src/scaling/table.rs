@@ -1,22 +1,22 @@
-//! The measurements as a table, for people.
+//! The measurements as tables for terminals and in Markdown.
 
 use crate::scaling::series::stages;
 use crate::scaling::statistics::{Overhead, Part};
 use crate::scaling::study::{MARK, Row, Study};
 
-/// Columns about one thing.
+/// Group of columns about the same part of the run.
 struct Group {
     name: &'static str,
     columns: Vec<Column>,
 }
 
-/// A column of a table.
+/// Column of a table.
 struct Column {
     name: &'static str,
     cells: Vec<String>,
 }
 
-/// A table of fixed width with notes under it, for terminals.
+/// Returns a table of fixed width for terminals, with notes below it.
 #[must_use]
 pub fn text(study: &Study) -> String {
     let blocks: Vec<Vec<String>> = groups(study).iter().map(block).collect();
@@ -34,7 +34,7 @@ pub fn text(study: &Study) -> String {
     text
 }
 
-/// The lines of a group, all of one width: what it is about, the names of its columns, and the rows.
+/// Returns the lines of a group, all of the same width: its name, the names of its columns, and the rows.
 fn block(group: &Group) -> Vec<String> {
     let columns: Vec<Vec<String>> = group.columns.iter().map(padded).collect();
     let rows = columns.first().map_or(0, Vec::len);
@@ -47,14 +47,14 @@ fn block(group: &Group) -> Vec<String> {
     std::iter::once(title).chain(lines.iter().map(|line| format!("{line:>width$}"))).collect()
 }
 
-/// The name and the cells of a column, all of one width.
+/// Returns the name and the cells of a column, padded to the same width.
 fn padded(column: &Column) -> Vec<String> {
     let texts = || std::iter::once(column.name).chain(column.cells.iter().map(String::as_str));
     let width = texts().map(length).max().unwrap_or(0);
     texts().map(|text| format!("{text:>width$}")).collect()
 }
 
-/// The same table and notes in Markdown.
+/// Returns the table of [`text`] with its notes in Markdown.
 #[must_use]
 pub fn markdown(study: &Study) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
@@ -78,7 +78,7 @@ pub fn markdown(study: &Study) -> String {
 fn groups(study: &Study) -> Vec<Group> {
     let column =
         |name, cell: &dyn Fn(&Row) -> String| Column { name, cells: study.rows.iter().map(cell).collect() };
-    // Where some numbers have a mark, the others keep its place free.
+    // If some numbers have a mark, the others leave its place blank.
     let blank = if study.mark().is_some() { " " } else { "" };
     let mut groups = vec![Group {
         name: "",
@@ -112,7 +112,7 @@ fn groups(study: &Study) -> Vec<Group> {
     groups
 }
 
-/// A time with four digits, but no finer than a tenth of a millisecond.
+/// Formats a time with four digits, but no finer than a tenth of a millisecond.
 pub(crate) fn seconds(seconds: f64) -> String {
     let decimals = match seconds {
         s if s < 1.0 => 4,

@@ -1,24 +1,24 @@
-//! Who shares the work of a run, and which combinations are measured.
+//! Numbers of ranks and threads, and the combinations that are measured.
 
 use std::fmt;
 use std::num::NonZeroUsize;
 
 use serde::Serialize;
 
-/// Ranks, and threads of each.
+/// Number of ranks, and of threads of each rank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Workers {
-    /// Processes that talk by MPI; one without it.
+    /// Number of processes that communicate by MPI; 1 without MPI.
     pub ranks: NonZeroUsize,
-    /// Threads of each process.
+    /// Number of threads of each process.
     pub threads: NonZeroUsize,
 }
 
 impl Workers {
-    /// One rank with one thread, to which all others are compared.
+    /// One rank with one thread, with which all others are compared.
     pub const BASELINE: Self = Self { ranks: NonZeroUsize::MIN, threads: NonZeroUsize::MIN };
 
-    /// Number of workers `p`: all threads of all ranks.
+    /// Returns the number of workers `p`: all threads of all ranks.
     #[must_use]
     pub fn count(self) -> usize {
         self.ranks.get().saturating_mul(self.threads.get())
@@ -32,31 +32,31 @@ impl fmt::Display for Workers {
     }
 }
 
-/// A number of things, such as `1 thread` or `2 threads`.
+/// Formats a number of things, such as `1 thread` or `2 threads`.
 pub(crate) fn counted(n: usize, thing: &str) -> String {
     format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
-/// Which combinations are measured, and how often.
+/// Combinations of ranks and threads to measure, and the number of repeats.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// The combinations, fewest workers first, each of them once. The first is [`Workers::BASELINE`].
+    /// Unique combinations, fewest workers first. The first one is [`Workers::BASELINE`].
     pub workers: Vec<Workers>,
-    /// Whether the baseline is there although nobody asked for it.
+    /// True if the baseline was added although it was not requested.
     pub baseline_added: bool,
-    /// Runs of each combination.
+    /// Number of runs of each combination.
     pub repeats: NonZeroUsize,
 }
 
 impl Plan {
-    /// Every number of ranks with every number of threads, and the baseline.
+    /// Combines every number of ranks with every number of threads, and adds the baseline.
     #[must_use]
     pub fn new(ranks: &[NonZeroUsize], threads: &[NonZeroUsize], repeats: NonZeroUsize) -> Self {
         let pairs = ranks.iter().flat_map(|&ranks| threads.iter().map(move |&threads| (ranks, threads)));
         Self::of(pairs.map(|(ranks, threads)| Workers { ranks, threads }).collect(), repeats)
     }
 
-    /// Every number of threads on one rank, every number of ranks with one thread each, and the baseline.
+    /// Combines every number of threads with one rank and every number of ranks with one thread, and adds the baseline.
     #[must_use]
     pub fn each(ranks: &[NonZeroUsize], threads: &[NonZeroUsize], repeats: NonZeroUsize) -> Self {
         let one = NonZeroUsize::MIN;
@@ -75,14 +75,14 @@ impl Plan {
         Self { workers, baseline_added, repeats }
     }
 
-    /// The largest number of ranks.
+    /// Returns the largest number of ranks.
     #[must_use]
     pub fn most_ranks(&self) -> usize {
         self.workers.iter().map(|w| w.ranks.get()).max().unwrap_or(1)
     }
 
-    /// All runs, interleaved: every combination once, then every one again. A machine that becomes slower
-    /// while it is measured slows down all of them.
+    /// Returns all runs as pairs of repeat and index of the combination. They are interleaved, every combination once
+    /// per repeat, so that a machine that becomes slower during the measurement slows down all combinations.
     pub fn runs(&self) -> impl Iterator<Item = (usize, usize)> {
         let combinations = self.workers.len();
         (0..self.repeats.get()).flat_map(move |repeat| (0..combinations).map(move |index| (repeat, index)))

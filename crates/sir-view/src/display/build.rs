@@ -1,4 +1,4 @@
-//! How the display mesh is made of patches.
+//! Construction of the display mesh from patches.
 
 use std::sync::OnceLock;
 
@@ -12,11 +12,11 @@ use crate::display::seams::Seams;
 use crate::display::smooth::{Groups, RimPiece};
 
 impl<'a> DisplayMesh<'a> {
-    /// Makes the mesh for a solution: the irradiance `E` \[W/m²\] of every [`SideId`](sir_mesh::SideId).
+    /// Creates the mesh for a solution: the irradiance `E` \[W/m²\] of every [`SideId`](sir_mesh::SideId).
     ///
     /// # Panics
     ///
-    /// If `irradiance` has not one value for every side of `mesh`.
+    /// If `irradiance` does not have one value for every side of `mesh`.
     #[must_use]
     pub fn new(scene: &'a Scene, mesh: &'a PatchMesh, irradiance: &'a [Rgb]) -> Self {
         assert_eq!(irradiance.len(), mesh.side_count(), "one irradiance for every side of the mesh");
@@ -89,7 +89,7 @@ impl<'a> DisplayMesh<'a> {
         self.first_pieces.push(self.piece_starts.len() as u32 - 1);
     }
 
-    /// Appends the vertices on the rim of a side of a triangle, in the order of its nodes, to `vertices`.
+    /// Appends the vertices on the rim of a side of a triangle to `vertices`, in the order of its nodes.
     fn add_rim(
         &mut self,
         rims: &mut Rims,
@@ -109,7 +109,7 @@ impl<'a> DisplayMesh<'a> {
             }
             vertices.push(number.unwrap_or_default());
         }
-        // Where an edge of a patch is cut for the sake of what lies beyond a crease, its light goes on straight.
+        // Where only surfaces beyond a crease divide an edge of a patch, irradiance is interpolated along the edge.
         for (node, group) in cuts {
             let [a, b] = outline.ends_around(node);
             let [from, at, to] = [a, node, b].map(|i| outline.positions[i as usize]);
@@ -121,7 +121,7 @@ impl<'a> DisplayMesh<'a> {
         }
     }
 
-    /// The position of the center of a polygon that needs one.
+    /// Adds the center of a polygon of more than three nodes to the positions, and returns its number.
     fn add_center(&mut self, outline: &Outline, polygon: &[Corner]) -> Option<u32> {
         if polygon.len() < 4 {
             return None;
@@ -132,12 +132,12 @@ impl<'a> DisplayMesh<'a> {
         Some(self.positions.len() as u32 - 1)
     }
 
-    /// A triangle, or a fan of triangles around the center of a polygon. Nodes are vertices, and whether they are
-    /// corners of the patch.
+    /// Adds a triangle, or a fan of triangles around the center of a polygon. A node is a vertex, with true if it is a
+    /// corner of the patch.
     fn add_polygon(&mut self, nodes: &[(u32, bool)], center: Option<u32>) {
         if let Some(position) = center {
-            // The value that the triangle of the corners alone would have there: the fan differs from the
-            // patches next to it only along the edge that has more points.
+            // The center has the value that the triangle of the corners alone would have there. The fan therefore
+            // differs from the patches next to it only along the edge that has more points.
             let corners =
                 || nodes.iter().filter(|n| n.1).map(|n| rgb(self.vertices[n.0 as usize].irradiance));
             let mean = corners().sum::<Rgb>() / corners().count() as f64;
@@ -151,13 +151,13 @@ impl<'a> DisplayMesh<'a> {
     }
 }
 
-/// The rims of all triangles.
+/// Rims of all triangles.
 struct Rims {
     /// Number of the first rim node of each triangle.
     first_nodes: Vec<u32>,
     groups: Groups,
     pieces: Vec<RimPiece>,
-    /// Vertices of the groups as far as they were made.
+    /// Vertex of each group, if it exists already.
     vertices: Vec<Option<u32>>,
 }
 
@@ -203,8 +203,8 @@ impl Rims {
     }
 }
 
-/// Calls `add` with every node of every patch of a triangle and the weight of the patch there: the angle at the
-/// node over the distance to the center of the patch.
+/// Calls `add` with every node of every patch of a triangle and the weight of the patch there: the angle at the node
+/// over the distance to the center of the patch.
 fn weigh(
     scene: &Scene,
     mesh: &PatchMesh,
@@ -216,7 +216,7 @@ fn weigh(
     let corners = scene.corners(triangle);
     let n = f64::from(mesh.divisions(triangle));
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    // All patches of a triangle are congruent, so these hold for each.
+    // All patches of a triangle are congruent, so they share these weights.
     let at_corner: [f64; 3] = std::array::from_fn(|i| {
         let [u, v] = [1, 2].map(|k| corners[(i + k) % 3] - corners[i]);
         u.cross(v).length().atan2(u.dot(v)) * n / middle.distance(corners[i])

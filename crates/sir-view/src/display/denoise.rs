@@ -1,16 +1,17 @@
-//! Noise taken out of what is shown.
+//! Denoising of pictures.
 //!
-//! The irradiance of a patch is known to its standard error only, and eyes see differences of a per cent between
-//! neighbors. So for pictures every patch takes a mean over those around it on the same smooth surface, as far as they
-//! differ by no more than noise would make them differ. Where the solution is good, nothing changes.
+//! The irradiance of a patch is known only up to its standard error, and eyes see differences of one percent between
+//! neighbors. For pictures, every patch therefore takes a mean over the patches around it on the same smooth surface,
+//! as far as noise explains their differences. Where the solution is precise, nothing changes.
 //!
-//! Perona and Malik (1990) diffuse pictures like this, stopping at edges; Schied et al. (2017) take the threshold from the
-//! variance, as is done here. The variance is that of light that comes in grains: with grains of `q` watts, a patch
-//! of the area `a` \[m²\] and the irradiance `E` has `q E / a`. That holds for patches that no line has met, too,
-//! whose own estimate is zero. The grains come from the standard errors of a patch and its neighbors, `Σ σ²a² / Σ E a`.
+//! This is the edge-stopping diffusion of Perona and Malik (1990), with a threshold from the variance as in Schied et
+//! al. (2017). The variance is that of shot noise: with light that arrives in grains of `q` watts, a patch of area `a`
+//! \[m²\] and irradiance `E` has the variance `q E / a`. This holds also for patches that no line has met, whose own
+//! estimate is zero. The power of a grain comes from the standard errors of a patch and its neighbors:
+//! `Σ σ²a² / Σ E a`.
 //!
-//! A patch so small that hardly a grain was to be expected says nothing: it is black, or by far too bright. Where such patches have
-//! no smooth surface around them, they show what is around them beyond edges.
+//! A patch so small that hardly any grain is expected carries no information: it is black, or far too bright. Where
+//! such patches have no smooth surface around them, they take the irradiance of the patches around them beyond edges.
 
 use std::thread;
 
@@ -19,51 +20,52 @@ use sir_geom::{Rgb, Side};
 
 use crate::display::mesh::DisplayMesh;
 
-/// How often patches take the mean of their neighbors. Each time adds the area of about ten of them to what a value
-/// stands for, so that 10 % of noise become 1 %.
+/// Number of averaging passes. Each adds the area of about ten patches to the effective area of a value, so that 10 %
+/// of noise become 1 %.
 const PASSES: usize = 10;
 
-/// Relative noise that eyes hardly see: from there on, patches keep what they have.
-const UNSEEN: f64 = 0.01;
+/// Relative noise that is hardly visible; patches with less keep their value.
+const INVISIBLE_NOISE: f64 = 0.01;
 
-/// Differences of more standard errors than this are taken for real.
-const REAL: f64 = 3.0;
+/// Smallest difference that counts as real, in standard errors.
+const REAL_DIFFERENCE: f64 = 3.0;
 
-/// By how many standard errors of a patch what is shown may differ from what was computed.
-const FARTHEST: f64 = 3.0;
+/// Largest difference of the shown from the computed irradiance, in standard errors of a patch.
+const MAX_CHANGE: f64 = 3.0;
 
-/// Area of independent patches whose mean is as good as that over all neighbors of a patch, in units of their sum:
-/// corners count some of them twice, and the middle one three times.
-const RING: f64 = 0.65;
+/// Area of independent patches whose mean is as precise as the mean over all neighbors of a patch, relative to the sum
+/// of the areas of the neighbors. It is below one because some neighbors are counted twice, and the patch itself three
+/// times.
+const RING_SHARE: f64 = 0.65;
 
-/// Grains that have to be expected of a patch for it to speak for itself.
-const ENOUGH: f64 = 3.0;
+/// Number of expected grains from which on the value of a patch is informative.
+const MIN_GRAINS: f64 = 3.0;
 
-/// How far, in patches, light is looked for around those that say nothing.
+/// Number of fill passes: the distance in patches from which patches without information take light.
 const FILL_PASSES: usize = 8;
 
-/// Surfaces whose normals have a cosine below this are not beside but behind each other.
-const BEHIND: f64 = -0.5;
+/// Cosine between normals below which surfaces are not beside but behind each other.
+const MIN_COSINE: f64 = -0.5;
 
-/// A side of a patch in the course of the passes.
+/// State of a side of a patch between passes.
 #[derive(Clone, Copy, Default)]
 struct State {
     irradiance: Rgb,
-    /// Area for which `irradiance` stands \[m²\].
-    stands_for: f64,
+    /// Effective area of the patches that `irradiance` is a mean of \[m²\].
+    effective_area: f64,
 }
 
 impl DisplayMesh<'_> {
-    /// The irradiance \[W/m²\] of every [`SideId`](sir_mesh::SideId) without the noise, for pictures; the mesh is that of the
-    /// irradiance as it was computed, and `errors` are its standard errors.
+    /// Returns the denoised irradiance \[W/m²\] of every [`SideId`](sir_mesh::SideId), for pictures.
     ///
-    /// Neighbors are patches that share a vertex of the mesh, and so belong to one smooth surface; for patches on which hardly
-    /// any light was to be expected to arrive, those that share a position. No value moves by more than three standard
-    /// errors. The result is the same for any number of threads.
+    /// The mesh must have the irradiance as computed; `errors` are its standard errors. Neighbors are patches that
+    /// share a vertex of the mesh, and thus belong to one smooth surface; for patches on which hardly any light is
+    /// expected to arrive, they are patches that share a position. No value changes by more than three standard errors.
+    /// The result is the same for any number of threads.
     ///
     /// # Panics
     ///
-    /// If `errors` has not one value for every side of the mesh.
+    /// If `errors` does not have one value for every side of the mesh.
     #[must_use]
     pub fn denoise(&self, errors: &[Rgb], threads: usize) -> Vec<Rgb> {
         assert_eq!(errors.len(), self.irradiance.len(), "one error for every side of the mesh");
@@ -82,13 +84,14 @@ impl DisplayMesh<'_> {
         let common = self.grain(errors, &areas, |visit| (0..errors.len()).for_each(visit));
         let grain = |i| {
             let own = self.grain(errors, &areas, |visit| ring.around(i, visit));
-            // Where no light has arrived at all, it would come as elsewhere.
+            // Where no light has arrived at all, the grain is the mean over all patches.
             Rgb::select(own.cmpeq(Rgb::ZERO), common, own)
         };
-        each(&|i| State { irradiance: grain(i), stands_for: 0.0 }, &mut grains);
+        each(&|i| State { irradiance: grain(i), effective_area: 0.0 }, &mut grains);
         let start = self.irradiance.iter().zip(&areas);
-        let mut now: Vec<State> =
-            start.map(|(&e, &stands_for)| State { irradiance: e.max(Rgb::ZERO), stands_for }).collect();
+        let mut now: Vec<State> = start
+            .map(|(&e, &effective_area)| State { irradiance: e.max(Rgb::ZERO), effective_area })
+            .collect();
         let mut next = now.clone();
         for _ in 0..PASSES {
             each(&|i| pass(&ring, &now, &areas, grains[i].irradiance, i), &mut next);
@@ -103,14 +106,14 @@ impl DisplayMesh<'_> {
         }
         let shown = now.iter().enumerate().map(|(i, state)| {
             let noise = (grains[i].irradiance * state.irradiance / areas[i]).map(f64::sqrt);
-            let most = FARTHEST * noise.max(errors[i]);
+            let most = MAX_CHANGE * noise.max(errors[i]);
             let computed = self.irradiance[i];
             state.irradiance.max(computed - most).min(computed + most)
         });
         shown.collect()
     }
 
-    /// Mean power of the grains \[W\] in which light comes to some patches.
+    /// Returns the mean power of the grains that arrive at some patches \[W\].
     fn grain(&self, errors: &[Rgb], areas: &[f64], patches: impl FnOnce(&mut dyn FnMut(usize))) -> Rgb {
         let (mut squares, mut power) = (Rgb::ZERO, Rgb::ZERO);
         patches(&mut |j| {
@@ -121,7 +124,7 @@ impl DisplayMesh<'_> {
         ratio(squares, power)
     }
 
-    /// The normal of every side.
+    /// Returns the normal of every side.
     fn normals(&self) -> Vec<DVec3> {
         let mut normals = vec![DVec3::ZERO; self.irradiance.len()];
         self.mesh.for_each_side(|triangle, _, side, id| {
@@ -132,15 +135,15 @@ impl DisplayMesh<'_> {
     }
 }
 
-/// One more mean over the neighbors of a patch.
+/// Returns the state of side `i` after one more averaging pass.
 fn pass(ring: &Ring, now: &[State], areas: &[f64], grain: Rgb, i: usize) -> State {
     let own = now[i];
-    // The share that is taken over from others.
-    let noise = ratio(grain, own.irradiance * own.stands_for).max_element();
+    // Relative variance of the value; it decides the share that is taken from the neighbors.
+    let noise = ratio(grain, own.irradiance * own.effective_area).max_element();
     let (mut sum, mut weights, mut others) = (Rgb::ZERO, 0.0, 0.0);
     ring.around(i, |j| {
         let other = now[j];
-        let weight = areas[j] * likeness(own, other, grain);
+        let weight = areas[j] * similarity(own, other, grain);
         sum += weight * other.irradiance;
         weights += weight;
         if j != i {
@@ -150,54 +153,54 @@ fn pass(ring: &Ring, now: &[State], areas: &[f64], grain: Rgb, i: usize) -> Stat
     if others == 0.0 {
         return own;
     }
-    // A patch that nothing has reached yet, in some band, has all to gain.
+    // A patch that no light has reached yet, in some band, takes the mean alone.
     let share = if noise.is_finite() && own.irradiance != Rgb::ZERO {
-        noise / (noise + UNSEEN * UNSEEN)
+        noise / (noise + INVISIBLE_NOISE * INVISIBLE_NOISE)
     } else {
         1.0
     };
     State {
         irradiance: own.irradiance.lerp(sum / weights, share),
-        stands_for: own.stands_for + share * RING * others,
+        effective_area: own.effective_area + share * RING_SHARE * others,
     }
 }
 
-/// Light from around for a patch on which too little was to be expected to arrive.
+/// Returns the state of side `i` after a fill pass: patches with too few expected grains take the light around them.
 fn fill(ring: &Ring, now: &[State], normals: &[DVec3], grain: Rgb, i: usize) -> State {
     let own = now[i];
     let (mut sum, mut area) = (Rgb::ZERO, 0.0);
     ring.around(i, |j| {
-        if normals[i].dot(normals[j]) > BEHIND {
-            sum += now[j].stands_for * now[j].irradiance;
-            area += now[j].stands_for;
+        if normals[i].dot(normals[j]) > MIN_COSINE {
+            sum += now[j].effective_area * now[j].irradiance;
+            area += now[j].effective_area;
         }
     });
-    // How many grains would have arrived if the patch were as bright as what is around it: a large one that is dark is dark.
-    let expected = ratio(sum / area * own.stands_for, grain).max_element() / ENOUGH;
+    // Number of grains expected if the patch were as bright as its surroundings, so that a large dark patch stays dark.
+    let expected = ratio(sum / area * own.effective_area, grain).max_element() / MIN_GRAINS;
     let share = 1.0 / (1.0 + expected * expected);
-    State { irradiance: own.irradiance.lerp(sum / area, share), stands_for: own.stands_for }
+    State { irradiance: own.irradiance.lerp(sum / area, share), effective_area: own.effective_area }
 }
 
-/// One if two values are the same, and zero if noise cannot have made them as different as they are; in between
-/// Tukey's biweight of the band that differs most.
-fn likeness(a: State, b: State, grain: Rgb) -> f64 {
+/// Returns one if two values are equal, zero if noise cannot explain their difference, and in between Tukey's biweight
+/// of the band that differs most.
+fn similarity(a: State, b: State, grain: Rgb) -> f64 {
     let off = a.irradiance - b.irradiance;
-    let area = a.stands_for + b.stands_for;
-    let mean = (a.stands_for * a.irradiance + b.stands_for * b.irradiance) / area;
-    let variance = grain * mean * (area / (a.stands_for * b.stands_for));
-    let furthest = ratio(off * off, REAL * REAL * variance).max_element();
+    let area = a.effective_area + b.effective_area;
+    let mean = (a.effective_area * a.irradiance + b.effective_area * b.irradiance) / area;
+    let variance = grain * mean * (area / (a.effective_area * b.effective_area));
+    let furthest = ratio(off * off, REAL_DIFFERENCE * REAL_DIFFERENCE * variance).max_element();
     let rest = (1.0 - furthest).max(0.0);
     rest * rest
 }
 
-/// Quotients band by band; zero where there is nothing to divide.
+/// Returns the quotients band by band, with zero where the dividend is zero.
 fn ratio(a: Rgb, b: Rgb) -> Rgb {
     Rgb::from_array(std::array::from_fn(|k| if a[k] == 0.0 { 0.0 } else { a[k] / b[k] }))
 }
 
-/// Which sides of patches have vertices of the mesh, or positions, in common.
+/// Neighborhoods of sides of patches: sides that share vertices of the mesh, or positions.
 struct Ring {
-    /// Sides around each vertex, vertex after vertex, and where those of each begin; likewise vertices of each side.
+    /// Sides around each vertex, vertex by vertex, and the offset of each list; likewise the vertices of each side.
     sides: Vec<u32>,
     first_sides: Vec<u32>,
     corners: Vec<u32>,
@@ -205,7 +208,7 @@ struct Ring {
 }
 
 impl Ring {
-    /// Of sides that have what `point` gives for a vertex in common.
+    /// Creates the neighborhoods of sides that share a point; `point` maps a vertex to its point.
     fn new(display: &DisplayMesh<'_>, point: impl Fn(u32) -> u32) -> Self {
         let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(4 * display.irradiance.len());
         for piece in display.pieces() {
@@ -232,8 +235,8 @@ impl Ring {
         Self { sides, first_sides, corners, first_corners }
     }
 
-    /// Calls `visit` with every side around a side: those across an edge twice, as they share two vertices with it, and the side itself
-    /// three times.
+    /// Calls `visit` with every side around a side. Sides across an edge are visited twice, because they share two
+    /// vertices with it, and the side itself three times.
     fn around(&self, side: usize, mut visit: impl FnMut(usize)) {
         for &v in of(&self.corners, &self.first_corners, side) {
             for &other in of(&self.sides, &self.first_sides, v as usize) {
@@ -247,7 +250,7 @@ fn of<'a>(all: &'a [u32], firsts: &[u32], i: usize) -> &'a [u32] {
     &all[firsts[i] as usize..firsts[i + 1] as usize]
 }
 
-/// The second numbers of sorted pairs, and where those of each first number below `count` begin.
+/// Returns the second numbers of sorted pairs, and the offsets of those of each first number below `count`.
 fn lists(pairs: &[(u32, u32)], count: usize) -> (Vec<u32>, Vec<u32>) {
     let mut firsts = vec![0; count + 1];
     for &(i, _) in pairs {

@@ -1,14 +1,16 @@
-//! Textures as they look from afar.
+//! Mipmaps: textures filtered for distant views.
 //!
-//! A ray sees a point of a surface, but stands for a patch of it. Where that holds many texels, their mean is shown: that of the
-//! nearest smaller images (after Williams 1983, *Pyramidal Parametrics*), blended between sizes.
+//! A ray sees a point of a surface but represents a small area around it. Where this area holds many texels, their mean
+//! is shown: that of the nearest smaller images (after Williams 1983, *Pyramidal Parametrics*), interpolated between
+//! sizes.
 
 use std::collections::HashMap;
 
 use glam::DVec2;
 use sir_geom::{Barycentric, ColorMap, Material, Rgb, Scene, Side, Texture, TextureId, TriangleId};
 
-/// The textures that color surfaces, each with its smaller images, down to a single texel. Together they use 1.4 bytes per texel.
+/// The smaller images of each texture that colors surfaces, down to a single texel. Together they use 1.4 bytes per
+/// texel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Levels {
     smaller: HashMap<(TextureId, bool), Vec<Texture>>,
@@ -39,14 +41,14 @@ impl Levels {
         Self { smaller }
     }
 
-    /// Reflectance of a triangle about a point, on the mean over a width \[m\].
+    /// Returns the reflectance of a triangle around a point, averaged over a width \[m\].
     pub(super) fn reflectance(&self, scene: &Scene, t: TriangleId, point: Barycentric, width: f64) -> Rgb {
         let material = scene.material(t);
         let color = material.reflectance_map.and_then(|map| self.color(scene, t, &map, point, width));
         scene.tinted(t, point, color.unwrap_or(material.reflectance))
     }
 
-    /// Exitance \[W/m²\] of a side of a triangle about a point, likewise.
+    /// Returns the exitance \[W/m²\] of a side of a triangle around a point, likewise.
     pub(super) fn exitance(
         &self,
         scene: &Scene,
@@ -72,9 +74,9 @@ impl Levels {
         let smaller = self.smaller.get(&(map.texture, counts_by_alpha(scene.material(t), map)))?;
         let place = a + point.v * (b - a) + point.w * (c - a);
         let texels = DVec2::from(texture.size().map(f64::from)).element_product();
-        // Texels in a square meter.
+        // Texels per square meter.
         let density = texels * (b - a).perp_dot(c - a).abs() / (2.0 * scene.area(t));
-        // A width of one texel is seen on the texture itself, one of two texels on the first smaller image.
+        // A width of one texel is looked up in the texture itself, one of two texels in the first smaller image.
         let level = (width * density.sqrt()).log2().clamp(0.0, smaller.len() as f64);
         let of_level = |level: usize| {
             let image = level.checked_sub(1).map_or(texture, |level| &smaller[level]);
@@ -86,7 +88,8 @@ impl Levels {
     }
 }
 
-/// Whether texels count by their opacity: where the image itself says where there is a surface, the color beside it is nobody's.
+/// Returns true if texels are weighted by their opacity. This is so if the image is also the opacity map: the colors in
+/// its gaps belong to no surface.
 fn counts_by_alpha(material: &Material, map: &sir_geom::TextureMap) -> bool {
     material.opacity.map.as_ref() == Some(map)
 }

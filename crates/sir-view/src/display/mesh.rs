@@ -1,4 +1,4 @@
-//! The display mesh: patches cut so that they share all points, with irradiance at the points.
+//! The display mesh: patches triangulated so that they share all points, with irradiance at the points.
 
 use std::sync::OnceLock;
 
@@ -11,95 +11,95 @@ use crate::display::levels::Levels;
 /// A vertex of a [`DisplayMesh`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisplayVertex {
-    /// Number of its position in [`DisplayMesh::positions`].
+    /// Index of its position in [`DisplayMesh::positions`].
     pub position: u32,
-    /// Irradiance `E` \[W/m²\] on the surface to which it belongs.
+    /// Irradiance `E` \[W/m²\] of the surface to which it belongs.
     pub irradiance: [f32; 3],
 }
 
-/// The triangles into which one side of one patch was cut.
+/// Triangles of one side of one patch.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplayPiece<'a> {
-    /// The triangle of the scene.
+    /// Triangle of the scene.
     pub triangle: TriangleId,
-    /// The side of it.
+    /// Side of the triangle.
     pub side: Side,
-    /// The side of the patch.
+    /// Side of the patch.
     pub id: SideId,
-    /// Numbers of vertices, counterclockwise seen from the side. Empty for a patch smaller than the precision of
-    /// the coordinates.
+    /// Indices of vertices, counterclockwise seen from the side. Empty for a patch smaller than the precision of the
+    /// coordinates.
     pub triangles: &'a [[u32; 3]],
 }
 
 /// A conforming triangulation of all active sides of the patches of a scene, with irradiance at its vertices.
 ///
-/// Triangles share their vertices wherever their edges touch, whatever the number of parts that the edges are cut
-/// in, and whatever T-junctions the file has. So nothing cracks.
+/// Triangles share their vertices wherever their edges touch, regardless of the number of parts that edges are cut into
+/// and of T-junctions in the file. There are no cracks.
 ///
-/// A vertex has the mean irradiance of the patches around it that belong to one smooth surface, which are those
-/// that continue each other across an edge with nothing between them, bent by less than 30°. The mean is weighted by the angle at the vertex over
-/// the distance to the patch's center. On a regular subdivision it reproduces a linear field. It is the
-/// irradiance that is averaged and not the radiosity, so that colors do not run into each other where materials
-/// change: `B = M + ρE` is evaluated with the material, and the texture, of each triangle.
+/// A vertex has the mean irradiance of the patches around it that belong to one smooth surface. These are patches that
+/// continue each other across an edge with nothing between them, bent by less than 30°. The mean is weighted by the
+/// angle at the vertex over the distance to the center of the patch. On a regular subdivision, it reproduces a linear
+/// field. Irradiance is averaged, not radiosity, so that colors do not blur where materials change: `B = M + ρE` is
+/// evaluated with the material, and the texture, of each triangle.
 #[derive(Clone, Debug)]
 pub struct DisplayMesh<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) mesh: &'a PatchMesh,
     pub(super) irradiance: &'a [Rgb],
-    /// Whether what surfaces and the sky emit is shown, too.
+    /// True if emission of surfaces and the sky is shown, too.
     pub(crate) emits: bool,
     pub(super) positions: Vec<DVec3>,
     pub(super) vertices: Vec<DisplayVertex>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Where the triangles of each piece begin; one more than there are pieces. Pieces are numbered triangle by
-    /// triangle, patch by patch, side by side.
+    /// Offset of the triangles of each piece, and their total number at the end. Pieces are ordered by triangle, patch
+    /// and side.
     pub(super) piece_starts: Vec<u32>,
-    /// Where the pieces of each triangle begin; one more than there are triangles.
+    /// Offset of the pieces of each triangle, and their total number at the end.
     pub(super) first_pieces: Vec<u32>,
-    /// Made when a picture first needs them.
+    /// Mipmaps, made when first needed.
     pub(super) levels: OnceLock<Levels>,
 }
 
 impl<'a> DisplayMesh<'a> {
-    /// The same mesh with the standard error of irradiance \[W/m²\] in its place: radiosity and radiance then are those standard
-    /// errors, and what surfaces and the sky emit, which has none, is left out.
+    /// Creates the mesh with the standard error of the irradiance \[W/m²\] in place of the irradiance.
     ///
-    /// Errors are interpolated as the irradiance is. That of an interpolated value is a little less, as far as the noise of the
-    /// patches that it is made of is independent.
+    /// Radiosity and radiance are then standard errors too, and emission of surfaces and the sky is left out, because
+    /// it has no error. Errors are interpolated like irradiance. The true error of an interpolated value is a little
+    /// smaller, as far as the noise of the averaged patches is independent.
     ///
     /// # Panics
     ///
-    /// If `errors` has not one value for every side of `mesh`.
+    /// If `errors` does not have one value for every side of `mesh`.
     #[must_use]
     pub fn of_errors(scene: &'a Scene, mesh: &'a PatchMesh, errors: &'a [Rgb]) -> Self {
         Self { emits: false, ..Self::new(scene, mesh, errors) }
     }
 
-    /// Positions; vertices with different irradiance may share one.
+    /// Returns the positions. Vertices with different irradiance may share one.
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
 
-    /// The vertices.
+    /// Returns the vertices.
     #[must_use]
     pub fn vertices(&self) -> &[DisplayVertex] {
         &self.vertices
     }
 
-    /// All triangles: numbers of vertices, counterclockwise seen from the side that they show.
+    /// Returns all triangles: indices of vertices, counterclockwise seen from the side that they show.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Every side of every patch with its triangles. With
-    /// [`Subdivision::PerFace`](sir_mesh::Subdivision::PerFace) a side comes once for each triangle of its face.
+    /// Returns every side of every patch with its triangles. With
+    /// [`Subdivision::PerFace`](sir_mesh::Subdivision::PerFace), a side occurs once for each triangle of its face.
     pub fn pieces(&self) -> impl Iterator<Item = DisplayPiece<'_>> {
         self.scene.triangle_ids().flat_map(|t| self.pieces_of(t))
     }
 
-    /// The pieces of one triangle of the scene.
+    /// Returns the pieces of one triangle of the scene.
     pub fn pieces_of(&self, t: TriangleId) -> impl Iterator<Item = DisplayPiece<'_>> {
         let sides = active_sides(self.scene, t);
         self.mesh.patches_of(t).map(PatchId).flat_map(move |patch| {
@@ -110,8 +110,8 @@ impl<'a> DisplayMesh<'a> {
         })
     }
 
-    /// Irradiance \[W/m²\] at a point of a side of a triangle of the scene, interpolated; `None` if the side does
-    /// not reflect.
+    /// Returns the interpolated irradiance \[W/m²\] at a point of a side of a triangle of the scene; `None` if the side
+    /// does not reflect.
     #[must_use]
     pub fn irradiance_at(&self, triangle: TriangleId, point: Barycentric, side: Side) -> Option<Rgb> {
         let patch = self.mesh.patch_at(triangle, point);
@@ -126,7 +126,7 @@ impl<'a> DisplayMesh<'a> {
             let sum: f64 = parts.iter().sum();
             parts.map(|p| p / sum)
         };
-        // Rounding may put the point outside all of them: it belongs to the one that it is least outside of.
+        // Rounding may put the point outside of all triangles; then the one that it is least outside of is used.
         let inside = |w: &[f64; 3]| w[0].min(w[1]).min(w[2]);
         let found = self
             .triangles_of(triangle, patch, side)
@@ -140,8 +140,8 @@ impl<'a> DisplayMesh<'a> {
         Some((weighted(0) + weighted(1) + weighted(2)) / (w[0] + w[1] + w[2]))
     }
 
-    /// Radiosity `B = M + ρE` \[W/m²\] of a side of a patch of a triangle on which `irradiance` falls, on the mean over the
-    /// patch; of a mesh of errors `ρE`.
+    /// Returns the radiosity `B = M + ρE` \[W/m²\] of a side of a patch of a triangle on which `irradiance` falls,
+    /// averaged over the patch; for a mesh of errors, `ρE`.
     #[must_use]
     pub fn radiosity(&self, triangle: TriangleId, patch: PatchId, side: Side, irradiance: Rgb) -> Rgb {
         let emitted =
@@ -149,8 +149,8 @@ impl<'a> DisplayMesh<'a> {
         emitted + self.mesh.reflectance(self.scene, triangle, patch) * irradiance
     }
 
-    /// The same about a point of a triangle, whose textures are shown as the mean over `width` \[m\]; with 0 as they are at the
-    /// point.
+    /// Returns the radiosity \[W/m²\] around a point of a triangle, likewise, but with textures averaged over `width`
+    /// \[m\], or at the point itself if `width` is 0.
     #[must_use]
     pub fn radiosity_at(
         &self,
@@ -170,13 +170,13 @@ impl<'a> DisplayMesh<'a> {
         emitted + levels.reflectance(scene, triangle, point, width) * irradiance
     }
 
-    /// Radiosity \[W/m²\] of a piece with this irradiance.
+    /// Returns the radiosity \[W/m²\] of a piece with this irradiance.
     pub(crate) fn radiosity_of(&self, piece: &DisplayPiece<'_>, irradiance: Rgb) -> Rgb {
         let patch = self.mesh.patch_of_side(piece.triangle, piece.id);
         self.radiosity(piece.triangle, patch, piece.side, irradiance)
     }
 
-    /// Radiosity \[W/m²\] of a piece as it was solved, not interpolated.
+    /// Returns the radiosity \[W/m²\] of a piece as solved, not interpolated.
     pub(crate) fn own_radiosity(&self, piece: &DisplayPiece<'_>) -> Rgb {
         self.radiosity_of(piece, self.irradiance[piece.id.index()])
     }
@@ -190,7 +190,7 @@ impl<'a> DisplayMesh<'a> {
     }
 }
 
-/// The sides of a triangle that reflect.
+/// Returns the sides of a triangle that reflect.
 pub(super) fn active_sides(scene: &Scene, triangle: TriangleId) -> &'static [Side] {
     if scene.is_active(triangle, Side::Back) { &[Side::Front, Side::Back] } else { &[Side::Front] }
 }

@@ -1,4 +1,4 @@
-//! The mesh that pictures and models show.
+//! The display mesh, shown by pictures and GLB files.
 
 mod build;
 mod denoise;

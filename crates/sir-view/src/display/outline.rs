@@ -6,19 +6,19 @@ use sir_mesh::{PatchId, PatchMesh};
 
 use crate::display::seams::Seams;
 
-/// One triangle, its patches and the points on its rim. Reused from triangle to triangle.
+/// One triangle, its patches and the points on its rim. The buffers are reused for all triangles.
 ///
-/// *Nodes* are numbered within the triangle: first those of the rim, counterclockwise from the first corner, then
-/// the inner corners of patches.
+/// *Nodes* are numbered within the triangle: first those of the rim, counterclockwise from the first corner, then the
+/// inner corners of patches.
 #[derive(Default)]
 pub(super) struct Outline {
     /// Point numbers of the nodes on the rim.
     rim: Vec<u32>,
     /// Positions of all nodes.
     pub(super) positions: Vec<DVec3>,
-    /// The node at which each part of each edge begins.
+    /// Node at which each part of each edge begins.
     parts: Vec<u32>,
-    /// The node of each corner of the regular subdivision, row by row.
+    /// Node of each corner of the regular subdivision, row by row.
     lattice: Vec<u32>,
     divisions: u32,
 }
@@ -27,12 +27,12 @@ pub(super) struct Outline {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Corner {
     pub(super) node: u32,
-    /// Which corner of the patch it is; `None` on an edge of it.
+    /// Index of the corner of the patch; `None` for a node on an edge of it.
     pub(super) corner: Option<u8>,
 }
 
 impl Outline {
-    /// Takes up a triangle.
+    /// Loads a triangle.
     pub(super) fn set(&mut self, scene: &Scene, mesh: &PatchMesh, seams: &Seams, triangle: TriangleId) {
         let n = mesh.divisions(triangle);
         self.divisions = n;
@@ -87,19 +87,19 @@ impl Outline {
         }
     }
 
-    /// Point numbers of the nodes on the rim, which are the first ones.
+    /// Returns the point numbers of the nodes on the rim, which are the first ones.
     pub(super) fn rim(&self) -> &[u32] {
         &self.rim
     }
 
-    /// The corners of patches on the rim before and after a node of it, both of the same patch.
+    /// Returns the corners of patches on the rim before and after a node of the rim, both of the same patch.
     pub(super) fn ends_around(&self, node: u32) -> [u32; 2] {
         let next = self.parts.partition_point(|&part| part <= node);
         [self.parts[next.saturating_sub(1)], self.parts.get(next).copied().unwrap_or(0)]
     }
 
-    /// The polygon of a patch, counterclockwise seen from the front. Has fewer than three nodes if the patch is
-    /// smaller than the tolerance of the mesh.
+    /// Writes the polygon of a patch to `out`, counterclockwise seen from the front. It has fewer than three nodes if
+    /// the patch is smaller than the tolerance of the mesh.
     pub(super) fn polygon(
         &self,
         mesh: &PatchMesh,
@@ -116,7 +116,7 @@ impl Outline {
         for (corner, &(i, j)) in (0u8..).zip(&cells) {
             let (next_i, next_j) = cells[(usize::from(corner) + 1) % 3];
             out.push(Corner { node: self.node(i, j), corner: Some(corner) });
-            // Only a part of the rim has nodes between its ends.
+            // Only edges on the rim have nodes between their ends.
             let part = if j == 0 && next_j == 0 {
                 i
             } else if i + j == n && next_i + next_j == n {

@@ -1,10 +1,10 @@
-//! Points of space: welding those that are equal but for rounding, and finding those on a line.
+//! Points in space: welding of points that are equal up to rounding, and search for points on a segment.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 
-/// Points of which no two are closer than a tolerance.
+/// Set of points of which no two are closer than a tolerance.
 pub(super) struct Weld {
     tolerance: f64,
     origin: DVec3,
@@ -13,14 +13,14 @@ pub(super) struct Weld {
 }
 
 impl Weld {
-    /// `origin` is any point near the others.
+    /// Creates an empty set; `origin` is any point near the others.
     pub(super) fn new(origin: DVec3, tolerance: f64) -> Self {
         Self { tolerance, origin, points: Vec::new(), cells: HashMap::new() }
     }
 
-    /// The number of the point at this position: that of the first one within the tolerance, if there is one.
+    /// Returns the number of the point at this position: the first one within the tolerance, otherwise a new one.
     pub(super) fn add(&mut self, p: DVec3) -> u32 {
-        // Cells are several tolerances wide, so most points have one cell to look into, and none more than eight.
+        // Cells are several tolerances wide, so most points require a search of one cell, and none of more than eight.
         let cell =
             |q: DVec3| ((q - self.origin) / (8.0 * self.tolerance)).floor().to_array().map(|x| x as i64);
         let (low, high) = (cell(p - self.tolerance), cell(p + self.tolerance));
@@ -43,22 +43,23 @@ impl Weld {
         number
     }
 
-    /// The points by number.
+    /// Returns the points by number.
     pub(super) fn into_points(self) -> Vec<DVec3> {
         self.points
     }
 }
 
-/// A k-d tree over points, for those near a segment. A grid would need one cell size for millimeters and halls.
+/// A k-d tree over points, to find those near a segment. A grid would need one cell size for both millimeters and
+/// halls.
 pub(super) struct PointTree<'a> {
     points: &'a [DVec3],
-    /// Point numbers; a node is a range of them, its children the two halves.
+    /// Point numbers. A node is a range of them, and its children are the two halves.
     order: Vec<u32>,
     /// Boxes of the nodes in heap order.
     boxes: Vec<(DVec3, DVec3)>,
 }
 
-/// Points of a node that is not divided.
+/// Largest number of points in a leaf.
 const LEAF: usize = 8;
 
 impl<'a> PointTree<'a> {
@@ -94,8 +95,8 @@ impl<'a> PointTree<'a> {
         }
     }
 
-    /// Appends to `found` the points whose distance to the segment `ab` is at most `tolerance`, with their place
-    /// along it: 0 at `a`, 1 at `b`, not beyond.
+    /// Appends to `found` the points whose distance to the segment `ab` is at most `tolerance`, with their parameter
+    /// along it: 0 at `a`, 1 at `b`, none beyond.
     pub(super) fn near_segment(&self, a: DVec3, b: DVec3, tolerance: f64, found: &mut Vec<(f64, u32)>) {
         self.visit(0, 0..self.order.len(), &Segment { a, along: b - a, tolerance }, found);
     }
@@ -134,7 +135,7 @@ struct Segment {
 }
 
 impl Segment {
-    /// Whether the segment meets a box that is widened by the tolerance.
+    /// Returns true if the segment may meet a box that is widened by the tolerance.
     fn may_touch(&self, (low, high): (DVec3, DVec3)) -> bool {
         let (mut enter, mut leave) = (0.0f64, 1.0f64);
         for axis in 0..3 {
@@ -178,7 +179,7 @@ mod tests {
             coordinates in prop::collection::vec(0u8..6, 3..300),
             ends in prop::array::uniform6(0u8..6),
         ) {
-            // Whole numbers, so that many points lie exactly on the segment.
+            // Integer coordinates, so that many points lie exactly on the segment.
             let at = |c: &[u8]| DVec3::new(f64::from(c[0]), f64::from(c[1]), f64::from(c[2]));
             let points: Vec<DVec3> = coordinates.chunks_exact(3).map(at).collect();
             let (a, b) = (at(&ends[..3]), at(&ends[3..]));

@@ -1,7 +1,7 @@
-//! Seams: the edges of triangles, each cut at every point that lies on it.
+//! Seams: the edges of triangles, each divided at every point that lies on it.
 //!
-//! Neighboring triangles are cut into different numbers of parts, and files have T-junctions of their own. A seam
-//! knows *all* points on an edge, from whatever triangle, so that the pieces on its sides can share them.
+//! Neighboring triangles are cut into different numbers of parts, and files have T-junctions of their own. A seam has
+//! *all* points on an edge, from any triangle, so that the pieces on its sides can share them.
 
 use sir_geom::{Scene, TriangleId};
 use sir_mesh::PatchMesh;
@@ -10,30 +10,31 @@ use glam::DVec3;
 
 use crate::display::points::{PointTree, Weld};
 
-/// Points closer than this, in radii of the scene's sphere, are one.
+/// Distance below which points are welded, in radii of the bounding sphere of the scene.
 const TOLERANCE: f64 = 1e-6;
 
-/// The edges of all triangles of a scene.
+/// Edges of all triangles of a scene.
 pub(super) struct Seams {
-    /// Positions of the corners of triangles and of the cuts of their edges.
+    /// Positions of the corners of triangles and of the divisions of their edges.
     pub(super) points: Vec<DVec3>,
-    /// Points of each scene vertex.
+    /// Point of each scene vertex.
     corners: Vec<u32>,
-    /// Points on each edge in order, edge after edge.
+    /// Points on each edge in order, edge by edge.
     on_edge: Vec<u32>,
-    /// Places in `on_edge` of the ends of the parts of an edge: `n + 1` for each edge and each number of parts.
+    /// Indices in `on_edge` of the ends of the parts of an edge: `n + 1` for each edge and each number `n` of parts.
     marks: Vec<u32>,
-    /// For each edge `3t + e` of a triangle, from its corner `e` to the next one.
-    rulers: Vec<Ruler>,
+    /// Division of each edge `3t + e` of a triangle, from its corner `e` to the next one.
+    edge_divisions: Vec<Division>,
 }
 
+/// Division of an edge of a triangle into equal parts.
 #[derive(Clone, Copy, Default)]
-struct Ruler {
+struct Division {
     first_mark: u32,
     reversed: bool,
 }
 
-/// One edge of one triangle. The derived order brings those together that are the same line segment.
+/// One edge of one triangle. The derived order groups edges that are the same line segment.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct TriangleEdge {
     low: u32,
@@ -52,7 +53,7 @@ impl Seams {
 
         let edges = sorted_edges(scene, mesh);
         let mut lattice: Vec<u32> = Vec::new();
-        for group in edges.chunk_by(is_same_ruler) {
+        for group in edges.chunk_by(has_same_division) {
             let TriangleEdge { low, high, divisions: n, .. } = group[0];
             let (a, b) = (positions[low as usize], positions[high as usize]);
             lattice.push(corners[low as usize]);
@@ -65,7 +66,7 @@ impl Seams {
             corners,
             on_edge: Vec::new(),
             marks: Vec::with_capacity(lattice.len()),
-            rulers: vec![Ruler::default(); 3 * scene.triangles().len()],
+            edge_divisions: vec![Division::default(); 3 * scene.triangles().len()],
         };
         seams.cut(&edges, &lattice, tolerance);
         seams
@@ -78,7 +79,7 @@ impl Seams {
             let (a, b) = (self.corners[edge[0].low as usize], self.corners[edge[0].high as usize]);
             found.clear();
             if a != b {
-                // The cuts lie on the line between the corners before welding, which moves both by one tolerance.
+                // The divisions lie on the line between the corners before welding, which moves both by one tolerance.
                 let [from, to] = [a, b].map(|i| self.points[i as usize]);
                 tree.near_segment(from, to, 2.5 * tolerance, &mut found);
             }
@@ -90,15 +91,15 @@ impl Seams {
             if a != b {
                 self.on_edge.push(b);
             }
-            for ruler in edge.chunk_by(is_same_ruler) {
+            for group in edge.chunk_by(has_same_division) {
                 let first_mark = self.marks.len();
-                for TriangleEdge { place, .. } in ruler {
-                    self.rulers[(place / 2) as usize] =
-                        Ruler { first_mark: first_mark as u32, reversed: place % 2 == 1 };
+                for TriangleEdge { place, .. } in group {
+                    self.edge_divisions[(place / 2) as usize] =
+                        Division { first_mark: first_mark as u32, reversed: place % 2 == 1 };
                 }
                 let mut at = first;
-                for point in &lattice[first_mark..=first_mark + ruler[0].divisions as usize] {
-                    // A part that is shorter than the tolerance has no place of its own and takes the last one.
+                for point in &lattice[first_mark..=first_mark + group[0].divisions as usize] {
+                    // A part that is shorter than the tolerance has no point of its own and takes the last one.
                     at += self.on_edge[at..].iter().position(|p| p == point).unwrap_or(0);
                     self.marks.push(at as u32);
                 }
@@ -106,8 +107,8 @@ impl Seams {
         }
     }
 
-    /// The points from the beginning of part `k` of edge `e` of a triangle to its end, the end left out, in the
-    /// direction of the triangle.
+    /// Returns the points of part `k` of edge `e` of a triangle, in the direction of the triangle, from its beginning
+    /// to its end (exclusive).
     pub(super) fn part(
         &self,
         triangle: TriangleId,
@@ -115,15 +116,15 @@ impl Seams {
         k: u32,
         divisions: u32,
     ) -> impl Iterator<Item = u32> {
-        let ruler = self.rulers[3 * triangle.index() + edge];
-        let mark = |k: u32| self.marks[(ruler.first_mark + k) as usize] as usize;
-        let (start, end, step) = if ruler.reversed {
+        let division = self.edge_divisions[3 * triangle.index() + edge];
+        let mark = |k: u32| self.marks[(division.first_mark + k) as usize] as usize;
+        let (start, end, step) = if division.reversed {
             (mark(divisions - k), mark(divisions - k - 1), usize::MAX)
         } else {
             (mark(k), mark(k + 1), 1)
         };
         let count = start.abs_diff(end).max(1);
-        // Stepping by the largest number is stepping back by one.
+        // A wrapping step by `usize::MAX` is a step back by one.
         (0..count).scan(start, move |at, _| {
             let here = *at;
             *at = at.wrapping_add(step);
@@ -131,13 +132,13 @@ impl Seams {
         })
     }
 
-    /// Positions of the corners of a triangle, as welded.
+    /// Returns the welded positions of the corners of a triangle.
     pub(super) fn corners(&self, scene: &Scene, triangle: TriangleId) -> [DVec3; 3] {
         scene.triangle(triangle).vertices.map(|v| self.points[self.corners[v.index()] as usize])
     }
 }
 
-fn is_same_ruler(x: &TriangleEdge, y: &TriangleEdge) -> bool {
+fn has_same_division(x: &TriangleEdge, y: &TriangleEdge) -> bool {
     (x.low, x.high, x.divisions) == (y.low, y.high, y.divisions)
 }
 

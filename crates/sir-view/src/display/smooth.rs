@@ -1,37 +1,37 @@
-//! Which surfaces continue each other, and the irradiance that they share.
+//! Continuity of surfaces, and the irradiance that continuous surfaces share.
 //!
-//! Around each piece of an edge the triangles that meet there are sorted by angle. A side continues on the first
-//! side that it faces, if between the two there is nothing but an angle of nearly 180°. So the two halves of a
-//! ceiling are one surface, unless a wall that meets them in this edge lies between; front and back of a sheet
-//! never are; and light does not bleed around a crease.
+//! Around each piece of an edge, the triangles that meet there are sorted by angle. A side continues on the first side
+//! that it faces, if there is an empty angle of nearly 180° between the two. The two halves of a ceiling are therefore
+//! one surface, unless a wall between them meets them in this edge; front and back of a sheet never are; and light does
+//! not bleed around a crease.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use sir_geom::{Rgb, Scene, Side, TriangleId};
 
-/// The largest deviation from 180° at which a surface goes on smoothly \[rad\].
+/// Largest deviation from 180° at which a surface continues smoothly \[rad\].
 const CREASE: f64 = PI / 6.0;
 
-/// Triangles whose angles about an edge differ by less than this cover each other \[rad\]; it is the angle up to
-/// which the tracer takes surfaces for parallel.
+/// Difference of angles about an edge below which triangles cover each other \[rad\]. It is the angle up to which the
+/// tracer treats surfaces as parallel.
 const SAME_SHEET: f64 = 1e-3;
 
 /// A piece of an edge as a part of the rim of one triangle.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct RimPiece {
-    /// The point with the smaller number, of the two ends.
+    /// End with the smaller point number.
     low: u32,
     high: u32,
-    /// Rim nodes, in the numbering over all triangles, at the low and the high end.
+    /// Rim nodes at the low and the high end, numbered over all triangles.
     nodes: [u32; 2],
     triangle: u32,
-    /// Whether the triangle runs from the low to the high end.
+    /// True if the triangle runs from the low to the high end.
     forward: bool,
 }
 
 impl RimPiece {
-    /// The piece from one rim node to the next one of a triangle; each is a point and a node.
+    /// Creates the piece of a triangle from one rim node to the next; each is a pair (point, node).
     pub(super) fn new(triangle: TriangleId, from: (u32, u32), to: (u32, u32)) -> Self {
         let forward = from.0 < to.0;
         let (low, high) = if forward { (from, to) } else { (to, from) };
@@ -39,7 +39,7 @@ impl RimPiece {
     }
 }
 
-/// Sets of (rim node, side) that have one irradiance, by union and find, with the sums that make it.
+/// Disjoint sets (union-find) of pairs (rim node, side) that share one irradiance, with the sums that determine it.
 pub(super) struct Groups {
     parents: Vec<u32>,
     sums: Vec<Sum>,
@@ -69,8 +69,7 @@ impl Groups {
         Self { parents: (0..2 * nodes as u32).collect(), sums: vec![Sum::default(); 2 * nodes] }
     }
 
-    /// Takes the irradiance of a patch into account at a node of its rim, which is a corner of the patch or lies on
-    /// an edge of it.
+    /// Adds the irradiance of a patch at a node of its rim, which is a corner of the patch or lies on an edge of it.
     pub(super) fn add(&mut self, node: u32, side: Side, irradiance: Rgb, weight: f64, is_corner: bool) {
         self.sums[slot(node, side)] += Sum { irradiance: weight * irradiance, weight, has_corner: is_corner };
     }
@@ -95,7 +94,7 @@ impl Groups {
         }
     }
 
-    /// Unites what faces each other across the gaps between neighboring sheets, if that is nearly flat.
+    /// Unites sides that face each other across a gap of nearly 180° between neighboring sheets.
     fn join_sheets(&mut self, scene: &Scene, sheets: &[Sheet]) {
         for (i, sheet) in sheets.iter().enumerate() {
             let next = &sheets[(i + 1) % sheets.len()];
@@ -111,7 +110,7 @@ impl Groups {
         if is_active(a, side_a) && is_active(b, side_b) {
             for end in 0..2 {
                 let (x, y) = (self.root(slot(a.nodes[end], side_a)), self.root(slot(b.nodes[end], side_b)));
-                // The smallest number is the root, whatever the order of the calls.
+                // The smallest number is the root, regardless of the order of the calls.
                 self.parents[x.max(y)] = x.min(y) as u32;
             }
         }
@@ -125,13 +124,13 @@ impl Groups {
         i
     }
 
-    /// How many numbers of sets there are; most are not in use.
+    /// Returns the number of set numbers, most of which are unused.
     pub(super) fn len(&self) -> usize {
         self.parents.len()
     }
 
-    /// The number of the set of a node and a side, and the irradiance there; `None` if no patch of the set has a
-    /// corner there, so that the node only cuts its edge in two.
+    /// Returns the number of the set of a node and a side, and its irradiance. The irradiance is `None` if no patch of
+    /// the set has a corner there, so that the node only divides an edge.
     pub(super) fn find(&mut self, node: u32, side: Side) -> (usize, Option<Rgb>) {
         let root = self.root(slot(node, side));
         let sum = self.sums[root];
@@ -139,27 +138,27 @@ impl Groups {
     }
 }
 
-/// What lies in one half-plane of an edge: a triangle, or several that cover each other.
+/// Contents of one half-plane of an edge: a triangle, or several that cover each other.
 #[derive(Clone, Copy)]
 struct Sheet {
     /// Angle of the half-plane about the edge \[rad\].
     angle: f64,
-    /// The uppermost triangle, and its side, as seen from greater angles.
+    /// Uppermost triangle and its side, seen from larger angles.
     rising: (RimPiece, Side),
-    /// The same as seen from smaller angles.
+    /// The same, seen from smaller angles.
     falling: (RimPiece, Side),
 }
 
 impl Sheet {
     fn new(angle: f64, piece: RimPiece) -> Self {
-        // A triangle that runs forward shows its front in the direction of rising angles.
+        // A triangle that runs forward shows its front in the direction of increasing angle.
         let side = if piece.forward { Side::Front } else { Side::Back };
         Self { angle, rising: (piece, side), falling: (piece, side.flip()) }
     }
 
-    /// Adds a triangle in the same half-plane. Of those that cover each other light meets only one: the last that
-    /// shows its front, or else the first, which is the rule of [`sir_accel::Hit`]. The others stay dark and must
-    /// not darken what is next to them.
+    /// Adds a triangle in the same half-plane. Of triangles that cover each other, light meets only one: the last that
+    /// shows its front, otherwise the first (the rule of [`sir_accel::Hit`]). The others stay dark and must not darken
+    /// their neighbors.
     fn cover(&mut self, other: &Self) {
         let upper = |a: (RimPiece, Side), b: (RimPiece, Side)| match (a.1, b.1) {
             (Side::Front, Side::Back) => a,
@@ -184,7 +183,7 @@ impl Sheet {
     }
 }
 
-/// The sheets around an edge by angle, counted from the first triangle.
+/// Collects the sheets around an edge, sorted by angle from the first triangle.
 fn sheets_around(scene: &Scene, along: DVec3, around: &[RimPiece], sheets: &mut Vec<Sheet>) {
     let inward = |p: &RimPiece| {
         let m = scene.normal(TriangleId(p.triangle)).cross(along);
@@ -196,7 +195,8 @@ fn sheets_around(scene: &Scene, along: DVec3, around: &[RimPiece], sheets: &mut 
     sheets.extend(around.iter().map(|p| {
         let m = inward(p);
         let angle = m.dot(y).atan2(m.dot(x));
-        // What covers the first triangle must not be torn from it by rounding to below zero.
+        // A triangle that covers the first one must not be separated from it because its angle is rounded to below
+        // zero.
         Sheet::new(if angle < -SAME_SHEET { angle + TAU } else { angle }, *p)
     }));
     sheets.sort_unstable_by(|a, b| a.angle.total_cmp(&b.angle).then(a.rising.0.cmp(&b.rising.0)));

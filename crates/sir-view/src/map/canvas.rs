@@ -1,4 +1,4 @@
-//! Rectangles and text in pixels.
+//! Drawing of rectangles and text.
 
 use ab_glyph::{Font, FontRef, InvalidFont, PxScale, ScaleFont, point};
 use image::{Rgb, RgbImage};
@@ -6,18 +6,18 @@ use image::{Rgb, RgbImage};
 pub(super) const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
 pub(super) const INK: Rgb<u8> = Rgb([40, 40, 40]);
 
-/// Which point of a text is given.
+/// Reference point of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
-    /// The left end.
+    /// Left end.
     Start,
-    /// The middle.
+    /// Middle.
     Middle,
-    /// The right end.
+    /// Right end.
     End,
 }
 
-/// A white sheet.
+/// Image to draw on, initially white.
 pub(super) struct Canvas {
     pub(super) image: RgbImage,
     font: FontRef<'static>,
@@ -49,13 +49,13 @@ impl Canvas {
         }
     }
 
-    /// Width of a text in pixels.
+    /// Returns the width of a text in pixels.
     pub(super) fn width(&self, text: &str, size: f32) -> f32 {
         let font = self.font.as_scaled(PxScale::from(size));
         text.chars().map(|c| font.h_advance(font.glyph_id(c))).sum()
     }
 
-    /// Writes a line of text, vertically centerd at `y`.
+    /// Draws a line of text, vertically centered at `y`.
     pub(super) fn write(&mut self, text: &str, (x, y): (f32, f32), anchor: Anchor, size: f32) {
         let mut x = match anchor {
             Anchor::Start => x,
@@ -63,7 +63,7 @@ impl Canvas {
             Anchor::End => x - self.width(text, size),
         };
         let font = self.font.as_scaled(PxScale::from(size));
-        // Figures are about two thirds of the size high.
+        // Digits are about two thirds of the size high.
         let baseline = y + size / 3.0;
         for c in text.chars() {
             let mut glyph = font.scaled_glyph(c);
@@ -83,9 +83,9 @@ impl Canvas {
     }
 }
 
-/// Covers a part of a pixel with ink.
+/// Covers part of a pixel with ink.
 fn blend(pixel: &mut Rgb<u8>, coverage: f32) {
-    // Thin strokes look pale on white.
+    // Thin strokes look pale on white, so their coverage is increased.
     let share = (1.3 * coverage).clamp(0.0, 1.0);
     for (band, ink) in pixel.0.iter_mut().zip(INK.0) {
         *band = (f32::from(*band) + share * (f32::from(ink) - f32::from(*band))).round() as u8;

@@ -13,8 +13,10 @@ const VIRIDIS: [[f64; 3]; 7] = [
     [-5.435_455_855_9, 4.645_852_612_2, 26.312_435_249_6],
 ];
 
-/// The color of a number from 0 to 1 in *viridis* (Smith and van der Walt 2015), from dark violet to yellow: equal steps look equal, to
-/// the color-blind too, and lightness alone tells more from less. By the polynomial of Zucker (2019), which is public domain.
+/// Returns the color of a number from 0 to 1 in *viridis* (Smith and van der Walt 2015), from dark violet to yellow.
+///
+/// Equal steps look equal, also to the color-blind, and lightness increases with the number. The polynomial is that of
+/// Zucker (2019), which is public domain.
 pub(super) fn viridis(t: f64) -> Rgb<u8> {
     let t = t.clamp(0.0, 1.0);
     let band = |k: usize| VIRIDIS.iter().rev().fold(0.0, |sum, coefficients| sum * t + coefficients[k]);

@@ -1,4 +1,4 @@
-//! Maps: values on a grid in false colors, with a scale.
+//! Maps: grids of values in false colors, with a scale.
 
 mod canvas;
 mod colors;
@@ -17,32 +17,34 @@ use colors::viridis;
 /// Values on a grid of equal cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// What is written above it.
+    /// Title above the map.
     pub title: String,
-    /// What is written below the title.
+    /// Subtitle below the title.
     pub subtitle: String,
     /// Unit of the values.
     pub unit: String,
-    /// Cells in a row, at least one.
+    /// Number of cells in a row, at least one.
     pub columns: usize,
     /// Width and height of all cells together \[m\].
     pub size: [f64; 2],
-    /// The value of each cell, row by row from the bottom, each from the left; `None` where there is none.
+    /// Value of each cell, row by row from the bottom, each from the left; `None` for a cell without a value.
     pub values: Vec<Option<f64>>,
 }
 
-/// Largest width and height of the cells in a picture \[pixels\].
-const LARGEST: [f64; 2] = [960.0, 720.0];
-/// What they have at least, however narrow a grid is.
-const LEAST: f64 = 40.0;
-/// Room on the left, above, on the right and below.
+/// Largest width and height of the grid \[pixels\].
+const MAX_SIZE: [f64; 2] = [960.0, 720.0];
+/// Smallest width and height of the grid, however narrow it is \[pixels\].
+const MIN_SIZE: f64 = 40.0;
+/// Margins on the left, above, on the right and below \[pixels\].
 const MARGIN: [u32; 4] = [64, 104, 140, 60];
-/// Width of a whole picture, for its title, at least.
-const WIDTH: u32 = 620;
-const SCALE: u32 = 22;
-const TEXT: f32 = 17.0;
-/// A cell without a value.
-const NOTHING: Rgb<u8> = Rgb([225, 225, 225]);
+/// Smallest width of the whole picture, for its title \[pixels\].
+const MIN_WIDTH: u32 = 620;
+/// Width of the scale \[pixels\].
+const SCALE_WIDTH: u32 = 22;
+/// Size of small text \[pixels\].
+const TEXT_SIZE: f32 = 17.0;
+/// Color of a cell without a value.
+const NO_VALUE: Rgb<u8> = Rgb([225, 225, 225]);
 
 /// Writes a map as PNG. Cells without a value are gray.
 ///
@@ -64,11 +66,11 @@ fn draw(map: &Map) -> Result<Canvas, ab_glyph::InvalidFont> {
     let columns = map.columns.max(1);
     let [width, height] = extent(map.size);
     let [left, above, right, below] = MARGIN;
-    let left = left + WIDTH.saturating_sub(left + width + right) / 2;
-    let mut canvas = Canvas::new((left + width + right).max(WIDTH), above + height + below)?;
+    let left = left + MIN_WIDTH.saturating_sub(left + width + right) / 2;
+    let mut canvas = Canvas::new((left + width + right).max(MIN_WIDTH), above + height + below)?;
     let middle = canvas.image.width() as f32 / 2.0;
     canvas.write(&map.title, (middle, 28.0), Anchor::Middle, 25.0);
-    canvas.write(&map.subtitle, (middle, 56.0), Anchor::Middle, TEXT);
+    canvas.write(&map.subtitle, (middle, 56.0), Anchor::Middle, TEXT_SIZE);
 
     let (least, most) = range(&map.values);
     let color = |value: f64| viridis((value - least) / (most - least));
@@ -77,7 +79,7 @@ fn draw(map: &Map) -> Result<Canvas, ab_glyph::InvalidFont> {
         let (column, row) = (cell % columns, rows - 1 - cell / columns);
         let x = left + place(column, columns, width)..left + place(column + 1, columns, width);
         let y = above + place(row, rows, height)..above + place(row + 1, rows, height);
-        canvas.fill(x, y, value.map_or(NOTHING, color));
+        canvas.fill(x, y, value.map_or(NO_VALUE, color));
     }
     canvas.frame(left..left + width, above..above + height);
     draw_axes(&mut canvas, map.size, [left, above], [width, height]);
@@ -86,26 +88,26 @@ fn draw(map: &Map) -> Result<Canvas, ab_glyph::InvalidFont> {
     let height = height.max(120);
     for y in 0..height {
         let t = 1.0 - (f64::from(y) + 0.5) / f64::from(height);
-        canvas.fill(bar..bar + SCALE, above + y..above + y + 1, viridis(t));
+        canvas.fill(bar..bar + SCALE_WIDTH, above + y..above + y + 1, viridis(t));
     }
-    canvas.frame(bar..bar + SCALE, above..above + height);
+    canvas.frame(bar..bar + SCALE_WIDTH, above..above + height);
     let step = step((most - least) / (f64::from(height) / 50.0).clamp(2.0, 10.0));
     for value in multiples(step, least, most) {
         let y = above as f32 + ((most - value) / (most - least) * f64::from(height)) as f32;
-        canvas.fill(bar + SCALE..bar + SCALE + 6, y as u32..y as u32 + 1, canvas::INK);
-        canvas.write(&number(value, step), ((bar + SCALE + 11) as f32, y), Anchor::Start, TEXT);
+        canvas.fill(bar + SCALE_WIDTH..bar + SCALE_WIDTH + 6, y as u32..y as u32 + 1, canvas::INK);
+        canvas.write(&number(value, step), ((bar + SCALE_WIDTH + 11) as f32, y), Anchor::Start, TEXT_SIZE);
     }
-    canvas.write(&map.unit, (bar as f32, above as f32 - 18.0), Anchor::Start, TEXT);
+    canvas.write(&map.unit, (bar as f32, above as f32 - 18.0), Anchor::Start, TEXT_SIZE);
     Ok(canvas)
 }
 
-/// Width and height of the cells in pixels: to scale, unless they are very narrow.
+/// Returns the width and height of the grid in pixels: to scale, unless it is very narrow.
 fn extent(size: [f64; 2]) -> [u32; 2] {
-    let scale = (LARGEST[0] / size[0]).min(LARGEST[1] / size[1]);
-    size.map(|length| (length * scale).round().max(LEAST) as u32)
+    let scale = (MAX_SIZE[0] / size[0]).min(MAX_SIZE[1] / size[1]);
+    size.map(|length| (length * scale).round().max(MIN_SIZE) as u32)
 }
 
-/// Meters along the edges, from the lower left corner.
+/// Draws axes in meters along the edges, from the lower left corner.
 fn draw_axes(canvas: &mut Canvas, size: [f64; 2], [left, above]: [u32; 2], [width, height]: [u32; 2]) {
     let bottom = above + height;
     let steps = [width, height].map(|pixels| f64::from(pixels) / 70.0);
@@ -113,17 +115,18 @@ fn draw_axes(canvas: &mut Canvas, size: [f64; 2], [left, above]: [u32; 2], [widt
     for meters in multiples(step, 0.0, size[0]) {
         let x = left + (meters / size[0] * f64::from(width)).round() as u32;
         canvas.fill(x..x + 1, bottom..bottom + 6, canvas::INK);
-        canvas.write(&number(meters, step), (x as f32, bottom as f32 + 17.0), Anchor::Middle, TEXT);
+        canvas.write(&number(meters, step), (x as f32, bottom as f32 + 17.0), Anchor::Middle, TEXT_SIZE);
     }
     for meters in multiples(step, 0.0, size[1]) {
         let y = bottom - (meters / size[1] * f64::from(height)).round() as u32;
         canvas.fill(left - 6..left, y..y + 1, canvas::INK);
-        canvas.write(&number(meters, step), (left as f32 - 10.0, y as f32), Anchor::End, TEXT);
+        canvas.write(&number(meters, step), (left as f32 - 10.0, y as f32), Anchor::End, TEXT_SIZE);
     }
-    canvas.write("m", ((left + width / 2) as f32, bottom as f32 + 40.0), Anchor::Middle, TEXT);
+    canvas.write("m", ((left + width / 2) as f32, bottom as f32 + 40.0), Anchor::Middle, TEXT_SIZE);
 }
 
-/// The ends of the scale: from 0, unless the values differ by less than a half.
+/// Returns the ends of the scale. It begins at 0, unless values are negative or differ by no more than half of the
+/// largest.
 fn range(values: &[Option<f64>]) -> (f64, f64) {
     let known = values.iter().flatten().copied().filter(|value| value.is_finite());
     let (least, most) =
@@ -131,7 +134,7 @@ fn range(values: &[Option<f64>]) -> (f64, f64) {
     match (least, most) {
         _ if least > most => (0.0, 1.0),
         _ if most > 0.0 && least >= 0.0 && least < 0.5 * most => (0.0, most),
-        // All alike: a scale about them.
+        // Equal values: a scale around them.
         _ if most - least <= 1e-9 * most.abs() => {
             (least - 0.5 * least.abs().max(1e-9), most + 0.5 * most.abs().max(1e-9))
         }
@@ -139,7 +142,7 @@ fn range(values: &[Option<f64>]) -> (f64, f64) {
     }
 }
 
-/// The smallest of 1, 2 and 5 times a power of ten that is not below `least`.
+/// Returns the smallest of 1, 2 and 5 times a power of ten that is at least `least`.
 fn step(least: f64) -> f64 {
     let power = 10f64.powf(least.max(f64::MIN_POSITIVE).log10().floor());
     [1.0, 2.0, 5.0]
@@ -149,13 +152,13 @@ fn step(least: f64) -> f64 {
         .unwrap_or(10.0 * power)
 }
 
-/// The multiples of `step` from `first` to `last`.
+/// Returns the multiples of `step` from `first` to `last`.
 fn multiples(step: f64, first: f64, last: f64) -> impl Iterator<Item = f64> {
     let start = (first / step - 1e-9).ceil();
     (0..100).map(move |i| (start + f64::from(i)) * step).take_while(move |x| *x <= last + 1e-9 * step)
 }
 
-/// A multiple of `step` with as many decimals as that needs.
+/// Formats a multiple of `step` with the number of decimals that it needs.
 fn number(x: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
     if x.abs() >= 1e7 || decimals > 6 { format!("{x:.1e}") } else { format!("{x:.decimals$}") }
@@ -179,7 +182,7 @@ mod tests {
             *drawn.image.get_pixel(MARGIN[0] + x, MARGIN[1] + y)
         };
         assert_eq!(at(0.25, 0.25), viridis(0.0));
-        assert_eq!(at(0.75, 0.25), NOTHING);
+        assert_eq!(at(0.75, 0.25), NO_VALUE);
         assert_eq!(at(0.25, 0.75), viridis(0.5));
         assert_eq!(at(0.75, 0.75), viridis(1.0));
     }
@@ -193,7 +196,11 @@ mod tests {
             (1, [1.0, 1.0], vec![Some(0.0)]),
         ] {
             let drawn = draw(&map(columns, size, values)).unwrap();
-            assert!(drawn.image.width() >= WIDTH && drawn.image.width() < 1300, "{}", drawn.image.width());
+            assert!(
+                drawn.image.width() >= MIN_WIDTH && drawn.image.width() < 1300,
+                "{}",
+                drawn.image.width()
+            );
         }
     }
 

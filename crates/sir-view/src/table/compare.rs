@@ -1,11 +1,11 @@
-//! How far two solutions of the same patches are apart.
+//! Comparison of two solutions of the same patches.
 
 use sir_geom::{Rgb, luminance};
 
 use crate::error::ViewError;
 use crate::table::patch_table::Table;
 
-/// The difference of the radiosities in one band, or in luminance.
+/// Difference of the radiosities in one band, or in luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandComparison {
     /// Area-weighted mean of the radiosity of the first table \[W/m²\].
@@ -16,10 +16,10 @@ pub struct BandComparison {
     pub relative_bias: f64,
 }
 
-/// A row in which two tables differ much.
+/// A row with a large difference between two tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstRow {
-    /// Place of the row in both tables, from 0.
+    /// Index of the row in both tables, from 0.
     pub row: usize,
     /// Number of the patch.
     pub patch: u32,
@@ -27,38 +27,38 @@ pub struct WorstRow {
     pub triangle: u32,
     /// Luminance of the radiosity in the first and in the second table \[W/m²\].
     pub luminance: [f64; 2],
-    /// Second minus first over the standard error of this difference, in the band where that is largest; `None`
-    /// if a table does not state its error there.
+    /// Second minus first over the standard error of this difference, in the band where it is largest; `None` if there
+    /// is no band in which both tables state an error.
     pub z: Option<f64>,
 }
 
-/// What [`compare`] finds.
+/// Result of [`compare`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Rows compared.
+    /// Number of rows compared.
     pub rows: usize,
-    /// Red, green and blue.
+    /// Differences in red, green and blue.
     pub bands: [BandComparison; 3],
-    /// Rec. 709 luminance.
+    /// Difference in Rec. 709 luminance.
     pub luminance: BandComparison,
     /// Largest `|z|` of all rows and bands; `None` if no row states its error in both tables.
     pub largest_z: Option<f64>,
-    /// The rows that add most to the difference in luminance (area times square of the difference), worst first.
+    /// Rows that contribute most to the difference in luminance (area times square of the difference), worst first.
     pub worst: Vec<WorstRow>,
 }
 
-/// How many of the worst rows are listed.
-const WORST: usize = 10;
+/// Largest number of worst rows listed.
+const MAX_WORST_ROWS: usize = 10;
 
-/// Largest relative difference of the areas of what shall be the same patch.
-const SAME_AREA: f64 = 1e-6;
+/// Largest relative difference of the areas of the same patch in two tables.
+const AREA_TOLERANCE: f64 = 1e-6;
 
-/// Compares the radiosities of two tables of the same patches. Differences are relative to the area-weighted
-/// mean radiosity of the first table (zero if both are black, infinite if only the first is).
+/// Compares the radiosities of two tables of the same patches. Differences are relative to the area-weighted mean
+/// radiosity of the first table (zero if both are black, infinite if only the first is).
 ///
 /// # Errors
 ///
-/// If the tables differ in the number of rows or in the patch or area of one.
+/// If the tables differ in the number of rows, or in the patch or area of a row.
 pub fn compare(a: &Table, b: &Table) -> Result<Comparison, ViewError> {
     check_match(a, b)?;
     let band = |value: &dyn Fn(Rgb) -> f64| {
@@ -85,7 +85,7 @@ pub fn compare(a: &Table, b: &Table) -> Result<Comparison, ViewError> {
     };
     let mut order: Vec<usize> = (0..a.rows.len()).filter(|&i| weight(i) > 0.0).collect();
     order.sort_by(|&i, &j| weight(j).total_cmp(&weight(i)).then(i.cmp(&j)));
-    order.truncate(WORST);
+    order.truncate(MAX_WORST_ROWS);
     Ok(Comparison {
         rows: a.rows.len(),
         bands: [band(&|c| c.x), band(&|c| c.y), band(&|c| c.z)],
@@ -116,7 +116,7 @@ fn check_match(a: &Table, b: &Table) -> Result<(), ViewError> {
                 x.patch, y.patch
             ));
         }
-        if (x.area - y.area).abs() > SAME_AREA * x.area {
+        if (x.area - y.area).abs() > AREA_TOLERANCE * x.area {
             return mismatch(format!(
                 "patch {} (row {number}) has the area {} in the first, {} in the second",
                 x.patch, x.area, y.area
@@ -126,7 +126,7 @@ fn check_match(a: &Table, b: &Table) -> Result<(), ViewError> {
     Ok(())
 }
 
-/// The largest difference of a row in standard errors, over the bands in which both tables state an error.
+/// Returns the largest difference of a row in standard errors, over the bands in which both tables state an error.
 fn z_score(a: &Table, b: &Table, row: usize) -> Option<f64> {
     let (x, y) = (&a.rows[row], &b.rows[row]);
     (0..3)

@@ -15,7 +15,7 @@ pub(super) fn write(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
         csv.write_field(row.patch.to_string())?;
         csv.write_field(row.triangle.to_string())?;
         for x in row.numbers() {
-            // The debug form is the shortest that reads back to the same number, with an exponent if that is short.
+            // The `Debug` form is the shortest that reads back to the same number, with an exponent if that is shorter.
             csv.write_field(format!("{x:?}"))?;
         }
         csv.write_record(None::<&[u8]>)?;
@@ -37,7 +37,7 @@ pub(super) fn read(path: &Path, file: impl Read) -> Result<Vec<Row>, ViewError> 
     let mut rows = Vec::new();
     let mut fields = StringRecord::new();
     while csv.read_record(&mut fields).map_err(failed)? {
-        // A line of spaces.
+        // A blank line.
         if fields.iter().all(str::is_empty) {
             continue;
         }

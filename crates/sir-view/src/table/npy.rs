@@ -1,8 +1,8 @@
 //! Tables as NumPy arrays.
 //!
-//! The `.npy` format, version 1.0 (NumPy Enhancement Proposal 1): the magic bytes, the version, the length of the
-//! header in two bytes, a Python dictionary as text that names the columns, filled up with spaces to a multiple of
-//! 64, and then the rows, packed, little-endian.
+//! The `.npy` format, version 1.0 (NumPy Enhancement Proposal 1), consists of the magic bytes, the version, the length
+//! of the header in two bytes, the header, and the rows, packed and little-endian. The header is a Python dictionary as
+//! text that names the columns, padded with spaces so that the rows begin at a multiple of 64 bytes.
 
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -12,10 +12,10 @@ use crate::table::row::{COLUMNS, Row, WHOLE_COLUMNS, bad_value, checked, row};
 
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// Bytes of a row.
-const ROW: usize = 4 * WHOLE_COLUMNS + 8 * (COLUMNS.len() - WHOLE_COLUMNS);
+/// Size of a row in bytes.
+const ROW_BYTES: usize = 4 * WHOLE_COLUMNS + 8 * (COLUMNS.len() - WHOLE_COLUMNS);
 
-/// The part of the header that says what the columns are.
+/// Returns the part of the header that describes the columns.
 fn description() -> String {
     let columns: Vec<String> = COLUMNS
         .iter()
@@ -65,12 +65,12 @@ pub(super) fn read(path: &Path, mut file: impl Read) -> Result<Vec<Row>, ViewErr
         .split_once("'shape': (")
         .and_then(|(_, rest)| rest.split_once(','))
         .and_then(|(count, _)| count.trim().parse::<usize>().ok())
-        .ok_or_else(|| not_a_table("its header does not say how many rows there are"))?;
+        .ok_or_else(|| not_a_table("its header does not state the number of rows"))?;
     let mut rows = Vec::new();
-    let mut bytes = [0; ROW];
+    let mut bytes = [0; ROW_BYTES];
     for number in 1..=count {
         if file.read_exact(&mut bytes).is_err() {
-            return Err(not_a_table(&format!("it ends before row {number} of {count}: it was cut short")));
+            return Err(not_a_table(&format!("it ends before row {number} of {count} (truncated file)")));
         }
         let mut values = [0.0; COLUMNS.len()];
         let (whole, numbers) = bytes.split_at(4 * WHOLE_COLUMNS);

@@ -1,4 +1,4 @@
-//! The table of a solution: made, written and read.
+//! The table of a solution: creation, writing and reading.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
@@ -13,7 +13,7 @@ use crate::error::ViewError;
 use crate::table::row::Row;
 use crate::table::{csv, npy};
 
-/// One row for every active side of every patch, in the order of their numbers.
+/// Table with one row per active side of every patch, in the order of side numbers.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Table {
     /// The rows.
@@ -21,15 +21,15 @@ pub struct Table {
 }
 
 impl Table {
-    /// The table of a solution: the irradiance `E` \[W/m²\] of every [`SideId`](sir_mesh::SideId), and its
+    /// Creates the table of a solution: the irradiance `E` \[W/m²\] of every [`SideId`](sir_mesh::SideId), and its
     /// standard error.
     ///
-    /// A two-sided patch has two rows, with opposite normals. A face that is one patch has the center and the mean
+    /// A two-sided patch has two rows with opposite normals. A face that is one patch has the center and the mean
     /// normal of all its triangles, and the number of the first one.
     ///
     /// # Panics
     ///
-    /// If there is not one irradiance and one error for every side.
+    /// If there is not exactly one irradiance and one error for every side.
     #[must_use]
     pub fn new(scene: &Scene, mesh: &PatchMesh, irradiance: &[Rgb], error: &[Rgb]) -> Self {
         assert_eq!(irradiance.len(), mesh.side_count(), "one irradiance for every side of the mesh");
@@ -49,7 +49,7 @@ impl Table {
                 error: reflectance * se,
             });
         });
-        // Centers and normals are means over all triangles of a patch, which are several if faces are patches.
+        // Centers and normals are means over all triangles of a patch: more than one if faces are patches.
         for t in scene.triangle_ids() {
             let (corners, normal) = (scene.corners(t), scene.normal(t));
             let patches = mesh.patches_of(t);
@@ -71,8 +71,8 @@ impl Table {
         Self { rows }
     }
 
-    /// Writes comma-separated values: a line with the names of the columns, then a line for each row. Numbers are
-    /// as short as they can be without loss.
+    /// Writes comma-separated values: a line with the names of the columns, then a line per row. Numbers have the
+    /// shortest form without loss.
     ///
     /// # Errors
     ///
@@ -91,8 +91,8 @@ impl Table {
         write_atomically(path, |file| npy::write(&self.rows, file))
     }
 
-    /// Reads a file that one of the above has written; its first bytes tell which. A CSV file may have its columns
-    /// in another order, and further ones.
+    /// Reads a file written by [`Table::write_csv`] or [`Table::write_npy`]; its first bytes tell which. A CSV file may
+    /// have its columns in another order, and additional columns.
     ///
     /// # Errors
     ///

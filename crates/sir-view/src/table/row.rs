@@ -1,4 +1,4 @@
-//! Rows of a table, and what may stand in them.
+//! Rows of a table, and their valid values.
 
 use std::path::Path;
 
@@ -14,13 +14,13 @@ pub struct Row {
     pub patch: u32,
     /// Number of its triangle in the scene's file, from 0.
     pub triangle: u32,
-    /// Area \[m²\], gaps included.
+    /// Area \[m²\], including gaps.
     pub area: f64,
     /// Center of area \[m\].
     pub center: DVec3,
     /// Unit normal on this side.
     pub normal: DVec3,
-    /// Radiosity `B` \[W/m²\] of what is not gap; with a texture, its mean.
+    /// Radiosity `B` \[W/m²\] of the part that is not gap; with a texture, its mean.
     pub radiosity: Rgb,
     /// Irradiance `E` \[W/m²\].
     pub irradiance: Rgb,
@@ -28,17 +28,17 @@ pub struct Row {
     pub error: Rgb,
 }
 
-/// Names of the columns, in the order of a file.
+/// Names of the columns, in file order.
 pub const COLUMNS: [&str; 18] = [
     "patch", "triangle", "area", "cx", "cy", "cz", "nx", "ny", "nz", "B_r", "B_g", "B_b", "E_r", "E_g",
     "E_b", "se_r", "se_g", "se_b",
 ];
 
-/// How many of the [`COLUMNS`], the first ones, hold whole numbers.
+/// Number of leading [`COLUMNS`] that hold integers.
 pub(super) const WHOLE_COLUMNS: usize = 2;
 
 impl Row {
-    /// The columns after the whole numbers.
+    /// Returns the columns after the integers.
     pub(super) fn numbers(&self) -> [f64; COLUMNS.len() - WHOLE_COLUMNS] {
         let mut out = [self.area; COLUMNS.len() - WHOLE_COLUMNS];
         let vectors = [self.center, self.normal, self.radiosity, self.irradiance, self.error];
@@ -63,7 +63,7 @@ impl Row {
     }
 }
 
-/// A value as a row of a table may hold it; otherwise why it may not.
+/// Returns the value if it is valid in this column, otherwise the reason why not.
 pub(super) fn checked(column: usize, value: f64) -> Result<f64, String> {
     if !value.is_finite() {
         Err(format!("{value} is not a finite number"))
@@ -76,12 +76,12 @@ pub(super) fn checked(column: usize, value: f64) -> Result<f64, String> {
     }
 }
 
-/// What to say of a value that may not stand in a row and column of a table file.
+/// Creates the error for an invalid value in a row and column of a table file.
 pub(super) fn bad_value(path: &Path, row: usize, column: usize, why: String) -> ViewError {
     ViewError::BadValue { path: path.to_owned(), row, column: COLUMNS[column].to_owned(), why }
 }
 
-/// A row from values in the order of the columns, all of them checked.
+/// Creates a row from checked values in the order of the columns.
 pub(super) fn row(values: &[f64; COLUMNS.len()]) -> Row {
     let mut numbers = [0.0; COLUMNS.len() - WHOLE_COLUMNS];
     numbers.copy_from_slice(&values[WHOLE_COLUMNS..]);

@@ -1,4 +1,4 @@
-//! The backend.
+//! The AVX2 backend.
 #![allow(unsafe_code, reason = "vector instructions; the token proves them")]
 
 use std::arch::x86_64::*;
@@ -60,7 +60,7 @@ impl SimdBackend for Avx2 {
 
     #[inline(always)]
     fn highest_bits(self, numbers: &[u32; NODE_WIDTH]) -> u32 {
-        // SAFETY: the token proves AVX; the array has twice 8 numbers.
+        // SAFETY: the token proves AVX; the array has twice 8 elements.
         unsafe {
             let low = _mm256_movemask_ps(_mm256_loadu_ps(numbers.as_ptr().cast())) as u32;
             let high = _mm256_movemask_ps(_mm256_loadu_ps(numbers.as_ptr().add(8).cast())) as u32;
@@ -70,7 +70,7 @@ impl SimdBackend for Avx2 {
 
     #[inline(always)]
     fn compress(self, numbers: &[u32; NODE_WIDTH], mask: u32, to: &mut [u32; NODE_WIDTH]) {
-        // SAFETY: the token proves AVX; the array has twice 8 numbers.
+        // SAFETY: the token proves AVX; the array has twice 8 elements.
         let halves = unsafe {
             [_mm256_loadu_si256(numbers.as_ptr().cast()), _mm256_loadu_si256(numbers.as_ptr().add(8).cast())]
         };
@@ -79,7 +79,7 @@ impl SimdBackend for Avx2 {
 
     #[inline(always)]
     fn compress_range(self, first: u32, mask: u32, to: &mut [u32; LEAF_WIDTH]) {
-        // SAFETY: the token proves AVX2; the array has 8 places.
+        // SAFETY: the token proves AVX2; the array has 8 elements.
         unsafe {
             let numbers = _mm256_add_epi32(lane_numbers(self), _mm256_set1_epi32(first as i32));
             _mm256_storeu_si256(to.as_mut_ptr().cast(), compress8(self, numbers, mask));
@@ -101,9 +101,10 @@ impl SimdBackend for Avx2 {
             keys.store(&mut all);
             return insertion::sort(&all, numbers, mask, keys_to, to);
         }
-        // SAFETY: the token proves AVX2; the arrays have 16 numbers.
+        // SAFETY: the token proves AVX2; the arrays have 16 elements.
         unsafe {
-            // The number of the lane replaces the last bits of its key. Keys are not negative, so they are ordered as integers are.
+            // The lane number replaces the last bits of its key. Keys are not negative, so their bits have the order of
+            // integers.
             let exact = _mm256_set1_epi32(!(NODE_WIDTH as i32 - 1));
             let with_lane = |keys: __m256i, first: i32| {
                 let lanes = _mm256_add_epi32(lane_numbers(self), _mm256_set1_epi32(first));
@@ -112,7 +113,7 @@ impl SimdBackend for Avx2 {
             let mut front = [0; NODE_WIDTH];
             let [low, high] = keys.to_bits();
             compress16(self, [with_lane(low, 0), with_lane(high, 8)], mask, &mut front);
-            // Unused places become zero and end up last.
+            // Unused lanes become zero and end up last.
             let used = _mm256_cmpgt_epi32(_mm256_set1_epi32(count as i32), lane_numbers(self));
             let keys = _mm256_and_si256(_mm256_loadu_si256(front.as_ptr().cast()), used);
             let keys = if count > 4 { sort8(self, keys) } else { sort4(self, keys) };
@@ -120,7 +121,7 @@ impl SimdBackend for Avx2 {
                 let half = _mm256_loadu_si256(numbers.as_ptr().add(start).cast());
                 _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(half, keys))
             };
-            // The fourth bit of the lane tells the half.
+            // The fourth bit of the lane number selects the half.
             let second = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(keys));
             _mm256_storeu_ps(to.as_mut_ptr().cast(), _mm256_blendv_ps(half(0), half(8), second));
             _mm256_storeu_si256(keys_to.as_mut_ptr().cast(), _mm256_and_si256(keys, exact));

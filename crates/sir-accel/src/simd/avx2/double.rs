@@ -1,4 +1,4 @@
-//! Numbers in double precision.
+//! Vectors of numbers in double precision.
 #![allow(unsafe_code, reason = "vector instructions; values exist only where the token proves them")]
 
 use std::arch::x86_64::*;
@@ -7,19 +7,19 @@ use crate::simd::avx2::token::Avx2;
 use crate::simd::backend::{F64Lanes, F64Store, LEAF_WIDTH};
 use crate::simd::x86::halves;
 
-/// Eight numbers in two halves. They hold the token that proves AVX2.
+/// Eight numbers in two halves. The value holds the token that proves AVX2.
 #[derive(Clone, Copy)]
 pub(crate) struct F64x8(__m256d, __m256d, Avx2);
 
 impl F64x8 {
-    /// Reads a number per lane.
+    /// Loads one number per lane.
     #[inline(always)]
     pub(crate) fn load(token: Avx2, numbers: &[f64; LEAF_WIDTH]) -> Self {
-        // SAFETY: the token proves AVX; the array has twice 4 numbers.
+        // SAFETY: the token proves AVX; the array has twice 4 elements.
         unsafe { Self(_mm256_loadu_pd(numbers.as_ptr()), _mm256_loadu_pd(numbers.as_ptr().add(4)), token) }
     }
 
-    /// The same number in all lanes.
+    /// Returns a vector with the same number in all lanes.
     #[inline(always)]
     pub(crate) fn splat(token: Avx2, number: f64) -> Self {
         // SAFETY: the token proves AVX.
@@ -27,10 +27,10 @@ impl F64x8 {
         Self(all, all, token)
     }
 
-    /// Converts a number per lane.
+    /// Converts one number per lane.
     #[inline(always)]
     pub(crate) fn from_i32(token: Avx2, numbers: &[i32; LEAF_WIDTH]) -> Self {
-        // SAFETY: the token proves AVX; the array has twice 4 numbers.
+        // SAFETY: the token proves AVX; the array has twice 4 elements.
         unsafe {
             let low = _mm_loadu_si128(numbers.as_ptr().cast());
             let high = _mm_loadu_si128(numbers.as_ptr().add(4).cast());
@@ -38,10 +38,10 @@ impl F64x8 {
         }
     }
 
-    /// Converts a number per lane.
+    /// Converts one number per lane.
     #[inline(always)]
     pub(crate) fn from_f32(token: Avx2, numbers: &[f32; LEAF_WIDTH]) -> Self {
-        // SAFETY: the token proves AVX; the array has twice 4 numbers.
+        // SAFETY: the token proves AVX; the array has twice 4 elements.
         unsafe {
             let (low, high) = (_mm_loadu_ps(numbers.as_ptr()), _mm_loadu_ps(numbers.as_ptr().add(4)));
             Self(_mm256_cvtps_pd(low), _mm256_cvtps_pd(high), token)
@@ -49,7 +49,7 @@ impl F64x8 {
     }
 }
 
-/// A method that gives the mask of the lanes for which a comparison holds.
+/// Defines a method that returns the mask of the lanes for which a comparison holds.
 macro_rules! mask {
     ($method:ident, $comparison:ident) => {
         #[inline(always)]
@@ -82,7 +82,7 @@ impl F64Lanes for F64x8 {
 impl F64Store for F64x8 {
     #[inline(always)]
     fn store(self, to: &mut [f64; LEAF_WIDTH]) {
-        // SAFETY: the value holds the token; the array has twice 4 places.
+        // SAFETY: the value holds the token; the array has twice 4 elements.
         unsafe {
             _mm256_storeu_pd(to.as_mut_ptr(), self.0);
             _mm256_storeu_pd(to.as_mut_ptr().add(4), self.1);

@@ -1,4 +1,4 @@
-//! Integers in vectors: sorting networks, and bringing some lanes to the front.
+//! Vectors of integers: sorting networks, and compression of lanes to the front.
 #![allow(unsafe_code, reason = "vector instructions; each function takes the token that proves them")]
 
 use std::arch::x86_64::*;
@@ -6,8 +6,8 @@ use std::arch::x86_64::*;
 use crate::simd::avx2::token::Avx2;
 use crate::simd::backend::NODE_WIDTH;
 
-/// Does a step of a sorting network: lanes exchange their numbers with the lanes of the order, and those in the mask keep
-/// the smaller one, the others the larger one.
+/// Performs a step of a sorting network: compares each lane with the lane that `order` names for it. Lanes in the mask
+/// `SMALLER` keep the smaller number, the others the larger one.
 #[inline(always)]
 fn exchange<const SMALLER: i32>(_: Avx2, numbers: __m256i, order: [i32; 8]) -> __m256i {
     let [a, b, c, d, e, f, g, h] = order;
@@ -37,14 +37,14 @@ pub(crate) fn sort8(token: Avx2, numbers: __m256i) -> __m256i {
     exchange::<0b0101_0100>(token, numbers, [0, 2, 1, 4, 3, 6, 5, 7])
 }
 
-/// The numbers of the lanes.
+/// Returns the lane numbers.
 #[inline(always)]
 pub(crate) fn lane_numbers(_: Avx2) -> __m256i {
     // SAFETY: the token proves AVX2.
     unsafe { _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7) }
 }
 
-/// Brings the numbers in the mask to the front; only the lowest eight bits of the mask count.
+/// Moves the numbers in the mask to the front; only the lowest eight bits of the mask are used.
 #[inline(always)]
 pub(crate) fn compress8(_: Avx2, numbers: __m256i, mask: u32) -> __m256i {
     let order = &FRONTS[mask as usize & 0xFF];
@@ -59,7 +59,7 @@ pub(crate) fn compress8(_: Avx2, numbers: __m256i, mask: u32) -> __m256i {
 #[inline(always)]
 pub(crate) fn compress16(token: Avx2, halves: [__m256i; 2], mask: u32, to: &mut [u32; NODE_WIDTH]) {
     let (low, high) = (mask & 0xFF, mask >> 8 & 0xFF);
-    // SAFETY: the token proves AVX2; `to` has 16 places, and the second half begins after 8 of them at most.
+    // SAFETY: the token proves AVX2; `to` has 16 elements, and the second half begins after at most 8 of them.
     unsafe {
         let second = to.as_mut_ptr().add(low.count_ones() as usize);
         _mm256_storeu_si256(to.as_mut_ptr().cast(), compress8(token, halves[0], low));
@@ -67,7 +67,7 @@ pub(crate) fn compress16(token: Avx2, halves: [__m256i; 2], mask: u32, to: &mut 
     }
 }
 
-/// For each mask of eight lanes, the lanes in it.
+/// Lanes in each mask of eight lanes.
 static FRONTS: [[u8; 8]; 256] = {
     let mut fronts = [[0; 8]; 256];
     let mut mask = 0;

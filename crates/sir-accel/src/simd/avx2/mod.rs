@@ -1,4 +1,4 @@
-//! AVX2 and FMA: 8 numbers in single precision, or 4 in double precision, at a time.
+//! AVX2 and FMA backend: 8 numbers in single precision, or 4 in double precision, at a time.
 
 mod backend;
 pub(crate) mod double;

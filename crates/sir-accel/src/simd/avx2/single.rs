@@ -1,4 +1,4 @@
-//! Numbers in single precision.
+//! Vectors of numbers in single precision.
 #![allow(unsafe_code, reason = "vector instructions; values exist only where the token proves them")]
 
 use std::arch::x86_64::*;
@@ -8,19 +8,19 @@ use crate::simd::avx2::token::Avx2;
 use crate::simd::backend::{F32Lanes, LEAF_WIDTH, NODE_WIDTH};
 use crate::simd::x86::{halves, lanewise};
 
-/// Eight numbers. They hold the token that proves AVX2 and FMA.
+/// Eight numbers. The value holds the token that proves AVX2 and FMA.
 #[derive(Clone, Copy)]
 pub(crate) struct F32x8(__m256, Avx2);
 
 impl F32x8 {
-    /// Reads a number per lane.
+    /// Loads one number per lane.
     #[inline(always)]
     pub(crate) fn load(token: Avx2, numbers: &[f32; LEAF_WIDTH]) -> Self {
-        // SAFETY: the token proves AVX; the array has 8 numbers.
+        // SAFETY: the token proves AVX; the array has 8 elements.
         Self(unsafe { _mm256_loadu_ps(numbers.as_ptr()) }, token)
     }
 
-    /// The same number in all lanes.
+    /// Returns a vector with the same number in all lanes.
     #[inline(always)]
     pub(crate) fn splat(token: Avx2, number: f32) -> Self {
         // SAFETY: the token proves AVX.
@@ -28,19 +28,19 @@ impl F32x8 {
     }
 }
 
-/// Sixteen numbers in two halves. They hold the token that proves AVX2 and FMA.
+/// Sixteen numbers in two halves. The value holds the token that proves AVX2 and FMA.
 #[derive(Clone, Copy)]
 pub(crate) struct F32x16(__m256, __m256, Avx2);
 
 impl F32x16 {
-    /// Reads a number per lane.
+    /// Loads one number per lane.
     #[inline(always)]
     pub(crate) fn load(token: Avx2, numbers: &[f32; NODE_WIDTH]) -> Self {
-        // SAFETY: the token proves AVX; the array has twice 8 numbers.
+        // SAFETY: the token proves AVX; the array has twice 8 elements.
         unsafe { Self(_mm256_loadu_ps(numbers.as_ptr()), _mm256_loadu_ps(numbers.as_ptr().add(8)), token) }
     }
 
-    /// The same number in all lanes.
+    /// Returns a vector with the same number in all lanes.
     #[inline(always)]
     pub(crate) fn splat(token: Avx2, number: f32) -> Self {
         // SAFETY: the token proves AVX.
@@ -48,17 +48,17 @@ impl F32x16 {
         Self(all, all, token)
     }
 
-    /// Writes a number per lane.
+    /// Stores one number per lane.
     #[inline(always)]
     pub(crate) fn store(self, to: &mut [f32; NODE_WIDTH]) {
-        // SAFETY: the value holds the token; the array has twice 8 places.
+        // SAFETY: the value holds the token; the array has twice 8 elements.
         unsafe {
             _mm256_storeu_ps(to.as_mut_ptr(), self.0);
             _mm256_storeu_ps(to.as_mut_ptr().add(8), self.1);
         }
     }
 
-    /// The bits of the two halves.
+    /// Returns the bits of the two halves.
     #[inline(always)]
     pub(crate) fn to_bits(self) -> [__m256i; 2] {
         // SAFETY: the value holds the token.
@@ -66,7 +66,7 @@ impl F32x16 {
     }
 }
 
-/// The mask of the lanes where `a ≤ b`.
+/// Returns the mask of the lanes where `a ≤ b`.
 #[inline(always)]
 fn mask_le(_: Avx2, a: __m256, b: __m256) -> u32 {
     // SAFETY: the token proves AVX.
@@ -83,7 +83,7 @@ impl F32Lanes<LEAF_WIDTH> for F32x8 {
 
     #[inline(always)]
     fn compress(self, mask: u32, to: &mut [f32; LEAF_WIDTH]) {
-        // SAFETY: the value holds the token; the array has 8 places.
+        // SAFETY: the value holds the token; the array has 8 elements.
         unsafe {
             let front = compress8(self.1, _mm256_castps_si256(self.0), mask);
             _mm256_storeu_si256(to.as_mut_ptr().cast(), front);

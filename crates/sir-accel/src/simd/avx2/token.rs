@@ -1,11 +1,11 @@
-//! The proof that the processor has AVX2.
+//! Token that proves AVX2.
 
-/// Exists only if the processor has AVX2, FMA, BMI1, BMI2 and POPCNT.
+/// Token that exists only if the processor has AVX2, FMA, BMI1, BMI2 and POPCNT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Avx2(());
 
 impl Avx2 {
-    /// Asks the processor.
+    /// Returns the token if the processor has the instructions.
     pub(crate) fn detect() -> Option<Self> {
         let has_all = is_x86_feature_detected!("avx2")
             && is_x86_feature_detected!("fma")

@@ -7,10 +7,11 @@ use ::gltf::json::{Index, buffer};
 use crate::load::error::LoadError;
 use crate::load::gltf::reader::{Reader, lookup};
 
-/// The most elements that no buffer view backs, of all accessors together, as often as they are read: zeros cost a file nothing.
+/// Maximum number of accessor elements without a buffer view, summed over all accessors each time they are read: such
+/// zeros cost a file nothing.
 const MAX_UNBACKED: usize = 1 << 16;
 
-/// How the components of an element are stored.
+/// Storage format of the components of an element.
 #[derive(Clone, Copy)]
 struct Layout {
     component: ComponentType,
@@ -18,7 +19,7 @@ struct Layout {
 }
 
 impl Reader<'_> {
-    /// The bytes of a buffer view and its stride. `what` names who asks.
+    /// Returns the bytes of a buffer view and its stride. `what` names the requester in error messages.
     pub(super) fn view(
         &self,
         index: Index<buffer::View>,
@@ -47,15 +48,15 @@ impl Reader<'_> {
                 buffer.len()
             ))
         })?;
-        // A stride of zero is not valid, but written by some exporters for "none".
+        // A stride of zero is invalid, but some exporters write it for "none".
         Ok((bytes, view.byte_stride.map(|stride| stride.0).filter(|&stride| stride > 0)))
     }
 
-    /// All elements of an accessor of `N` components each, as numbers.
+    /// Returns all elements of an accessor, of `N` components each, as numbers.
     ///
     /// # Errors
     ///
-    /// If the accessor has another type, a component type that is not among `allowed`, or data that is not there.
+    /// If the accessor has another type than `type_`, a component type that is not `allowed`, or missing data.
     pub(super) fn elements<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -71,11 +72,13 @@ impl Reader<'_> {
             {
                 Layout { component: t.0, normalized: accessor.normalized }
             }
-            _ => return Err(self.invalid(format!("{name} has a type that has no meaning there"))),
+            _ => return Err(self.invalid(format!("{name} has a type that is not allowed here"))),
         };
         let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
         let mut elements = match accessor.buffer_view {
-            Some(view) => self.run(view, accessor.byte_offset.unwrap_or_default().0, layout, count, &name)?,
+            Some(view) => {
+                self.read_elements(view, accessor.byte_offset.unwrap_or_default().0, layout, count, &name)?
+            }
             None => {
                 let so_far = self.unbacked.get().saturating_add(count);
                 if so_far > MAX_UNBACKED {
@@ -88,16 +91,17 @@ impl Reader<'_> {
         if let Some(sparse) = &accessor.sparse {
             let changes = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
             if changes > count {
-                return Err(self.invalid(format!("{name} has {count} elements, but changes {changes}")));
+                return Err(self
+                    .invalid(format!("{name} has {count} elements, but its sparse part changes {changes}")));
             }
             let Checked::Valid(index_type) = &sparse.indices.component_type else {
                 return Err(self.invalid(format!("{name} has sparse indices of an unknown type")));
             };
             let places = Layout { component: index_type.0, normalized: false };
             let at = (&sparse.indices.buffer_view, sparse.indices.byte_offset.0);
-            let places: Vec<[f64; 1]> = self.run(*at.0, at.1, places, changes, &name)?;
+            let places: Vec<[f64; 1]> = self.read_elements(*at.0, at.1, places, changes, &name)?;
             let from = (&sparse.values.buffer_view, sparse.values.byte_offset.0);
-            let values: Vec<[f64; N]> = self.run(*from.0, from.1, layout, changes, &name)?;
+            let values: Vec<[f64; N]> = self.read_elements(*from.0, from.1, layout, changes, &name)?;
             for ([place], value) in places.into_iter().zip(values) {
                 *elements
                     .get_mut(place as usize)
@@ -108,8 +112,8 @@ impl Reader<'_> {
         Ok(elements)
     }
 
-    /// `count` elements that start at an offset of a buffer view.
-    fn run<const N: usize>(
+    /// Returns `count` elements that start at an offset of a buffer view.
+    fn read_elements<const N: usize>(
         &self,
         view: Index<buffer::View>,
         offset: u64,
@@ -142,7 +146,7 @@ impl Reader<'_> {
 }
 
 impl Layout {
-    /// The number at the start of some bytes (glTF 2.0 specification, section 3.6.2).
+    /// Converts the first bytes to a number (glTF 2.0 specification, section 3.6.2).
     fn number(self, bytes: &[u8]) -> f64 {
         let (value, largest) = match (self.component, bytes) {
             (ComponentType::I8, &[a, ..]) => (f64::from(a as i8), 127.0),

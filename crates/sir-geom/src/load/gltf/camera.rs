@@ -6,9 +6,9 @@ use glam::{DAffine3, DVec3};
 
 use crate::camera::{Camera, Projection};
 
-/// A camera in world space: it looks along −z, with y up (glTF 2.0 specification, section 3.10).
+/// Converts a camera to world space. It looks along −z, with y up (glTF 2.0 specification, section 3.10).
 ///
-/// `None` if the file does not describe a picture: an opening angle of zero, for instance.
+/// Returns `None` if the camera cannot form a picture, for instance with a field of view of zero.
 pub(super) fn convert(source: &Source, name: &str, to_world: &DAffine3) -> Option<Camera> {
     let positive = |x: f32| (x.is_finite() && x > 0.0).then_some(f64::from(x));
     let (projection, aspect) = match source.type_ {

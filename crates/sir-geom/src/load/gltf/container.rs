@@ -1,4 +1,4 @@
-//! From files to the JSON document and its buffers.
+//! Reading of the JSON document and its buffers.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,10 +10,10 @@ use crate::load::error::LoadError;
 use crate::load::files;
 use crate::load::gltf::uri::{self, Reference};
 
-/// The most characters of what a parser says, which may quote the file at length.
-const MESSAGE: usize = 160;
+/// Maximum length of a parser's message \[characters\], which may quote the file at length.
+const MAX_MESSAGE_LENGTH: usize = 160;
 
-/// The document, and the binary part if the file is a GLB that has one.
+/// Reads the document, and the binary chunk if the file is a GLB that has one.
 pub(super) fn open(path: &Path) -> Result<(Root, Option<Vec<u8>>), LoadError> {
     let invalid = |what: String| LoadError::Gltf { path: path.to_owned(), what };
     let bytes = files::read_scene(path)?;
@@ -24,24 +24,24 @@ pub(super) fn open(path: &Path) -> Result<(Root, Option<Vec<u8>>), LoadError> {
         [0xef, 0xbb, 0xbf, text @ ..] => (text, None),
         text => (text, None),
     };
-    let said = |error: &dyn std::fmt::Display| files::shortened(&error.to_string(), MESSAGE);
+    let message = |error: &dyn std::fmt::Display| files::shortened(&error.to_string(), MAX_MESSAGE_LENGTH);
     let mut document: Value = deserialize::from_slice(json)
-        .map_err(|e| invalid(format!("its text is not whole JSON ({})", said(&e))))?;
+        .map_err(|e| invalid(format!("its text is not complete, valid JSON ({})", message(&e))))?;
     forget_unused(&mut document);
-    // Where a value is of the wrong kind, its path is of more use than its line.
+    // For a value of the wrong type, its path is more useful than its line.
     let root = serde_path_to_error::deserialize(document).map_err(|e| {
-        // The whole document is called ".".
+        // The path of the whole document is ".".
         let place = e.path().to_string();
         invalid(match place.as_str() {
-            "." => said(e.inner()),
-            place => format!("{}: {}", files::shortened(place, MESSAGE), said(e.inner())),
+            "." => message(e.inner()),
+            place => format!("{}: {}", files::shortened(place, MAX_MESSAGE_LENGTH), message(e.inner())),
         })
     })?;
     Ok((root, binary.map(<[u8]>::to_vec)))
 }
 
-/// Takes away what no scene needs, so that nothing in it is an error, and adds the empty list of nodes that a
-/// scene may leave out, but not for the crate `gltf`.
+/// Removes what no scene needs, so that errors in it do not matter. Adds the empty list of nodes that a scene may omit,
+/// but that the crate `gltf` requires.
 fn forget_unused(document: &mut Value) {
     let Some(members) = document.as_object_mut() else { return };
     for unused in ["animations", "skins"] {
@@ -59,31 +59,32 @@ fn forget_unused(document: &mut Value) {
     }
 }
 
-/// The JSON chunk and the binary chunk of a GLB (glTF 2.0 specification, section 4.4). What follows is ignored.
+/// Splits a GLB into the JSON chunk and the binary chunk (glTF 2.0 specification, section 4.4). Further data are
+/// ignored.
 fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), &'static str> {
     let word = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
     if word(4) != Some(2) {
         return Err("the version of its GLB header is not 2");
     }
     let end = word(8).map(|length| length as usize).filter(|&length| length <= bytes.len());
-    let end = end.ok_or("the file is shorter than its GLB header says; it was cut off")?;
+    let end = end.ok_or("the file is shorter than its GLB header states; it is truncated")?;
     let chunk = |at: usize, kind: &[u8; 4]| {
         let start = at + 8;
         let length = word(at)? as usize;
         (bytes.get(at + 4..start)? == kind && start <= end && length <= end - start)
             .then(|| &bytes[start..start + length])
     };
-    let json = chunk(12, b"JSON").ok_or("its first GLB chunk is not a whole JSON chunk")?;
+    let json = chunk(12, b"JSON").ok_or("its first GLB chunk is not a complete JSON chunk")?;
     let next = 20 + json.len();
     let binary = chunk(next, b"BIN\0");
     if binary.is_none() && bytes.get(next + 4..next + 8) == Some(b"BIN\0") {
-        return Err("its binary GLB chunk is cut off");
+        return Err("its binary GLB chunk is truncated");
     }
     Ok((json, binary))
 }
 
-/// The bytes of all buffers of a document. One with neither a URI nor the binary part is empty, which is a fault
-/// only if something refers to it. Buffers may share a file, which is then in memory once.
+/// Reads the bytes of all buffers of a document. A buffer with neither a URI nor the binary chunk is empty, which is an
+/// error only if something refers to it. A file that several buffers share is in memory once.
 pub(super) fn buffers(
     path: &Path,
     root: &Root,
@@ -122,7 +123,7 @@ pub(super) fn buffers(
     Ok(buffers)
 }
 
-/// What a URI of the file stands for. `element` is the part of the file that has it.
+/// Resolves a URI of the file. `element` names the part of the file that has it.
 pub(super) fn resolve(path: &Path, uri: &str, element: impl Fn() -> String) -> Result<Reference, LoadError> {
     uri::resolve(path, uri).map_err(|why| LoadError::Reference {
         path: path.to_owned(),

@@ -14,26 +14,26 @@ use crate::load::gltf::known::{Alpha, Known};
 use crate::load::gltf::reader::Reader;
 use crate::load::texture::Placement;
 
-/// The most sets of coordinates of a material: it has two textures.
-pub(super) const MOST_SETS: usize = 2;
+/// Maximum number of coordinate sets of a material, which has two textures.
+pub(super) const MAX_SETS: usize = 2;
 
-/// Attributes by their accessors, which primitives often share. Colors as they are in the file.
+/// Attribute values by accessor, because primitives often share them. Colors are as in the file.
 #[derive(Default)]
 pub(super) struct Attributes {
     places: HashMap<usize, Rc<[Vec2]>>,
     colors: HashMap<usize, Rc<[Vec4]>>,
 }
 
-/// What varies over the triangles of a primitive, vertex by vertex.
+/// Values that vary over the triangles of a primitive, per vertex.
 pub(super) struct Values {
-    /// The sets of coordinates, as many as are there in a row, and what becomes of each.
+    /// Coordinate sets up to the first that is missing, each with its transform.
     pub(super) coordinates: Vec<(Rc<[Vec2]>, Placement)>,
-    /// Colors, unless all are white.
+    /// Colors; `None` if all are white.
     pub(super) colors: Option<Rc<[Vec4]>>,
 }
 
 impl Reader<'_> {
-    /// The values at the vertices of a primitive that has this material and number of vertices.
+    /// Returns the vertex values of a primitive that has this material and number of vertices.
     pub(super) fn values(
         &mut self,
         primitive: &Primitive,
@@ -52,8 +52,7 @@ impl Reader<'_> {
             coordinates.push((self.places(accessor, vertices, shared, what)?, set.placement));
         }
         if primitive.attributes.contains_key(&Checked::Valid(Semantic::Colors(1))) {
-            self.notes
-                .count("mesh primitives have more than one set of colors, of which the first is used", 1);
+            self.notes.count("mesh primitives have more than one set of colors; only the first is used", 1);
         }
         let colors = match primitive.attributes.get(&Checked::Valid(Semantic::Colors(0))) {
             Some(&accessor) => {
@@ -75,7 +74,7 @@ impl Reader<'_> {
         use ComponentType::{F32, I8, I16, U8, U16};
         let what = format!("{what}, texture coordinates");
         self.attribute(accessor, vertices, &mut shared.places, &what, |reader| {
-            // Signed numbers are those of KHR_mesh_quantization.
+            // `KHR_mesh_quantization` adds signed integers.
             let places = reader.elements::<2>(accessor, Type::Vec2, &[F32, I8, U8, I16, U16], &what)?;
             Ok(places.iter().map(|place| Vec2::from_array(place.map(|x| x as f32))).collect())
         })
@@ -103,7 +102,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The values of an attribute, at least one for each vertex: read once, however many primitives share them.
+    /// Returns the values of an attribute, at least one per vertex. An attribute that primitives share is read once.
     fn attribute<T>(
         &mut self,
         accessor: Index<Accessor>,
@@ -127,12 +126,12 @@ impl Reader<'_> {
         Err(self.invalid(format!("{what}: there are {} for {vertices} vertices", values.len())))
     }
 
-    /// What colors multiply their material by; `None` if that changes nothing.
+    /// Returns the factors for the colors of the material; `None` if all are one.
     fn tints(&mut self, colors: &Rc<[Vec4]>, alpha: Alpha) -> Option<Rc<[Vec4]>> {
         let is_open = colors.iter().any(|color| color.w < 1.0);
         if alpha == Alpha::Mask && is_open {
             self.notes.count(
-                "mesh primitives have colors with alpha, which was ignored because their material is a mask",
+                "mesh primitives have colors with alpha, which is ignored because their material is a mask",
                 1,
             );
         }
@@ -144,6 +143,6 @@ impl Reader<'_> {
     }
 }
 
-/// A kind of warning.
+/// Warning about primitives without the coordinates of a texture.
 const NO_COORDINATES_OF_PRIMITIVES: &str =
-    "mesh primitives lack coordinates for a texture, and have its mean color";
+    "mesh primitives lack coordinates for a texture and have its mean color";

@@ -1,4 +1,4 @@
-//! What a reader remembers of materials and images that it has met.
+//! Cached data about the materials and images that were read so far.
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -6,40 +6,41 @@ use std::rc::Rc;
 use crate::index::MaterialId;
 use crate::load::texture::Placement;
 
-/// Where the encoded bytes of an image lie. Images may share them, and large ones take time to decode.
+/// Location of the encoded bytes of an image, the key of the image cache: images may share bytes, and large ones take
+/// time to decode.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Pixels {
     /// In a buffer view.
     View(usize),
     /// In a file.
     File(PathBuf),
-    /// In the URI of this image, or nowhere.
+    /// In the URI of the image with this index, or nowhere.
     Own(usize),
 }
 
-/// Where the coordinates of a texture come from: the number of an attribute, and what becomes of its numbers.
+/// Source of texture coordinates: the number of an attribute, and the transform of its values.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Coordinates {
     pub(super) set: u32,
     pub(super) placement: Placement,
 }
 
-/// What a primitive must know about its material.
+/// Data about a material that its primitives need.
 #[derive(Clone)]
 pub(super) struct Known {
     pub(super) id: MaterialId,
-    /// The sets of coordinates that its textures use.
+    /// Coordinate sets of its textures.
     pub(super) sets: Rc<[Coordinates]>,
     pub(super) alpha: Alpha,
 }
 
-/// What becomes of the alpha of vertex colors.
+/// Use of the alpha of vertex colors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Alpha {
-    /// It has no meaning.
+    /// Ignored, because the material is opaque.
     Opaque,
-    /// It should decide where there is a surface, but is not asked.
+    /// Ignored with a warning, although it should decide where there is a surface.
     Mask,
-    /// It is a share of the light.
+    /// Multiplies the opacity.
     Blend,
 }

@@ -20,7 +20,7 @@ impl Reader<'_> {
         let name = source.name.as_deref().or(node.name.as_deref()).unwrap_or_default();
         let quoted = format!("\"{name}\"");
         let Checked::Valid(kind) = source.type_ else {
-            self.notes.name("lights are of an unknown type, and were left out", quoted);
+            self.notes.name("lights have an unknown type and were ignored", quoted);
             return Ok(());
         };
         if source.range.is_some() {
@@ -31,7 +31,7 @@ impl Reader<'_> {
         }
         let axis = to_world.transform_vector3(DVec3::NEG_Z).try_normalize();
         let Some(kind) = convert(source, kind, to_world.translation, axis) else {
-            self.notes.name("lights have no direction or no cone, and were left out", quoted);
+            self.notes.name("lights have no valid direction or cone and were ignored", quoted);
             return Ok(());
         };
         if let Err((what, rule)) = kind.check() {
@@ -43,10 +43,10 @@ impl Reader<'_> {
     }
 }
 
-/// A light in world space: it shines along −z. Its intensity, in cd or lx, is taken for W/sr or W/m² in every band, as emitted
-/// radiance in cd/m² is taken for W/(m² sr).
+/// Converts a light to world space. It shines along −z. Its intensity, in cd or lx, is taken as W/sr or W/m² in every
+/// band, as emitted radiance in cd/m² is taken as W/(m² sr).
 ///
-/// `None` if it needs a direction and has none, or its cone is none.
+/// Returns `None` if it needs a direction and has none, or its cone is invalid.
 fn convert(source: &Source, kind: Type, position: DVec3, axis: Option<DVec3>) -> Option<LightKind> {
     let strength = Rgb::from_array(source.color.map(f64::from)) * f64::from(source.intensity);
     let spread = match kind {

@@ -22,8 +22,8 @@ use crate::material::{MAX_REFLECTANCE, Material, Opacity, Sides};
 use crate::texture::Wrap;
 
 impl Reader<'_> {
-    /// The material at an index of the file, added when it is first used; `None` is the default material, which is white
-    /// under colors of vertices.
+    /// Returns the material at an index of the file, which is added on first use. `None` is the default material, which
+    /// is white if vertices have colors.
     pub(super) fn material(
         &mut self,
         index: Option<Index<Source>>,
@@ -53,11 +53,11 @@ impl Reader<'_> {
         Ok(known)
     }
 
-    /// Base color to reflectance, emitted radiance `L` to exitance `π L` (the emitted light of glTF is a
-    /// radiance in cd/m²; specification, section 3.9.3).
+    /// Converts a material: base color to reflectance, emitted radiance `L` to exitance `π L` (the emitted light of
+    /// glTF is a radiance in cd/m²; specification, section 3.9.3).
     ///
-    /// The base color of a metal is what it reflects as a mirror. As a diffuse reflectance it sends the right amount of light into
-    /// the wrong directions, while none would make metals black.
+    /// The base color of a metal is its specular reflectance. Used as a diffuse reflectance, it sends the right amount
+    /// of light in the wrong directions; without it, metals would be black.
     fn convert(&mut self, source: &Source, sets: &mut Vec<Coordinates>) -> Result<Material, LoadError> {
         let name = source.name.as_deref().unwrap_or_default();
         self.note_ignored(source, name);
@@ -93,21 +93,23 @@ impl Reader<'_> {
         let name = notes::quoted(name);
         if source.extensions.as_ref().is_some_and(|e| e.unlit.is_some()) {
             self.notes
-                .name("materials are unlit, which has no meaning here: they reflect their base color", &name);
+                .name("materials are unlit, which is not supported: they reflect their base color", &name);
         }
         if source.normal_texture.is_some()
             || source.occlusion_texture.is_some()
             || source.pbr_metallic_roughness.metallic_roughness_texture.is_some()
         {
-            self.notes
-                .name("materials have textures of bumps, gloss or baked shadow, which were ignored", &name);
+            self.notes.name(
+                "materials have normal, metallic-roughness or occlusion textures, which were ignored",
+                &name,
+            );
         }
         if !matches!(source.alpha_mode, Checked::Valid(_)) {
             self.notes.name("materials have an unknown alpha mode, and were made opaque", &name);
         }
     }
 
-    /// A texture on a surface; `None` where there is none or it cannot be read.
+    /// Returns the texture on a surface; `None` if there is none or it cannot be read.
     fn layer(
         &mut self,
         info: Option<&Info>,
@@ -126,7 +128,7 @@ impl Reader<'_> {
         Ok(image.map(|image| Layer::new(image, wrap, coordinates(info), sets)))
     }
 
-    /// An image of the file, read when it is first asked for.
+    /// Returns an image of the file, which is read on first use.
     fn decoded(&mut self, index: usize) -> Option<Image> {
         let pixels = self.pixels(index);
         if let Some(&image) = self.textures.get(&pixels) {
@@ -157,9 +159,9 @@ impl Reader<'_> {
         }
     }
 
-    /// The encoded bytes of an image.
+    /// Returns the encoded bytes of an image.
     fn image(&self, index: usize, pixels: &Pixels) -> Result<Vec<u8>, String> {
-        let image = self.root.images.get(index).ok_or("it does not exist in a known format")?;
+        let image = self.root.images.get(index).ok_or("it does not exist in a supported format")?;
         match (pixels, &image.uri, image.buffer_view) {
             (Pixels::File(path), ..) => {
                 files::read(path).map_err(|source| format!("{}: {source}", path.display()))
@@ -178,16 +180,16 @@ impl Reader<'_> {
     }
 }
 
-/// Base color with alpha, and its texture.
+/// Returns the base color with alpha, and its texture.
 ///
-/// Of a material with `KHR_materials_pbrSpecularGlossiness` it is the diffuse color; where this is black, as that of metals
-/// is, the specular one.
+/// With `KHR_materials_pbrSpecularGlossiness` this is the diffuse color or, if that is black as for metals, the
+/// specular color.
 fn base_color(source: &Source) -> ([f64; 4], Option<&Info>) {
     let glossy = source.extensions.as_ref().and_then(|e| e.pbr_specular_glossiness.as_ref());
     let (factor, info) = match glossy {
         Some(glossy) if glossy.diffuse_factor.0[..3] == [0.0; 3] => {
             let [r, g, b] = glossy.specular_factor.0;
-            // The alpha of this texture is something else.
+            // The alpha of this texture is the glossiness.
             let info = glossy.specular_glossiness_texture.as_ref();
             ([r, g, b, glossy.diffuse_factor.0[3]], info.filter(|_| alpha(source) == Alpha::Opaque))
         }
@@ -208,8 +210,8 @@ fn alpha(source: &Source) -> Alpha {
     }
 }
 
-/// The number with the fewest digits that is this one in single precision. Values of alpha that are as large as a threshold must
-/// pass it: 51/255 is 0.2, but not the 0.2 of single precision.
+/// Returns the number with the fewest digits that rounds to `x` in single precision. An alpha equal to the threshold
+/// must pass it: 51/255 is 0.2, which is less than the 0.2 of single precision.
 fn as_written(x: f32) -> f64 {
     x.to_string().parse().unwrap_or_else(|_| f64::from(x))
 }
@@ -222,10 +224,11 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
     }
 }
 
-/// Coordinates are scaled, then turned, then moved (`KHR_texture_transform`).
+/// Returns the texture coordinates of a texture: scaled, then rotated, then translated (`KHR_texture_transform`).
 ///
-/// The turn is counterclockwise in the plane of the image, whose second axis points down; the matrix in the text of the extension has
-/// the other sign, which its authors and all readers take for a mistake (Khronos' glTF issue 1563).
+/// The rotation is counterclockwise in the plane of the image, whose second axis points down. The matrix in the text of
+/// the extension has the opposite sign, which its authors and all readers consider a mistake (Khronos' glTF issue
+/// 1563).
 fn coordinates(info: &Info) -> Coordinates {
     let plain = Coordinates { set: info.tex_coord, placement: Placement::PLAIN };
     let Some(transform) = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref()) else {

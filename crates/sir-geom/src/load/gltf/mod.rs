@@ -1,8 +1,8 @@
 //! glTF 2.0, text (`.gltf`) and binary (`.glb`).
 //!
-//! The crate `gltf` gives the types of the JSON part. Its validation and its accessors are not used: they panic
-//! at some files (a position accessor that is out of range, a GLB length below 12, a camera without its object)
-//! and refuse others for parts that a scene does not need. Here every index is looked up with a check instead.
+//! The crate `gltf` provides the types of the JSON part. Its validation and its accessors are not used: they panic on
+//! some files (a position accessor that is out of range, a GLB length below 12, a camera without its object) and reject
+//! others because of parts that a scene does not need. Here every index is checked when it is looked up.
 
 mod access;
 mod camera;
@@ -30,7 +30,7 @@ use crate::load::notes::Notes;
 use crate::load::options::LoadOptions;
 use crate::load::texture::Images;
 
-/// Extensions whose meaning is taken in, or does not change a diffuse scene.
+/// Extensions that are supported, or do not change a diffuse scene.
 const KNOWN_EXTENSIONS: [&str; 6] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -40,7 +40,7 @@ const KNOWN_EXTENSIONS: [&str; 6] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions about gloss, without which materials are what they are to this program anyway.
+/// Extensions about gloss, which do not affect diffuse materials.
 const GLOSS_EXTENSIONS: [&str; 7] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -51,12 +51,12 @@ const GLOSS_EXTENSIONS: [&str; 7] = [
     "KHR_materials_specular",
 ];
 
-/// Extensions about light in materials.
-const GLASS_EXTENSIONS: [&str; 3] =
+/// Extensions about transmission of light through materials.
+const TRANSMISSION_EXTENSIONS: [&str; 3] =
     ["KHR_materials_diffuse_transmission", "KHR_materials_transmission", "KHR_materials_volume"];
 
-/// The most unknown extensions that are named.
-const MOST_NAMES: usize = 8;
+/// Maximum number of unknown extensions that are named.
+const MAX_NAMES: usize = 8;
 
 /// Reads a glTF file into a builder.
 pub(super) fn read(
@@ -90,7 +90,7 @@ pub(super) fn read(
 
 fn check_version(path: &Path, root: &Root) -> Result<(), LoadError> {
     let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
-    // Any 2.x is meant to be readable as 2.0, unless the file states a minimum.
+    // Any version 2.x should be readable as 2.0, unless the file states a minimum.
     let readable = match &root.asset.min_version {
         Some(minimum) => minimum == "2.0",
         None => root.asset.version.starts_with("2."),
@@ -98,7 +98,7 @@ fn check_version(path: &Path, root: &Root) -> Result<(), LoadError> {
     if readable {
         return Ok(());
     }
-    let what = format!("its version is \"{needed}\", and 2.0 is read");
+    let what = format!("its version is \"{needed}\", but only 2.0 is supported");
     Err(LoadError::Gltf { path: path.to_owned(), what: files::shortened(&what, 100) })
 }
 
@@ -106,7 +106,7 @@ fn check_extensions(path: &Path, root: &Root, notes: &mut Notes) -> Result<(), L
     let unknown = |names: &[String]| -> Vec<String> {
         let mut seen = BTreeSet::from(KNOWN_EXTENSIONS);
         let new = names.iter().filter(|&name| seen.insert(name));
-        new.take(MOST_NAMES).map(|name| files::shortened(name, 60)).collect()
+        new.take(MAX_NAMES).map(|name| files::shortened(name, 60)).collect()
     };
     let names = unknown(&root.extensions_required);
     if !names.is_empty() {
@@ -115,12 +115,12 @@ fn check_extensions(path: &Path, root: &Root, notes: &mut Notes) -> Result<(), L
     for name in unknown(&root.extensions_used) {
         let what = match &*name {
             name if GLOSS_EXTENSIONS.contains(&name) => {
-                "glTF extensions describe gloss, which diffuse surfaces lack, and were ignored"
+                "glTF extensions describe gloss, which diffuse surfaces do not have, and were ignored"
             }
-            name if GLASS_EXTENSIONS.contains(&name) => {
-                "glTF extensions describe light in materials, and were ignored: light passes only where alpha lets it"
+            name if TRANSMISSION_EXTENSIONS.contains(&name) => {
+                "glTF extensions describe transmission and were ignored: light passes only where alpha lets it"
             }
-            _ => "glTF extensions have no meaning here and were ignored",
+            _ => "glTF extensions are not supported and were ignored",
         };
         notes.name(what, name);
     }

@@ -11,23 +11,23 @@ use glam::{DAffine3, DVec3, Vec2};
 
 use crate::index::VertexId;
 use crate::load::error::LoadError;
-use crate::load::gltf::corners::{Attributes, MOST_SETS, Values};
+use crate::load::gltf::corners::{Attributes, MAX_SETS, Values};
 use crate::load::gltf::reader::Reader;
 
-/// What the primitives of one instance of a mesh share, by the number of its accessor.
+/// Data that the primitives of one mesh instance share, by accessor number.
 #[derive(Default)]
 pub(super) struct Shared {
     vertices: HashMap<usize, Rc<[VertexId]>>,
     pub(super) attributes: Attributes,
 }
 
-/// The most vertices or triangles of a glTF scene. Without a limit, a small file with many instances of its
-/// meshes could fill any memory.
+/// Maximum number of vertices, triangles or texture coordinates of a glTF scene. Without a limit, a small file with
+/// many instances of its meshes could exhaust memory.
 const MAX_ELEMENTS: usize = 1 << 26;
 
 impl Reader<'_> {
-    /// Adds a primitive in world space. `shared` has the vertices that other primitives of this mesh instance
-    /// brought; `what` names the primitive.
+    /// Adds a primitive in world space. `shared` has the vertices that other primitives of this mesh instance added;
+    /// `what` names the primitive in error messages.
     pub(super) fn primitive(
         &mut self,
         primitive: &Primitive,
@@ -43,7 +43,7 @@ impl Reader<'_> {
             return Ok(());
         }
         if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
-            self.notes.count("mesh primitives have morph targets, and are read in their basic shape", 1);
+            self.notes.count("mesh primitives have morph targets, which were ignored", 1);
         }
         let Some(vertices) = self.vertices_of(primitive, to_world, shared, what)? else {
             self.notes.count("mesh primitives without positions were skipped", 1);
@@ -59,7 +59,7 @@ impl Reader<'_> {
             self.values(primitive, &material, vertices.len(), &mut shared.attributes, what)?;
         self.coordinates += triangles.count() * (coordinates.len() + usize::from(colors.is_some()));
         self.check_size("texture coordinates and colors", self.coordinates)?;
-        // A mirror image turns fronts into backs unless the order of the corners is turned, too.
+        // A reflection swaps fronts and backs unless the order of the corners is reversed, too.
         let mirrored = to_world.matrix3.determinant() < 0.0;
         for i in 0..triangles.count() {
             let mut triangle = triangles.get(i).map(|c| corners[c]);
@@ -68,18 +68,18 @@ impl Reader<'_> {
             }
             self.builder.add_polygon(&triangle.map(|v| vertices[v]), material.id);
             if !coordinates.is_empty() || colors.is_some() {
-                let mut sets = [[Vec2::ZERO; 3]; MOST_SETS];
+                let mut sets = [[Vec2::ZERO; 3]; MAX_SETS];
                 for (set, (places, placement)) in sets.iter_mut().zip(&coordinates) {
                     *set = triangle.map(|v| placement.apply(places[v]));
                 }
                 let tint = colors.as_ref().map(|colors| triangle.map(|v| colors[v]));
-                self.builder.set_corners(&sets[..coordinates.len().min(MOST_SETS)], tint);
+                self.builder.set_corners(&sets[..coordinates.len().min(MAX_SETS)], tint);
             }
         }
         Ok(())
     }
 
-    /// The vertices of a primitive, which are added to `shared` if they are not there yet.
+    /// Returns the vertices of a primitive, which are added to `shared` on first use; `None` if it has no positions.
     fn vertices_of(
         &mut self,
         primitive: &Primitive,
@@ -95,7 +95,7 @@ impl Reader<'_> {
             Entry::Occupied(known) => return Ok(Some(Rc::clone(known.get()))),
             Entry::Vacant(vacant) => vacant,
         };
-        // Whole numbers are those of KHR_mesh_quantization.
+        // `KHR_mesh_quantization` adds integers.
         let positions = self.elements::<3>(accessor, Type::Vec3, &[F32, I8, U8, I16, U16], what)?;
         self.vertices += positions.len();
         self.check_size("vertices", self.vertices)?;
@@ -103,7 +103,7 @@ impl Reader<'_> {
         Ok(Some(Rc::clone(vacant.insert(positions.into_iter().map(add).collect()))))
     }
 
-    /// Numbers of the vertices of a primitive in the order of its corners.
+    /// Returns the vertex numbers of a primitive in the order of its corners.
     fn corners(&self, primitive: &Primitive, vertices: usize, what: &str) -> Result<Vec<usize>, LoadError> {
         use ComponentType::{U8, U16, U32};
         let Some(accessor) = primitive.indices else {
@@ -134,7 +134,7 @@ impl Reader<'_> {
     }
 }
 
-/// The triangles of a list of corners.
+/// Triangles of a list of corners.
 struct Triangles {
     mode: Mode,
     corners: usize,
@@ -148,7 +148,8 @@ impl Triangles {
         }
     }
 
-    /// Corners of triangle `i`, counterclockwise seen from its front (glTF 2.0 specification, section 3.7.2.1).
+    /// Returns the corners of triangle `i`, counterclockwise seen from its front (glTF 2.0 specification, section
+    /// 3.7.2.1).
     fn get(&self, i: usize) -> [usize; 3] {
         match self.mode {
             Mode::TriangleStrip => [i, i + 1 + i % 2, i + 2 - i % 2],

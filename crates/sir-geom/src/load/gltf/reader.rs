@@ -1,4 +1,4 @@
-//! A glTF file on its way into a scene.
+//! State of reading a glTF file.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ use crate::load::notes::Notes;
 use crate::load::options::LoadOptions;
 use crate::load::texture::{Image, Images};
 
-/// A file on its way into a builder.
+/// Reader that adds the contents of a glTF file to a builder.
 pub(super) struct Reader<'a> {
     pub(super) path: &'a Path,
     pub(super) root: &'a Root,
@@ -22,18 +22,19 @@ pub(super) struct Reader<'a> {
     pub(super) options: LoadOptions,
     pub(super) builder: &'a mut SceneBuilder,
     pub(super) notes: &'a mut Notes,
-    /// Materials met so far by their index in the file; no index stands for the default one, which comes in two colors.
+    /// Materials read so far, by index in the file. No index stands for the default material, whose two colors the flag
+    /// tells apart: it is true for primitives with vertex colors.
     pub(super) materials: BTreeMap<(Option<usize>, bool), Known>,
-    /// Images met so far; `None` for one that cannot be read.
+    /// Images read so far; `None` for unreadable ones.
     pub(super) textures: BTreeMap<Pixels, Option<Image>>,
     pub(super) images: Images,
-    /// How many were added so far.
+    /// Number of vertices read so far.
     pub(super) vertices: usize,
-    /// Coordinates of textures and colors.
+    /// Number of texture coordinates and colors read so far.
     pub(super) coordinates: usize,
     pub(super) triangles: usize,
     pub(super) primitives: usize,
-    /// Elements of accessors without data.
+    /// Number of accessor elements without data that were read so far.
     pub(super) unbacked: Cell<usize>,
 }
 
@@ -43,7 +44,7 @@ impl Reader<'_> {
     }
 }
 
-/// The element of a file at an index. `what` says who asks for which kind of element.
+/// Returns the element of a file at an index. `what` names the requester and the kind of element in error messages.
 pub(super) fn lookup<'a, T>(
     path: &Path,
     root: &'a Root,

@@ -8,23 +8,23 @@ use percent_encoding::percent_decode_str;
 
 use crate::load::files::{beside, is_name};
 
-/// What a URI in a glTF file stands for.
+/// Target of a URI in a glTF file.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Reference {
     /// The data itself.
     Data(Vec<u8>),
-    /// A file beside the scene, or in a folder beside it.
+    /// A file in the scene's folder or below it.
     File(PathBuf),
 }
 
 /// Resolves a URI of the glTF file `scene`: a `data:` URI, or a relative path with percent-encoded characters.
 ///
-/// The error says why it is not followed.
+/// The error is the reason why the URI is not followed.
 pub(super) fn resolve(scene: &Path, uri: &str) -> Result<Reference, &'static str> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decode_data(data).map(Reference::Data);
     }
-    // A colon before the first slash ends a scheme (RFC 3986, section 4.2); a drive letter looks like one.
+    // A colon before the first slash ends a scheme (RFC 3986, section 4.2); a drive letter looks the same.
     if uri.split('/').next().is_some_and(|first| first.contains(':')) {
         return Err("only relative paths and data URIs are followed");
     }
@@ -33,12 +33,12 @@ pub(super) fn resolve(scene: &Path, uri: &str) -> Result<Reference, &'static str
         return Err("this cannot be the name of a file");
     }
     let path = (!decoded.contains('\\')).then(|| beside(scene, &decoded)).flatten();
-    path.map(Reference::File).ok_or("it leads out of the scene's folder")
+    path.map(Reference::File).ok_or("it leads outside the scene's folder")
 }
 
-/// The bytes of a data URI without its scheme: `[media type][;base64],DATA` (RFC 2397).
+/// Decodes the bytes of a data URI without its scheme: `[media type][;base64],DATA` (RFC 2397).
 fn decode_data(data: &str) -> Result<Vec<u8>, &'static str> {
-    // Exporters disagree about the padding at the end.
+    // Exporters disagree about padding.
     const BASE64: GeneralPurpose = GeneralPurpose::new(
         &base64::alphabet::STANDARD,
         GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),

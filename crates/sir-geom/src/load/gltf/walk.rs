@@ -1,4 +1,4 @@
-//! The walk through the nodes of a scene.
+//! Traversal of the nodes of a scene.
 
 use ::gltf::json::scene::Node;
 use ::gltf::json::{Index, Root};
@@ -9,11 +9,11 @@ use crate::load::gltf::camera;
 use crate::load::gltf::primitive::Shared;
 use crate::load::gltf::reader::{Reader, lookup};
 
-/// The most mesh primitives once instances are laid out.
+/// Maximum number of mesh primitives after instances are expanded.
 const MAX_PRIMITIVES: usize = 1 << 23;
 
 impl Reader<'_> {
-    /// Adds everything in the default scene, else in the first one, else below the nodes without a parent.
+    /// Adds the contents of the default scene; without one, of the first scene; without scenes, of all nodes.
     pub(super) fn scene(mut self) -> Result<(), LoadError> {
         let scene = match self.root.scene {
             Some(index) => Some(lookup(self.path, self.root, index, "the default scene: scene")?),
@@ -23,8 +23,8 @@ impl Reader<'_> {
             Some(scene) => scene.nodes.clone(),
             None => orphans(self.root),
         };
-        // A stack of our own: the depth of a tree from a file has no limit. Last in is first out, so children
-        // are put on it in reverse order.
+        // The stack is explicit, because the depth of a tree from a file has no limit. Children are pushed in reverse
+        // order, so that they are visited in file order.
         let mut stack: Vec<_> = roots.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
         let mut visited = vec![false; self.root.nodes.len()];
         while let Some((index, parent)) = stack.pop() {
@@ -46,7 +46,10 @@ impl Reader<'_> {
             let name = source.name.as_deref().or(node.name.as_deref()).unwrap_or_default();
             match camera::convert(source, name, to_world) {
                 Some(camera) => self.builder.add_camera(camera),
-                None => self.notes.name("cameras show nothing, and were left out", format!("\"{name}\"")),
+                None => self.notes.name(
+                    "cameras have no valid projection or orientation and were ignored",
+                    format!("\"{name}\""),
+                ),
             }
         }
         self.light(node, to_world)?;
@@ -56,7 +59,7 @@ impl Reader<'_> {
             }
             let mesh = lookup(self.path, self.root, index, "a node: mesh")?;
             self.builder.begin_group(node.name.as_deref().or(mesh.name.as_deref()).unwrap_or_default());
-            // Also those without triangles take time, and a small file can ask for many.
+            // Primitives without triangles count, too: they take time, and a small file can ask for many.
             self.primitives += mesh.primitives.len();
             self.check_limit("mesh primitives", self.primitives, MAX_PRIMITIVES)?;
             let mut shared = Shared::default();
@@ -69,7 +72,7 @@ impl Reader<'_> {
     }
 }
 
-/// Nodes that are no node's child.
+/// Returns the nodes without a parent.
 fn orphans(root: &Root) -> Vec<Index<Node>> {
     let mut is_child = vec![false; root.nodes.len()];
     for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
@@ -80,7 +83,7 @@ fn orphans(root: &Root) -> Vec<Index<Node>> {
     (0u32..).zip(is_child).filter(|(_, is_child)| !is_child).map(|(i, _)| Index::new(i)).collect()
 }
 
-/// The transform from a node to its parent: a matrix, or translation × rotation × scale.
+/// Returns the transform from a node to its parent: a matrix, or translation × rotation × scale.
 fn local_transform(node: &Node) -> DAffine3 {
     let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
     if let Some(matrix) = node.matrix {
@@ -88,7 +91,7 @@ fn local_transform(node: &Node) -> DAffine3 {
         let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
         return DAffine3::from_mat3_translation(DMat3::from_cols(column(0), column(1), column(2)), column(3));
     }
-    // In single precision a rotation is a unit quaternion to seven digits only.
+    // A rotation in single precision is a unit quaternion to seven digits only.
     let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
     let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
     DAffine3::from_scale_rotation_translation(

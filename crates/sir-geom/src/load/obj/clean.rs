@@ -1,8 +1,8 @@
-//! Rewrites OBJ and MTL text into the part of the formats that `tobj` reads without surprises.
+//! Simplification of OBJ and MTL text to the subset of the formats that `tobj` reads correctly.
 //!
-//! `tobj` 4.0 takes a comment after a value for a value, makes triangles of the polylines `l 1 2 3`, wants blanks
-//! rather than tabs after some keywords, and panics at colors with fewer than three numbers. So it gets only
-//! the statements that a scene is made of, in their plainest form, each on its line of the original.
+//! `tobj` 4.0 reads a comment after a value as a value, makes triangles of the polylines `l 1 2 3`, requires blanks
+//! instead of tabs after some keywords, and panics on colors with fewer than three numbers. So it gets only the
+//! statements that a scene needs, in their simplest form, each on its original line.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -10,22 +10,22 @@ use std::collections::BTreeSet;
 use crate::load::files::shortened;
 use crate::load::obj::corners::Corners;
 
-/// An OBJ file in plain form.
+/// A simplified OBJ file.
 #[derive(Debug, Default)]
 pub(super) struct Obj {
-    /// Statements `v`, `f`, `o` and `usemtl`, with positions alone.
+    /// Statements `v`, `f`, `o` and `usemtl`, with positions only.
     pub(super) text: String,
-    /// What stands behind each `mtllib`.
+    /// Arguments of the `mtllib` statements.
     pub(super) libraries: Vec<String>,
-    /// What stands behind each `usemtl`.
+    /// Arguments of the `usemtl` statements.
     pub(super) used_materials: BTreeSet<String>,
     /// Texture coordinates and colors.
     pub(super) corners: Corners,
-    /// Statements `p` and `l`, and faces with one or two corners.
+    /// Number of statements `p` and `l`, and of faces with one or two corners.
     pub(super) points_and_lines: usize,
 }
 
-/// Takes from OBJ text what a scene is made of.
+/// Extracts from OBJ text the statements that a scene needs.
 pub(super) fn obj(text: &str) -> Obj {
     let mut plain = Obj::default();
     let mut lines = 0;
@@ -47,7 +47,7 @@ pub(super) fn obj(text: &str) -> Obj {
                 push_words(&mut plain.text, "usemtl", [rest].into_iter());
                 plain.used_materials.insert(rest.to_owned());
             }
-            // Of objects and groups, the last one that is named counts.
+            // The last object or group before a face counts.
             "o" | "g" => push_words(&mut plain.text, "o", [rest].into_iter()),
             "mtllib" => plain.libraries.push(rest.to_owned()),
             _ => {}
@@ -57,23 +57,24 @@ pub(super) fn obj(text: &str) -> Obj {
     plain
 }
 
-/// A material library in plain form.
+/// A simplified material library.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Mtl {
     /// Statements `newmtl`, `Kd`, `Ke`, `d`, `Tr`, and their `map_…`.
     pub(super) text: String,
-    /// Other statements that would change what is seen, but have no meaning for diffuse surfaces.
+    /// Keywords of other statements that affect the appearance, but do not apply to diffuse surfaces.
     pub(super) ignored: BTreeSet<String>,
 }
 
-/// Statements about gloss, refraction and ambient light, which most libraries have and nobody would miss.
-const USUAL: [&str; 8] = ["illum", "ka", "ks", "ni", "ns", "tf", "map_ka", "sharpness"];
+/// Keywords about gloss, refraction and ambient light, which are ignored without a warning, since most libraries have
+/// them.
+const SILENTLY_IGNORED: [&str; 8] = ["illum", "ka", "ks", "ni", "ns", "tf", "map_ka", "sharpness"];
 
-/// Takes from MTL text the names and diffuse properties of materials.
+/// Extracts from MTL text the names and diffuse properties of materials.
 ///
 /// # Errors
 ///
-/// The line and what is wrong with it.
+/// The line number, and what is wrong with the line.
 pub(super) fn mtl(text: &str) -> Result<Mtl, (usize, String)> {
     let mut plain = Mtl::default();
     let mut lines = 0;
@@ -82,14 +83,14 @@ pub(super) fn mtl(text: &str) -> Result<Mtl, (usize, String)> {
         pad_to(&mut plain.text, &mut lines, line);
         let known = ["newmtl", "Kd", "Ke", "d", "Tr", "map_Kd", "map_Ke", "map_d"];
         let Some(known) = known.into_iter().find(|known| keyword.eq_ignore_ascii_case(known)) else {
-            if !keyword.is_empty() && !USUAL.contains(&&*keyword.to_ascii_lowercase()) {
+            if !keyword.is_empty() && !SILENTLY_IGNORED.contains(&&*keyword.to_ascii_lowercase()) {
                 plain.ignored.insert(shortened(keyword, 40));
             }
             continue;
         };
         let text = &mut plain.text;
         match (known, rest.split_whitespace().count()) {
-            // One number stands for three (the MTL specification has this for all colors).
+            // One number stands for three (the MTL specification allows this for all colors).
             ("Kd" | "Ke", 1) => push_words(text, known, [rest; 3].into_iter()),
             ("Kd" | "Ke", 0 | 2) => {
                 let start = shortened(&statement, 80);
@@ -106,14 +107,14 @@ pub(super) fn mtl(text: &str) -> Result<Mtl, (usize, String)> {
     Ok(plain)
 }
 
-/// The first word, and what follows it; both without blanks around.
+/// Returns the first word and the rest, both trimmed.
 pub(super) fn split_word(text: &str) -> (&str, &str) {
     let text = text.trim();
     text.split_once(char::is_whitespace).map_or((text, ""), |(word, rest)| (word, rest.trim_start()))
 }
 
-/// Statements with their line numbers from 1, without comments; a backslash at the end of a line goes on with the
-/// next one.
+/// Returns the statements with their line numbers, from 1, and without comments. A backslash at the end of a line
+/// continues the statement on the next line.
 fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = text.lines().map(without_comment).enumerate();
@@ -130,7 +131,8 @@ fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     })
 }
 
-/// A line up to a `#` at its start or after a blank, trimmed. Names may have a `#` inside.
+/// Returns a line without its comment, trimmed. A comment begins with a `#` at the start of the line or after a blank,
+/// since names may contain a `#`.
 fn without_comment(line: &str) -> &str {
     let comment = line
         .match_indices('#')
@@ -139,13 +141,13 @@ fn without_comment(line: &str) -> &str {
     line[..comment.unwrap_or(line.len())].trim()
 }
 
-/// The number, from 1, and the start of the line that ends at byte `end`.
+/// Returns the number, from 1, and the start of the line that ends at byte `end`.
 pub(super) fn line_at(text: &str, end: usize) -> (usize, String) {
     let (line, statement) = text[..end].lines().enumerate().last().unwrap_or_default();
     (line + 1, shortened(statement, 80))
 }
 
-/// Ends lines until the text is at the start of `line`; `lines` counts those that were ended.
+/// Appends line breaks until the text is at the start of `line`; `lines` is the number of line breaks so far.
 fn pad_to(text: &mut String, lines: &mut usize, line: usize) {
     for _ in *lines + 1..line {
         text.push('\n');
@@ -153,13 +155,13 @@ fn pad_to(text: &mut String, lines: &mut usize, line: usize) {
     *lines = line - 1;
 }
 
-/// A coordinate; `1.#IND` and the like, which some C libraries write for what is not a number, become `nan`.
+/// Returns a coordinate, with `1.#IND` and the like, which some C libraries write for NaN, replaced by `nan`.
 fn coordinate(word: &str) -> &str {
     if word.contains('#') { "nan" } else { word }
 }
 
-/// The number of the position of a corner `position/texture/normal`; the whole corner if there is none, so that
-/// it can be complained about.
+/// Returns the position number of a corner `position/texture/normal`, or the whole corner if it has none, so that the
+/// error message shows it.
 fn position(corner: &str) -> &str {
     corner.split('/').next().filter(|position| !position.is_empty()).unwrap_or(corner)
 }

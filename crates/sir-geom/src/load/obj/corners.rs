@@ -1,29 +1,30 @@
-//! Texture coordinates and colors, which `tobj` does not get to see: corners come out of it in the order of the file.
+//! Texture coordinates and colors, which bypass `tobj`: it returns corners in the order of the file.
 
 use glam::{Vec2, Vec4};
 
 use crate::color::Rgb;
 use crate::texture::srgb_to_linear_at;
 
-/// In place of a number: a corner has no texture coordinates.
+/// Index of missing texture coordinates.
 const NONE: u32 = u32::MAX;
 
-/// What the corners of faces have beside positions.
+/// Values at the corners of faces, besides positions.
 #[derive(Debug, Default)]
 pub(super) struct Corners {
-    /// Vertices so far.
+    /// Number of vertices so far.
     vertices: usize,
-    /// Colors of the vertices up to the last that has one, as they are in the file.
+    /// Colors of the vertices up to the last vertex that has one, as in the file.
     colors: Vec<[f32; 3]>,
     places: Vec<Vec2>,
-    /// Numbers of vertex and coordinates, corner by corner.
+    /// Indices of vertex and coordinates, corner by corner.
     corners: Vec<[u32; 2]>,
-    /// Whether colors go up to one, as they should, or 255.
+    /// True if colors range to 255 instead of 1, as they should.
     in_bytes: bool,
 }
 
 impl Corners {
-    /// Takes in the words of a `v` statement: three coordinates, and a color if there are three more. What is no number makes it white.
+    /// Adds the vertex of a `v` statement, given by its words: three coordinates, and a color if three more follow. An
+    /// invalid color becomes white.
     pub(super) fn add_vertex<'a>(&mut self, words: impl Iterator<Item = &'a str>) {
         let mut color = words.skip(3).map(|word| word.parse().unwrap_or(f32::NAN));
         if let (Some(r), Some(g), Some(b)) = (color.next(), color.next(), color.next()) {
@@ -35,20 +36,20 @@ impl Corners {
         self.vertices += 1;
     }
 
-    /// Takes in the words of a `vt` statement. Its second axis points up, that of images down.
+    /// Adds the coordinates of a `vt` statement, given by its words. Their second axis points up, that of images down.
     pub(super) fn add_place<'a>(&mut self, mut words: impl Iterator<Item = &'a str>) {
         let mut number = || words.next().map_or(0.0, |word| word.parse().unwrap_or(f32::NAN));
         self.places.push(Vec2::new(number(), number()));
     }
 
-    /// Takes in the corners of an `f` statement, `position/texture/normal` each.
+    /// Adds the corners of an `f` statement, each `position/texture/normal`.
     pub(super) fn add_face<'a>(&mut self, corners: impl Iterator<Item = &'a str>) {
         let (vertices, places) = (self.vertices, self.places.len());
         self.corners.extend(corners.map(|corner| {
             let mut parts = corner.split('/');
             let mut number = |count: usize| {
                 let n: i64 = parts.next()?.parse().ok()?;
-                // Numbers from 1, or back from the last one so far.
+                // Numbers count from 1 or, if negative, back from the last one so far.
                 let index = if n < 0 { n + count as i64 } else { n - 1 };
                 u32::try_from(index).ok()
             };
@@ -60,15 +61,16 @@ impl Corners {
         !self.colors.is_empty()
     }
 
-    /// The coordinates of a corner; `None` if it has none that are there.
+    /// Returns the coordinates of a corner; `None` if it has none, or they do not exist.
     pub(super) fn place(&self, corner: usize) -> Option<Vec2> {
         let [_, place] = *self.corners.get(corner)?;
         self.places.get(place as usize).copied()
     }
 
-    /// The linear color of the vertex of a corner, white if it has none.
+    /// Returns the linear color of the vertex of a corner; white if it has none.
     ///
-    /// The format says nothing about the meaning of colors; what writes them writes what is seen on a screen.
+    /// The format does not define the meaning of colors. They are taken as sRGB, because exporters write colors as
+    /// displayed.
     pub(super) fn color(&self, corner: usize) -> Vec4 {
         let vertex = self.corners.get(corner).map_or(NONE, |[vertex, _]| *vertex);
         let color = self.colors.get(vertex as usize).copied().unwrap_or([1.0; 3]);
@@ -99,7 +101,7 @@ mod tests {
         assert_eq!([0, 2, 3, 5].map(|i| corners.color(i)), [Vec4::ONE; 4]);
     }
 
-    /// Found by the fuzzer: a color that is no number was decoded for ever.
+    /// Found by fuzzing: decoding a color that is not a number did not terminate.
     #[test]
     fn what_is_no_color_is_white() {
         let mut corners = Corners::default();

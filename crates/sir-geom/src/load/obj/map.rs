@@ -1,4 +1,4 @@
-//! What stands behind `map_…`: options and the name of a file.
+//! Arguments of `map_…` statements: options and a file name.
 
 use glam::DVec2;
 
@@ -6,18 +6,18 @@ use crate::load::obj::clean::split_word;
 use crate::load::texture::Placement;
 use crate::texture::Wrap;
 
-/// A texture and how it lies.
+/// A texture, with its transform and wrap mode.
 #[derive(Debug, PartialEq)]
 pub(super) struct Map<'a> {
     pub(super) name: &'a str,
-    /// From coordinates with their second axis up, as in the file, to those of images.
+    /// Transform from the coordinates of the file, whose second axis points up, to those of images.
     pub(super) placement: Placement,
     pub(super) wrap: [Wrap; 2],
-    /// Options that would change what is seen.
+    /// Unsupported options that affect the appearance.
     pub(super) ignored: Vec<&'a str>,
 }
 
-/// Takes a statement apart, without its keyword. Coordinates are scaled by `-s`, then moved by `-o`.
+/// Parses a statement without its keyword. Coordinates are scaled by `-s`, then translated by `-o`.
 pub(super) fn parse(mut map: &str) -> Map<'_> {
     let (mut scale, mut offset) = (DVec2::ONE, DVec2::ZERO);
     let mut wrap = Wrap::Repeat;

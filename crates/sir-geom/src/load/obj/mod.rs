@@ -1,10 +1,10 @@
 //! Wavefront OBJ with material libraries (MTL).
 //!
-//! `Kd` is the reflectance, times `map_Kd` and the colors of vertices; `Ke`, times `map_Ke`, the radiance that the
-//! front emits: a file has no notion of sides, so both reflect and only the front emits. `d`, or else `1 − Tr`, times
+//! `Kd` times `map_Kd` and the vertex colors is the reflectance. `Ke` times `map_Ke` is the radiance that the front
+//! emits: files do not define sides, so both sides reflect and only the front emits. `d`, or else `1 − Tr`, times
 //! `map_d` is the opacity.
 //!
-//! The crate `tobj` reads vertices, faces and colors from a text that `clean` puts into plain form. A draft of a parser of our own
+//! The crate `tobj` reads vertices, faces and colors from text that `clean` has simplified. A draft of a custom parser
 //! in place of both was longer: about 600 lines of code instead of 565, without tests and comments. So `tobj` stays.
 
 mod clean;
@@ -28,10 +28,10 @@ use crate::load::options::{DEFAULT_REFLECTANCE, LoadOptions};
 use crate::load::texture::Placement;
 use crate::material::{MAX_REFLECTANCE, Material, Sides};
 
-/// A statement that makes `tobj` ask for materials, which all are at hand by then.
+/// Statement that makes `tobj` request the materials, which have all been read by then.
 const ALL_LIBRARIES: &str = "mtllib *\n";
 
-/// What `tobj` calls faces in no object.
+/// Name that `tobj` gives to faces outside any object.
 const NO_OBJECT: &str = "unnamed_object";
 
 /// Reads an OBJ file into a builder.
@@ -56,7 +56,8 @@ pub(super) fn read(
     Ok(())
 }
 
-/// Lets `tobj` make meshes of plain OBJ text, one for each run of faces of the same material and object, in the file's order.
+/// Parses simplified OBJ text with `tobj` into meshes, one for each run of faces of the same material and object, in
+/// file order.
 fn parse(path: &Path, text: &str, library: &mtl::Library<'_>) -> Result<Vec<tobj::Model>, LoadError> {
     let text = format!("{ALL_LIBRARIES}{text}");
     let mut rest = text.as_bytes();
@@ -75,7 +76,8 @@ fn parse(path: &Path, text: &str, library: &mtl::Library<'_>) -> Result<Vec<tobj
     }
 }
 
-/// Finds the first corner of a face that is none of the vertices: of all, or, if it counts back, of those before it.
+/// Returns the error for the first face corner whose vertex does not exist: in the whole file or, if the index counts
+/// back, before the line.
 fn no_such_vertex(path: &Path, text: &str) -> LoadError {
     let all = text.lines().filter(|line| line.starts_with("v ")).count();
     let mut before = 0;
@@ -124,8 +126,8 @@ fn add(
         for &arity in mesh.face_arities.iter().chain(&triangles) {
             let (face, behind) = rest.split_at(arity as usize);
             builder.add_polygon(face, material);
-            if !paint(face, first, corners, placements, builder) {
-                notes.count("faces lack coordinates for a texture, and have its mean color", 1);
+            if !set_face_corners(face, first, corners, placements, builder) {
+                notes.count("faces lack coordinates for a texture and have its mean color", 1);
             }
             first += face.len();
             rest = behind;
@@ -139,9 +141,9 @@ fn add(
     }
 }
 
-/// Gives the face that was added last, whose first corner has the number `first`, its coordinates and colors; `false` if some
-/// coordinates are absent.
-fn paint(
+/// Sets the coordinates and colors of the face that was added last, whose first corner has the number `first`. Returns
+/// false if coordinates are missing.
+fn set_face_corners(
     face: &[VertexId],
     first: usize,
     corners: &Corners,

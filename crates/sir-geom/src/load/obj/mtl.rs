@@ -18,35 +18,35 @@ use crate::load::texture::{Image, Images, Layer, Placement};
 use crate::material::{MAX_REFLECTANCE, Material, Opacity, Sides};
 use crate::texture::Texture;
 
-/// The materials of all libraries of an OBJ file, as far as its faces use them.
+/// Materials of all libraries of an OBJ file that its faces use.
 #[derive(Debug)]
 pub(super) struct Library<'a> {
-    /// Names of the materials to take in.
+    /// Names of the materials to read.
     wanted: &'a BTreeSet<String>,
-    /// Whether vertices have colors.
+    /// True if vertices have colors.
     is_colored: bool,
     options: LoadOptions,
     builder: &'a mut SceneBuilder,
     materials: Vec<Known>,
-    /// Places in `materials`; of equal names the last counts.
+    /// Indices in `materials`; of equal names, the last counts.
     pub(super) by_name: BTreeMap<String, usize>,
-    /// Images that were read, and whether their brightness was made their alpha.
+    /// Images read so far, by path and by whether their brightness became their alpha.
     textures: HashMap<(PathBuf, bool), Option<Image>>,
     images: Images,
-    /// The files that were tried.
+    /// Library files that were tried.
     read: HashSet<PathBuf>,
 }
 
-/// What a face must know about its material.
+/// Data about a material that its faces need.
 #[derive(Debug)]
 pub(super) struct Known {
     pub(super) id: MaterialId,
-    /// The sets of coordinates that its textures use.
+    /// Transforms of the coordinate sets of its textures.
     pub(super) placements: Vec<Placement>,
 }
 
 impl<'a> Library<'a> {
-    /// A library that takes in the materials of these names.
+    /// Creates a library that reads the materials with these names.
     pub(super) fn new(
         wanted: &'a BTreeSet<String>,
         is_colored: bool,
@@ -66,19 +66,19 @@ impl<'a> Library<'a> {
         }
     }
 
-    /// The materials, in the order of the numbers in `by_name`.
+    /// Returns the materials, in the order of the indices in `by_name`.
     pub(super) fn finish(self) -> Vec<Known> {
         self.materials
     }
 
-    /// Reads what a `mtllib` statement of the file `obj` names: one file whose name may have blanks, or else
-    /// several.
+    /// Reads the libraries of an `mtllib` statement of the file `obj`: one file whose name may contain blanks, or else
+    /// several files.
     pub(super) fn add(&mut self, obj: &Path, names: &str, notes: &mut Notes) -> Result<(), LoadError> {
         let whole = plain_name(names);
         if files::beside(obj, &whole).is_some_and(|path| path.is_file()) {
             return self.add_file(obj, &whole, notes);
         }
-        // A blank inside one of several names has a backslash before it.
+        // In a list of names, a backslash precedes a blank inside a name.
         for name in names.replace("\\ ", "\0").split_whitespace().map(|name| name.replace('\0', " ")) {
             self.add_file(obj, &plain_name(&name), notes)?;
         }
@@ -106,10 +106,7 @@ impl<'a> Library<'a> {
         let clean::Mtl { text, ignored } =
             clean::mtl(&String::from_utf8_lossy(bytes)).map_err(|(line, what)| syntax(line, what))?;
         for keyword in ignored {
-            notes.name(
-                "properties of materials have no meaning for diffuse surfaces and were ignored",
-                keyword,
-            );
+            notes.name("material properties do not apply to diffuse surfaces and were ignored", keyword);
         }
         let mut rest = text.as_bytes();
         let (materials, _) = tobj::load_mtl_buf(&mut rest).map_err(|e| {
@@ -154,12 +151,12 @@ impl<'a> Library<'a> {
         material
     }
 
-    /// The number `d` is the opacity, and `Tr` what is missing of it; where both are given `d` counts.
+    /// Returns the opacity: the number `d`, or `1 − Tr` if only `Tr` is given, times the mask.
     fn opacity(&self, source: &tobj::Material, mask: Option<&Layer>, notes: &mut Notes) -> Opacity {
         let transparency = source.unknown_param.get("Tr").and_then(|tr| tr.parse::<f64>().ok());
         let factor = match (source.dissolve, transparency) {
             (Some(d), _) => d,
-            // Who writes this takes it for an opacity: nobody makes a surface to have none.
+            // Exporters that write this mean an opacity of one: nobody makes a fully transparent surface.
             (None, Some(1.0)) => {
                 notes.name("materials have Tr 1 and no d, and were made opaque", quoted(&source.name));
                 1.0
@@ -170,7 +167,7 @@ impl<'a> Library<'a> {
         texture::opacity(factor.clamp(0.0, 1.0), mask, None)
     }
 
-    /// The texture that a `map_…` statement of a library names; its alpha is that of a mask if it `is_mask`.
+    /// Returns the texture of a `map_…` statement of a library. If it `is_mask`, its alpha is that of a mask.
     fn layer(
         &mut self,
         mtl: &Path,
@@ -181,7 +178,7 @@ impl<'a> Library<'a> {
     ) -> Option<Layer> {
         let map::Map { name, placement, wrap, ignored } = map::parse(statement?);
         for option in ignored {
-            notes.name("options of textures were ignored", option);
+            notes.name("texture options were ignored", option);
         }
         let name = plain_name(name);
         let Some(path) = files::beside(mtl, &name) else {
@@ -197,7 +194,7 @@ impl<'a> Library<'a> {
         Some(Layer::new(image?, wrap, placement, sets))
     }
 
-    /// An image, read when it is first asked for. The alpha of a mask that has none is its brightness.
+    /// Returns an image, which is read on first use. A mask without alpha gets its brightness as alpha.
     fn image(&mut self, path: PathBuf, name: &str, is_mask: bool, notes: &mut Notes) -> Option<Image> {
         if let Some(&image) = self.textures.get(&(path.clone(), is_mask)) {
             return image;
@@ -219,18 +216,19 @@ impl<'a> Library<'a> {
     }
 }
 
-/// A mask from an image without alpha: the numbers of its colors are taken for what they are, without decoding.
+/// Returns a mask from the brightness of an image without alpha. Color values are used as stored, without sRGB
+/// decoding.
 fn brightness_as_alpha(texture: &Texture) -> Option<Texture> {
     let [width, height] = texture.size();
     let mask = |&[r, g, b, _]: &[u8; 4]| {
-        // Weights of the luminance (ITU-R BT.709), in units that keep gray as it is.
+        // Luminance weights (ITU-R BT.709), scaled such that gray keeps its value.
         let sum = 2126 * u32::from(r) + 7152 * u32::from(g) + 722 * u32::from(b);
         [255, 255, 255, ((sum + 5000) / 10_000) as u8]
     };
     Texture::new(width, height, texture.texels().iter().map(mask).collect())
 }
 
-/// A file name without quotes, with the slashes of this system.
+/// Returns a file name without quotes, with forward slashes.
 fn plain_name(name: &str) -> String {
     name.trim_matches('"').replace('\\', "/")
 }
