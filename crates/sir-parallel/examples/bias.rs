@@ -15,7 +15,7 @@ use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_parallel::{Executor, Start};
 use sir_radiosity::{
-    BatchSettings, Batches, FirstShot, Model, Multipath, MultipathSettings, Shot, ShotSettings, Transported,
+    BatchSettings, Batches, FirstShot, Model, ReplicaSettings, Replicas, Shot, ShotSettings, Transported,
 };
 
 /// Expected crossings of a patch by all lines together.
@@ -75,9 +75,9 @@ fn measure(model: &Model, reflectance: f64, workers: usize) -> Result<Row, Box<d
     let settings = ShotSettings::new(model, 4_000_000, 1);
     let shot = executor.run::<FirstShot<'_>>(settings, Start::Fresh(()))?.outcome;
     let mut replicas = |tail| {
-        let settings = MultipathSettings::new(model, domain.clone(), lines, 1);
-        let settings = MultipathSettings { tail, replicas: workers as u64, ..settings };
-        executor.run::<Multipath<'_>>(settings, Start::Fresh(shot.clone()))
+        let settings = ReplicaSettings::new(model, domain.clone(), lines, 1);
+        let settings = ReplicaSettings { tail, replicas: workers as u64, ..settings };
+        executor.run::<Replicas<'_>>(settings, Start::Fresh(shot.clone()))
     };
     let (published, tail) = (replicas(0)?.outcome, replicas(lines / 10)?.outcome);
     let settings = BatchSettings::new(model, domain, lines, 1);

@@ -11,16 +11,19 @@ fn path() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pipeline.md")
 }
 
+fn page(name: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name)).unwrap()
+}
+
 fn reference() -> String {
     fs::read_to_string(path()).unwrap()
 }
 
 /// Returns the examples of the reference, parsed in a folder that has their scene. All must be valid.
-fn examples() -> Vec<Pipeline> {
+fn examples(page: &str) -> Vec<Pipeline> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("room.gltf"), "").unwrap();
-    let text = reference();
-    let blocks = text.split("```ron\n").skip(1).map(|block| block.split("```").next().unwrap());
+    let blocks = page.split("```ron\n").skip(1).map(|block| block.split("```").next().unwrap());
     blocks
         .map(|block| {
             Pipeline::parse(block, &folder.path().join("pipeline.ron")).unwrap_or_else(|e| panic!("{e}"))
@@ -30,12 +33,13 @@ fn examples() -> Vec<Pipeline> {
 
 #[test]
 fn all_examples_are_valid() {
-    assert_eq!(examples().len(), 5);
+    assert_eq!(examples(&reference()).len(), 5);
+    assert_eq!(examples(&page("guide.md")).len(), 2);
 }
 
 #[test]
 fn the_defaults_are_those_of_the_reference() {
-    let all = examples();
+    let all = examples(&reference());
     let actions = |p: &Pipeline| -> Vec<Action> {
         let mut actions: Vec<Action> = p.stages.iter().map(|s| s.action.clone()).collect();
         for action in &mut actions {
@@ -159,4 +163,20 @@ fn what_is_written_is_what_was_read() {
             assert_eq!(again.to_ron(), written);
         }
     }
+}
+
+/// All records are in the reference: those that `plan/reference.rs` lists are those that are declared.
+#[test]
+fn all_records_have_a_table() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/plan");
+    let mut declared = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let text = fs::read_to_string(entry.unwrap().path()).unwrap();
+        declared += text.matches("\nrecord! {").count();
+    }
+    assert_eq!(
+        field_tables().len(),
+        declared,
+        "add the new record to plan/reference.rs, and its mark to docs/pipeline.md"
+    );
 }

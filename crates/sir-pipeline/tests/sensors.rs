@@ -99,7 +99,9 @@ fn impossible_sensors_are_refused_with_the_reason() {
         (r#"File("bad.txt")"#, "bad.txt:2 is not a point: it has 4 numbers, but a point has six"),
         (r#"File("absent.txt")"#, "absent.txt: No such file"),
         ("File(7)", "`File` must have the path of a file in quotes"),
-        ("Points([])", "`Points` must have a list of points"),
+        ("Points([])", "the list of points of `Points` is empty"),
+        ("Points(3, 4)", "`Points` must have a list of points"),
+        (r#"File(".")"#, "it is not a regular file"),
         (
             "Points([(position: (1, 1, 1), direction: (0, 0, 0))])",
             "must be a direction, but its length is zero",

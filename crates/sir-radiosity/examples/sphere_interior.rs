@@ -7,7 +7,7 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
-use sir_radiosity::{FirstShot, Model, Multipath, MultipathSettings, ShotSettings, run_stage, sources};
+use sir_radiosity::{FirstShot, Model, ReplicaSettings, Replicas, ShotSettings, run_stage, sources};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let reflectance = 0.7;
@@ -22,8 +22,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (seed, lines) = (1, 2_000_000);
     let shot = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, lines, seed), ())?;
-    let settings = MultipathSettings::new(&model, Domain::hull(model.scene.vertices()), lines, seed);
-    let done = run_stage::<Multipath<'_>>(settings, shot)?;
+    let settings = ReplicaSettings::new(&model, Domain::hull(model.scene.vertices()), lines, seed);
+    let done = run_stage::<Replicas<'_>>(settings, shot)?;
 
     let power: f64 = sources(&model.scene, &model.mesh).iter().map(|s| s.power.x).sum();
     let exact = power / (model.scene.total_area() * (1.0 - reflectance));

@@ -11,7 +11,7 @@
 //! * [`FirstShot`]: lines from the light sources ([`Emitter`]: surfaces, points, parallel light, the sky) carry the
 //!   emitted power to the first surfaces. [`SecondShot`]: lines from the brightest patches carry what these reflect.
 //! * Global lines pass the reflected power on, between every pair of surfaces that face each other along a line, in
-//!   both directions. [`Multipath`] passes it on line by line, as published. [`Batches`] fixes the power that surfaces
+//!   both directions. [`Replicas`] passes it on line by line, as published. [`Batches`] fixes the power that surfaces
 //!   send while the lines of a batch are traced, so that any number of workers can share these lines.
 //! * [`Repeats`]: the mean of independent runs of these stages, with standard errors from their spread.
 //! * [`Solution`]: irradiance and its standard error per side of a patch. [`SensorStage`] measures irradiance at any
@@ -88,7 +88,7 @@ pub use focus_sides::FocusSides;
 pub use grouping::Grouping;
 pub use local_shot::LocalShot;
 pub use model::{Model, ModelError};
-pub use multipath::{Multipath, MultipathSettings, Replica};
+pub use multipath::{Replica, ReplicaSettings, Replicas};
 pub use power::{PowerUnit, Quanta};
 pub use received::Received;
 pub use repeats::{MIN_REPEATS, RepeatedTotals, Repeats};

@@ -35,7 +35,7 @@ use crate::visitor::Visitor;
 
 /// Settings of a multipath transport.
 #[derive(Clone, Debug)]
-pub struct MultipathSettings<'m> {
+pub struct ReplicaSettings<'m> {
     /// The scene and its patches.
     pub model: &'m Model,
     /// The domain through which lines are drawn.
@@ -51,7 +51,7 @@ pub struct MultipathSettings<'m> {
     pub seed: u64,
 }
 
-impl<'m> MultipathSettings<'m> {
+impl<'m> ReplicaSettings<'m> {
     /// Returns the settings for this number of lines in one replica, whose last tenth is the tail.
     #[must_use]
     pub fn new(model: &'m Model, domain: Domain, lines: u64, seed: u64) -> Self {
@@ -61,8 +61,8 @@ impl<'m> MultipathSettings<'m> {
 
 /// A sequential transport of power along global lines, in independent replicas.
 #[derive(Debug)]
-pub struct Multipath<'m> {
-    settings: MultipathSettings<'m>,
+pub struct Replicas<'m> {
+    settings: ReplicaSettings<'m>,
     /// The direct light.
     received: Received,
     /// Power that the lines bring, and the share of the reflected direct power that leaves with each line.
@@ -88,9 +88,9 @@ impl Chain for Replica {
     }
 }
 
-impl<'m> Multipath<'m> {
+impl<'m> Replicas<'m> {
     fn new(
-        settings: MultipathSettings<'m>,
+        settings: ReplicaSettings<'m>,
         received: Received,
         unit: PowerUnit,
         tallies: PatchTallies,
@@ -100,14 +100,14 @@ impl<'m> Multipath<'m> {
     }
 }
 
-impl<'m> Stage for Multipath<'m> {
-    type Settings = MultipathSettings<'m>;
+impl<'m> Stage for Replicas<'m> {
+    type Settings = ReplicaSettings<'m>;
     type Input = Shot;
     type Outcome = Transported;
     type Chain = Replica;
 
     fn identity(settings: &Self::Settings) -> Vec<u64> {
-        let MultipathSettings { model, domain, lines, tail, replicas, seed } = settings;
+        let ReplicaSettings { model, domain, lines, tail, replicas, seed } = settings;
         vec![3, model.mesh.side_count() as u64, *lines, *seed, *tail, *replicas, domain.identity()]
     }
 
@@ -162,7 +162,7 @@ impl<'m> Stage for Multipath<'m> {
     }
 
     fn chain(&self, number: u64) -> Replica {
-        let MultipathSettings { model, tail, replicas, .. } = self.settings;
+        let ReplicaSettings { model, tail, replicas, .. } = self.settings;
         let lines = chain_units(&self.round(), number, replicas);
         let tail = share(tail, number, replicas);
         let tail = lines.end - (tail.end - tail.start).min(lines.end - lines.start);
@@ -174,7 +174,7 @@ impl<'m> Stage for Multipath<'m> {
         let Replica { end, tail, unshot } = replica;
         let at_the_end = lines.end == *end;
         let StageTotals { balance, counts } = totals;
-        let MultipathSettings { model, domain, .. } = &self.settings;
+        let ReplicaSettings { model, domain, .. } = &self.settings;
         let tallies = self.tallies.of_worker(worker);
         let prefetch = |side| tallies.prefetch(side);
         let draw = |index| (domain.line(self.streams.line(index).point()), 1);
@@ -215,7 +215,7 @@ impl<'m> Stage for Multipath<'m> {
     }
 }
 
-impl Multipath<'_> {
+impl Replicas<'_> {
     /// Visits the state except the units, which are needed before the tallies can be created.
     fn visit_after_units(&mut self, visitor: &mut dyn Visitor) {
         self.tallies.visit(Counters::All, visitor);

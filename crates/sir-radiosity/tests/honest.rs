@@ -14,7 +14,7 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::{Domain, seed_of_repeat};
 use sir_mesh::Subdivision;
-use sir_radiosity::{MIN_REPEATS, Model, MultipathSettings, PowerUnit, Received, Repeats, Solution};
+use sir_radiosity::{MIN_REPEATS, Model, PowerUnit, Received, Repeats, ReplicaSettings, Solution};
 
 const SEEDS: u64 = 200;
 
@@ -91,10 +91,10 @@ impl Exact {
         let shot = shoot_again(&self.model, &first, self.lines(self.per_patch / 4, 1), seed);
         let lines = self.lines(2 * self.per_patch, 2);
         // With a tail of this length, the missing power is negligible.
-        let settings = MultipathSettings {
+        let settings = ReplicaSettings {
             replicas: 2,
             tail: lines / 2,
-            ..MultipathSettings::new(&self.model, Domain::hull(self.model.scene.vertices()), lines, seed)
+            ..ReplicaSettings::new(&self.model, Domain::hull(self.model.scene.vertices()), lines, seed)
         };
         let all = replicas(shot, settings);
         (all.received, all.unit)

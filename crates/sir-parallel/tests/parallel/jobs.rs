@@ -10,9 +10,8 @@ use sir_lines::{Domain, Focus, GlobalLines, LocalLines};
 use sir_mesh::{SideId, Subdivision};
 use sir_parallel::{Communicator, Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
-    Balance, BatchSettings, Batches, Counts, FirstShot, Model, Multipath, MultipathSettings, OneWorker,
-    Quanta, Received, SecondShot, Shot, ShotSettings, Stage, StageTotals, Transported, chain_units,
-    run_stage,
+    Balance, BatchSettings, Batches, Counts, FirstShot, Model, OneWorker, Quanta, Received, ReplicaSettings,
+    Replicas, SecondShot, Shot, ShotSettings, Stage, StageTotals, Transported, chain_units, run_stage,
 };
 
 use crate::observers::StopAfter;
@@ -148,9 +147,9 @@ impl Room {
 }
 
 impl Job {
-    fn settings(room: &Room, replicas: u64, tail: u64) -> MultipathSettings<'_> {
-        let settings = MultipathSettings::new(&room.model, room.domain.clone(), LINES, SEED);
-        MultipathSettings { tail, replicas, ..settings }
+    fn settings(room: &Room, replicas: u64, tail: u64) -> ReplicaSettings<'_> {
+        let settings = ReplicaSettings::new(&room.model, room.domain.clone(), LINES, SEED);
+        ReplicaSettings { tail, replicas, ..settings }
     }
 
     /// Runs the stage, from the start or from a checkpoint.
@@ -176,7 +175,7 @@ impl Job {
             Self::Multipath { replicas, tail } => {
                 let start = start(room.shot.clone(), saved);
                 let settings = Self::settings(room, replicas, tail);
-                executor.run::<Multipath<'_>>(settings, start).map(Outcome::of_transport)
+                executor.run::<Replicas<'_>>(settings, start).map(Outcome::of_transport)
             }
         }
     }
@@ -201,7 +200,7 @@ impl Job {
             }
             Self::Multipath { replicas, tail } => {
                 let settings = Self::settings(room, replicas, tail);
-                Outcome::of_transport(by_hand::<Multipath<'_>>(settings, room.shot.clone()))
+                Outcome::of_transport(by_hand::<Replicas<'_>>(settings, room.shot.clone()))
             }
         }
     }

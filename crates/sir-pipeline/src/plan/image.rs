@@ -91,7 +91,7 @@ impl Format for ExposureFormat {
     type Value = Exposure;
 
     fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<Exposure> {
-        if node.name() == "Auto" {
+        if node.name() == "Auto" && node.value == Value::Items(Vec::new()) {
             return Some(Exposure::Auto);
         }
         if node.value == Value::Number {

@@ -3,7 +3,7 @@
 use sir_geom::Scene;
 use sir_lines::{Domain, Focus, GlobalLines};
 use sir_parallel::{Executor, RunError, StageRun, Start};
-use sir_radiosity::{BatchSettings, Batches, Model, MultipathSettings, Shot, Transported};
+use sir_radiosity::{BatchSettings, Batches, Model, ReplicaSettings, Shot, Transported};
 
 use crate::plan::lines::{MAX_LINES, line_count};
 use crate::text::field::Format as _;
@@ -126,9 +126,8 @@ impl Multipath {
             Transport::Replicas(replicas) => {
                 // Pipelines with a focus cannot have replicas.
                 let (domain, tail) = (domain.domain().clone(), replicas.tail_of(lines));
-                let settings =
-                    MultipathSettings { model, domain, lines, tail, replicas: replicas.count, seed };
-                executor.run::<sir_radiosity::Multipath<'_>>(settings, start)
+                let settings = ReplicaSettings { model, domain, lines, tail, replicas: replicas.count, seed };
+                executor.run::<sir_radiosity::Replicas<'_>>(settings, start)
             }
         }
     }

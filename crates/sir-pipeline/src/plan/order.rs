@@ -34,6 +34,8 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
             let help = "begin the stages with `Load(path: \"scene.gltf\")`";
             reader.problem(place, format!("`{name}` before `Load`: there is no scene yet"), help);
             scene = true;
+            first_shot |= ["FirstShot", "Repeat"].contains(&name);
+            multipath |= ["Multipath", "Repeat"].contains(&name);
             continue;
         }
         if let (Some((_, repeat)), "FirstShot" | "SecondShot" | "Multipath") = (repeat, name) {
@@ -70,6 +72,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
                 let help = format!("put `FirstShot(lines: 1_000_000)` before `{name}`");
                 reader.problem(place, format!("`{name}` before `FirstShot`: {why}"), help);
                 first_shot = true;
+                multipath |= name == "Multipath";
             }
             "Multipath" => multipath = true,
             _ => {}

@@ -78,6 +78,13 @@ impl Format for Edges {
             reader.problem(node.text, message, help);
             return None;
         };
+        for vector in [a, b] {
+            if !matches!(&vector.value, Value::Items(numbers) | Value::List(numbers) if numbers.len() == 3) {
+                let message = format!("`{name}` must be two vectors of three numbers");
+                reader.problem(vector.text, message, help);
+                return None;
+            }
+        }
         let [a, b] = [a, b].map(|vector| Vector([1.0, 0.0, 0.0]).read(reader, vector, name));
         let (a, b) = (a?, b?);
         if a.cross(b).length() > 1e-9 * a.length() * b.length() {

@@ -77,7 +77,11 @@ impl Pipeline {
     /// too.
     pub fn parse(text: &str, path: &Path) -> Result<Self, Diagnostics> {
         // `ron` rejects a comment in the last line unless a line break follows.
-        let source = format!("{text}\n");
+        // A byte order mark becomes as many spaces, so that places stay what they are.
+        let source = match text.strip_prefix('\u{feff}') {
+            Some(rest) => format!("   {rest}\n"),
+            None => format!("{text}\n"),
+        };
         let mut reader = Reader::new(&source, path.parent().unwrap_or(Path::new("")));
         let content = match ron_tree::parse(&source) {
             Ok(root)

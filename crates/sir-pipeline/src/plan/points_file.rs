@@ -1,6 +1,9 @@
 //! Files of points: six numbers per line, the input format of Radiance's `rtrace`.
 
-use std::path::PathBuf;
+use std::fs::File;
+use std::io;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use sir_radiosity::Sensor;
@@ -33,7 +36,7 @@ impl Body for PointsFile {
             reader.problem(node.text, "`File` must have the path of a file in quotes", example);
             return None;
         }
-        match std::fs::read_to_string(&path).map(|text| parse(&text)) {
+        match read_bounded(&path).map(|text| parse(&text)) {
             Ok(Ok(sensors)) => Some(Self { path, sensors }),
             Ok(Err((line, why))) => {
                 let message = format!("{}:{line} is not a point: {why}", path.display());
@@ -52,6 +55,24 @@ impl Body for PointsFile {
     fn write(&self, name: &str) -> String {
         format!("{name}({})", quoted(&self.path.to_string_lossy()))
     }
+}
+
+/// Largest size of a points file, in bytes: some four million points.
+const MAX_BYTES: u64 = 1 << 28;
+
+/// Reads a text file of limited size.
+fn read_bounded(path: &Path) -> io::Result<String> {
+    // Opening a pipe would wait for its other end.
+    if !path.metadata()?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file"));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "it has more than 256 MiB"));
+    }
+    String::from_utf8(bytes)
+        .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not a UTF-8 text file"))
 }
 
 /// Parses points, one `x y z dx dy dz` per line. `#` begins a comment.

@@ -1,6 +1,6 @@
 //! The stage `Sensors`: irradiance at points and on grids.
 
-use std::path::{Component, PathBuf};
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use sir_radiosity::{Sensor, SensorSettings};
@@ -8,7 +8,7 @@ use sir_radiosity::{Sensor, SensorSettings};
 use crate::plan::points_file::PointsFile;
 use crate::text::field::Format as _;
 use crate::text::formats::{Direction, Text, Vector, count, number, positive};
-use crate::text::reader::{Fields, Reader};
+use crate::text::reader::{Fields, Reader, inside};
 use crate::text::record::{Body, choice, list_items, named, record};
 use crate::text::ron_tree::Node;
 use crate::text::span::{Spanned, WithSpan};
@@ -53,7 +53,7 @@ pub struct Points(pub Vec<SensorPoint>);
 
 record! {
     /// Point at which irradiance is measured.
-    pub struct SensorPoint as "Points" {
+    pub struct SensorPoint as "point" {
         /// Position of the sensor.
         pub position: DVec3 = Vector([1.0, 0.75, 2.0]).required().unit("m");
         /// Normal of the surface whose irradiance is measured.
@@ -111,12 +111,17 @@ impl Sensors {
     }
 
     fn output(&self, extension: &str) -> PathBuf {
-        let path = PathBuf::from(format!("{}.{extension}", self.name));
-        path.components().filter(|c| matches!(c, Component::Normal(_))).collect()
+        inside(Path::new(&format!("{}.{extension}", self.name)))
     }
 
     fn claim_outputs<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>) {
         let Some(node) = fields.get("name") else { return };
+        if Path::new(&self.name).file_name().is_none() || self.name.ends_with(['/', '.']) {
+            let message =
+                format!("`name` must be the name of a file without extension, but it is {:?}", self.name);
+            reader.problem(node.text, message, "write for instance `name: \"desk\"`");
+            return;
+        }
         for extension in ["csv", "png"].into_iter().take(if self.map().is_some() { 2 } else { 1 }) {
             reader.claim_output(node, &format!("{}.{extension}", self.name));
         }

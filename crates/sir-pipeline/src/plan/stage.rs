@@ -242,6 +242,13 @@ impl Format for StageList {
         let (mut order, mut all_known) = (Vec::new(), true);
         for node in nodes {
             let place = node.name();
+            if Action::NAMES.contains(&place) && !self.known.contains(&place) {
+                let message = format!("`{place}` inside of `Repeat`");
+                reader.problem(place, message, format!("move `{place}` out of `Repeat`"));
+                stages.push(None);
+                all_known &= place != "Repeat";
+                continue;
+            }
             match reader.name_of(node, self.what, self.known) {
                 Some(name) => {
                     order.push((name, place));

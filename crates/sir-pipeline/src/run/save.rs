@@ -71,7 +71,8 @@ pub(crate) fn save(
                 write_glb(&path, renderer.display, Exposure::Auto, scene.cameras(), prepared.up)?;
                 "gltf"
             }
-            _ => {
+            // Only tables need no renderer.
+            (Output::Table(_) | Output::Image(_) | Output::Gltf(_), _) => {
                 let table = Table::new(scene, mesh, &solution.irradiance, &solution.error);
                 if has_extension(&path, "npy") {
                     table.write_npy(&path)?

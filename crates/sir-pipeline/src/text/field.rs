@@ -101,7 +101,7 @@ impl<F: Format> Part for Field<F> {
             (Some(node), _) => self.format.read(reader, node, name),
             (None, Some(default)) => Some(default.clone()),
             (None, None) => {
-                if !fields.excused {
+                if !fields.is_excused(name) {
                     let Fields { owner, place, .. } = fields;
                     let help = format!("write `{owner}({name}: {}, …)`", self.format.example());
                     reader.problem(place, format!("`{owner}` lacks the field `{name}`"), help);
@@ -215,7 +215,7 @@ impl<T: 'static> Part for OneOf<T> {
         let Fields { owner, place, .. } = fields;
         let mut given = self.alternatives.iter().filter_map(|a| fields.get(a.row.name).map(|node| (a, node)));
         let Some((first, node)) = given.next() else {
-            if !fields.excused {
+            if !self.names().iter().any(|name| fields.is_excused(name)) {
                 let examples: Vec<String> =
                     self.alternatives.iter().map(|a| format!("{}: {}", a.row.name, a.example)).collect();
                 let examples: Vec<&str> = examples.iter().map(String::as_str).collect();

@@ -191,12 +191,16 @@ impl Format for Vector {
     type Value = DVec3;
 
     fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<DVec3> {
-        let (Value::Items(items) | Value::List(items)) = &node.value else {
-            reader.wrong_value(node, name, "three numbers", self.example());
-            return None;
+        let items = match &node.value {
+            Value::Items(items) | Value::List(items) if node.name().is_empty() => items,
+            _ => {
+                reader.wrong_value(node, name, "three numbers", self.example());
+                return None;
+            }
         };
         if items.len() != 3 {
-            reader.wrong_value(node, name, "three numbers", self.example());
+            let message = format!("`{name}` must be three numbers, but there are {}", items.len());
+            reader.problem(node.text, message, format!("write for instance `{name}: {}`", self.example()));
             return None;
         }
         read_numbers(reader, items, name, &self.example()).map(|numbers| DVec3::from_slice(&numbers))
@@ -280,7 +284,7 @@ impl Format for Color {
         const EXAMPLE: &str = "(100, 90, 80)";
         let color = match &node.value {
             Value::Number => Rgb::splat(number(self.0).read(reader, node, name)?),
-            Value::Items(items) | Value::List(items) if items.len() == 3 => {
+            Value::Items(items) | Value::List(items) if items.len() == 3 && node.name().is_empty() => {
                 Rgb::from_slice(&read_numbers(reader, items, name, EXAMPLE)?)
             }
             _ => {

@@ -38,6 +38,7 @@ impl Format for SceneFile {
             .unwrap_or_default();
         neighbors.sort();
         let what = if path.exists() { "is not a file" } else { "does not exist" };
+        neighbors.retain(|neighbor| *neighbor != name);
         let help = did_you_mean(&name, &neighbors)
             .unwrap_or_else(|| "paths are relative to the folder of the pipeline file".into());
         reader.problem(node.text, format!("the scene file {} {what}", path.display()), help);

@@ -8,7 +8,7 @@ use crate::format::list;
 use crate::text::diagnostic::{Diagnostic, Position};
 use crate::text::ron_tree;
 use crate::text::ron_tree::{Node, Value};
-use crate::text::suggest::did_you_mean;
+use crate::text::suggest::{did_you_mean, resembling};
 
 /// Reader of a pipeline file. It collects problems and continues.
 pub(crate) struct Reader<'a> {
@@ -28,8 +28,8 @@ pub(crate) struct Fields<'a> {
     pub(crate) owner: &'static str,
     /// Text at which a missing field is reported.
     pub(crate) place: &'a str,
-    /// True if a reported problem already explains why fields are missing.
-    pub(crate) excused: bool,
+    /// Fields that another problem explains the lack of; `None` if it explains the lack of all.
+    excused: Option<Vec<String>>,
     fields: Vec<(&'a str, Node<'a>)>,
 }
 
@@ -38,6 +38,11 @@ impl<'a> Fields<'a> {
     pub(crate) fn get(&self, name: &str) -> Option<&Node<'a>> {
         let (_, node) = self.fields.iter().find(|(n, _)| *n == name)?;
         (node.value != Value::Nothing).then_some(node)
+    }
+
+    /// Returns true if another problem explains why a field is missing.
+    pub(crate) fn is_excused(&self, name: &str) -> bool {
+        self.excused.as_ref().is_none_or(|names| names.iter().any(|n| n == name))
     }
 
     /// Returns the text of a field, or that of its record if the field is missing.
@@ -79,14 +84,19 @@ impl<'a> Reader<'a> {
         let name = node.name();
         let place = if name.is_empty() { &node.text[..node.text.len().min(1)] } else { name };
         let mut fields: Vec<(&'a str, Node<'a>)> = Vec::new();
-        let mut excused = false;
+        let mut excused = Some(Vec::new());
         match &node.value {
             Value::Fields(given) => {
                 for (key, value) in given {
                     if !allowed.contains(key) {
-                        let meant = new_form(key, owner).or_else(|| did_you_mean(key, allowed));
-                        excused |= meant.is_some();
-                        let help = meant.unwrap_or_else(|| has_fields(owner, allowed));
+                        let help = match (new_form(key, owner), resembling(key, allowed)) {
+                            (Some(form), _) => form,
+                            (None, Some(meant)) => {
+                                excused.iter_mut().for_each(|fields| fields.push((*meant).to_owned()));
+                                format!("did you mean `{meant}`?")
+                            }
+                            (None, None) => has_fields(owner, allowed),
+                        };
                         self.problem(key, format!("unknown field `{key}` in `{owner}`"), help);
                     } else if let Some((first, _)) = fields.iter().find(|(k, _)| k == key) {
                         let help =
@@ -105,7 +115,7 @@ impl<'a> Reader<'a> {
                     None => format!("write `{owner}`"),
                 };
                 self.problem(node.text, message, help);
-                excused = true;
+                excused = None;
             }
         }
         Fields { owner, place, excused, fields }
@@ -145,8 +155,12 @@ impl<'a> Reader<'a> {
             self.problem(node.text, message, help);
             return None;
         }
-        let path: PathBuf = given.components().filter(|c| matches!(c, Component::Normal(_))).collect();
+        let path = inside(given);
         let key = PathBuf::from(path.to_string_lossy().to_lowercase());
+        if let Some((what, help)) = unusable(&key) {
+            self.problem(node.text, format!("the output path {text:?} {what}"), help);
+            return None;
+        }
         let clash =
             self.outputs.iter().find(|(p, _)| p.starts_with(&key) || key.starts_with(p)).map(|(_, t)| *t);
         if let Some(other) = clash {
@@ -160,6 +174,33 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// Returns an output path without components such as `.`.
+pub(crate) fn inside(path: &Path) -> PathBuf {
+    path.components().filter(|c| matches!(c, Component::Normal(_))).collect()
+}
+
+/// Names in a run directory that outputs cannot have.
+pub(crate) const RESERVED: [&str; 2] = ["result.json", "checkpoint"];
+
+/// Largest length of a file name in bytes, of most file systems.
+const MAX_NAME: usize = 255;
+
+/// Returns what makes an output path unusable, and what to do.
+fn unusable(path: &Path) -> Option<(&'static str, &'static str)> {
+    let names: Vec<_> = path.components().map(|c| c.as_os_str().to_string_lossy()).collect();
+    if names.first().is_some_and(|name| RESERVED.contains(&name.as_ref())) {
+        return Some(("is reserved for the run itself", "choose another name"));
+    }
+    if names.iter().any(|name| name.contains(char::is_control)) {
+        return Some(("contains a control character", "use printable characters"));
+    }
+    // Files are written under a temporary name that is a little longer.
+    if names.iter().any(|name| name.len() > MAX_NAME - 32) {
+        return Some(("has too long a name", "use at most 223 bytes for the name of a file or folder"));
+    }
+    None
+}
+
 fn has_fields(owner: &str, allowed: &[&str]) -> String {
     match allowed {
         [] => format!("`{owner}` has no fields"),
@@ -171,8 +212,8 @@ fn has_fields(owner: &str, allowed: &[&str]) -> String {
 /// Renamed fields: record, old name, and the new syntax.
 const CHANGED: [(&str, &str, &str); 3] = [
     ("Image", "calm", "the field is now called `denoise`"),
-    ("Multipath", "replicas", "write `transport: Replicas(count: …)` instead"),
-    ("Multipath", "tail", "write `transport: Replicas(tail: …)` instead"),
+    ("Multipath", "replicas", "write `transport: Replicas(count: …, tail: …)` instead"),
+    ("Multipath", "tail", "write `transport: Replicas(count: …, tail: …)` instead"),
 ];
 
 /// Returns the new syntax of a renamed field, if `key` is its old name.

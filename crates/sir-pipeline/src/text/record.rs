@@ -36,6 +36,11 @@ pub(crate) trait Record: Sized {
 
 impl<T: Record> Body for T {
     fn read<'a>(reader: &mut Reader<'a>, node: &Node<'a>) -> Option<Self> {
+        if !["", T::NAME].contains(&node.name()) {
+            let message = format!("expected `{}(…)`, but this is {}", T::NAME, node.kind());
+            reader.problem(node.name(), message, format!("write `{}(…)`", T::NAME));
+            return None;
+        }
         let names: Vec<&str> = T::rows().iter().map(|row| row.name).collect();
         let fields = reader.fields(node, T::NAME, &names);
         T::read_fields(reader, &fields)
@@ -168,7 +173,11 @@ pub(crate) fn list_items<'n, 'a>(
     if items.is_empty() {
         let owner = node.name();
         let help = format!("write `{owner}([{example}])`");
-        reader.problem(node.text, format!("`{owner}` must have a list of {what}"), help);
+        let message = match &node.value {
+            Value::Items(items) if items.len() == 1 => format!("the list of {what} of `{owner}` is empty"),
+            _ => format!("`{owner}` must have a list of {what}"),
+        };
+        reader.problem(node.text, message, help);
         return None;
     }
     Some(items)

@@ -12,6 +12,7 @@ use ron::value::RawValue;
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 use crate::text::diagnostic::{Diagnostic, Position};
+use crate::text::literal::float;
 
 /// A node of the tree.
 #[derive(Clone, Debug, PartialEq)]
@@ -140,6 +141,9 @@ impl<'de: 'a, 'a> Deserialize<'de> for Node<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = <&RawValue>::deserialize(deserializer)?.trim().get_ron();
         let other = Node { text, value: Value::Other };
+        if text.starts_with('.') && float(text).is_some() {
+            return Ok(Node { text, value: Value::Number });
+        }
         if text.starts_with(['{', '\'', '.']) {
             return Ok(other);
         }

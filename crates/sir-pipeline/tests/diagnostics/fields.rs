@@ -1,6 +1,6 @@
 //! Fields of stages: names, types, ranges.
 
-use super::{problems, stages};
+use super::{parse, problems, stages};
 
 #[test]
 fn unknown_names_and_fields() {
@@ -32,7 +32,7 @@ fn unknown_names_and_fields() {
      --> x.ron:3:37
       |
     3 | Load(path: "room.obj", side: Front, color: 1),
-      |                                     ^^^^^^
+      |                                     ^^^^^
       |
       = help: `Load` has the fields `path` and `sides`
 
@@ -76,7 +76,7 @@ fn unknown_names_and_fields() {
       |
       = help: did you mean `Image`?
 
-    error: expected one of the outputs, but this is a text
+    error: expected one of the outputs, but this is a string
      --> x.ron:7:53
       |
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
@@ -468,7 +468,7 @@ fn replicas_have_lines_before_their_tail() {
         r#"Load(path: "room.obj"), FirstShot(lines: 10),"#,
         r#"Multipath(lines: 10, transport: Replicas(count: 20, tail: 1))"#,
     ]), @r"
-    error: there are 20 replicas, but 10 lines
+    error: there are 20 replicas, but only 10 lines
      --> x.ron:3:33
       |
     3 | Multipath(lines: 10, transport: Replicas(count: 20, tail: 1))
@@ -567,11 +567,67 @@ fn the_new_form_of_a_field_is_told() {
         r#"Save([Image(path: "a.png", calm: false)]),"#,
         r#"Multipath(lines: 10, replicas: 2, tail: 1),"#,
     ]);
-    for told in [
-        "is now called `denoise`",
-        "`transport: Replicas(count: …)` instead",
-        "`transport: Replicas(tail: …)` instead",
-    ] {
+    for told in ["is now called `denoise`", "`transport: Replicas(count: …, tail: …)` instead"] {
         assert!(shown.contains(told), "{shown}");
     }
+}
+
+#[test]
+fn one_mistake_does_not_hide_others() {
+    let shown = stages(&[
+        r#"Load(path: "room.obj"), Light([Distant(directon: (0, -1, 0)), Point(positon: (0, 1, 0))]),"#,
+        r#"FirstShot(lines: 10), Multipath(replicas: 8), Save([Image(calm: true)]),"#,
+    ]);
+    for told in [
+        "did you mean `direction`?",
+        "`Distant` lacks the field `irradiance`",
+        "`Point` needs one of the fields `intensity` and `power`",
+        "`Multipath` lacks the field `lines`",
+        "`Image` lacks the field `path`",
+    ] {
+        assert!(shown.contains(told), "{told}: {shown}");
+    }
+    // A field is not missing if its misspelled name is there.
+    assert!(
+        !shown.contains("lacks the field `direction`") && !shown.contains("lacks the field `position`"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn names_stand_only_where_they_mean_something() {
+    for wrong in [
+        "Focus(min: Foo(0, 0, 0), max: (1, 1, 1))",
+        "Light([Point(position: (1, 2, 3), power: Rgb(1, 2, 3))])",
+        r#"Save([Image(path: "a.png", exposure: Auto(3))])"#,
+        r#"Sensors(name: "a", at: Points([Foo(position: (1, 1, 1), direction: (0, 1, 0))]))"#,
+    ] {
+        let shown = stages(&[r#"Load(path: "room.obj"),"#, wrong]);
+        assert!(shown.contains("x.ron:3:"), "{wrong}: {shown}");
+    }
+}
+
+#[test]
+fn output_names_can_be_written() {
+    for (path, reason) in [
+        ("result.json/b.png", "is reserved for the run itself"),
+        ("Checkpoint/b.png", "is reserved for the run itself"),
+        ("a\\u{0}b.png", "contains a control character"),
+        ("\\u{1b}[31m.png", "contains a control character"),
+        (&format!("{}.png", "x".repeat(300)), "has too long a name"),
+    ] {
+        let shown = stages(&[&format!(r#"Save([Image(path: "{path}")]),"#)]);
+        assert!(shown.contains(reason) && !shown.contains('\u{1b}'), "{path}: {shown}");
+    }
+    for name in [".", "..", "a/", "a."] {
+        let shown = stages(&[&format!(r#"Sensors(name: "{name}", at: Plane(height: 1, spacing: 1)),"#)]);
+        assert!(shown.contains("must be the name of a file"), "{name}: {shown}");
+    }
+}
+
+#[test]
+fn numbers_may_begin_with_a_point_and_files_with_a_byte_order_mark() {
+    let text = "\u{feff}(stages: [Load(path: \"room.obj\"), Focus(min: (0, 0, 0), max: (.5, 1, 1), share: .5), FirstShot(lines: 1)])";
+    assert!(parse(text).is_ok());
+    assert!(problems("\u{feff}(seed: x, stages: [])").contains("x.ron:1:9"), "columns count the mark");
 }

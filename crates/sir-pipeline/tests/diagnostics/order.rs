@@ -275,22 +275,30 @@ fn what_cannot_be_repeated() {
     ");
     insta::assert_snapshot!(
         repeat("times: 2, stages: [FirstShot(lines: 9), FirstShot(lines: 9), Save([Table(path: \"b.csv\")])]"), @r#"
-    error: unknown repeated stage `Save`
+    error: `FirstShot` after `FirstShot`
+     --> x.ron:3:48
+      |
+    3 | Repeat(times: 2, stages: [FirstShot(lines: 9), FirstShot(lines: 9), Save([Table(path: "b.csv")])]),
+      |                                                ^^^^^^^^^
+      |
+      = help: the order is `FirstShot`, `SecondShot`, `Multipath`, each of them once
+
+    error: `Save` inside of `Repeat`
      --> x.ron:3:69
       |
     3 | Repeat(times: 2, stages: [FirstShot(lines: 9), FirstShot(lines: 9), Save([Table(path: "b.csv")])]),
       |                                                                     ^^^^
       |
-      = help: repeated stages are `FirstShot`, `SecondShot` and `Multipath`
+      = help: move `Save` out of `Repeat`
     "#);
     insta::assert_snapshot!(repeat("times: 2, stages: [Repeat(times: 2, stages: [FirstShot(lines: 9)])]"), @r"
-    error: unknown repeated stage `Repeat`
+    error: `Repeat` inside of `Repeat`
      --> x.ron:3:27
       |
     3 | Repeat(times: 2, stages: [Repeat(times: 2, stages: [FirstShot(lines: 9)])]),
       |                           ^^^^^^
       |
-      = help: repeated stages are `FirstShot`, `SecondShot` and `Multipath`
+      = help: move `Repeat` out of `Repeat`
     ");
 }
 
@@ -306,14 +314,6 @@ fn repeats_out_of_place() {
       | ^^^^^^
       |
       = help: begin the stages with `Load(path: "scene.gltf")`
-
-    error: the pipeline ends without computing anything
-     --> x.ron:2:1
-      |
-    2 | Repeat(times: 2, stages: [FirstShot(lines: 10)]),
-      | ^^^^^^
-      |
-      = help: add `FirstShot(lines: 1_000_000)` and `Multipath(lines: 1_000_000)`
     "#);
     insta::assert_snapshot!(stages(&[load, "FirstShot(lines: 10),", repeat, "Multipath(lines: 10),"]), @r"
     error: `FirstShot` outside of the `Repeat` in line 4
@@ -349,4 +349,30 @@ fn repeats_out_of_place() {
       |
       = help: move `Subdivide` to before `Repeat`
     ");
+}
+
+#[test]
+fn a_missing_load_is_the_only_problem() {
+    for stages in [
+        "FirstShot(lines: 9), Multipath(lines: 9), Save([Table(path: \"a.csv\")])",
+        "Repeat(times: 2, stages: [FirstShot(lines: 9)]), Save([Table(path: \"a.csv\")])",
+    ] {
+        let shown = super::problems(&format!("(stages: [{stages}])"));
+        assert!(shown.matches("error: ").count() == 1 && shown.contains("before `Load`"), "{shown}");
+    }
+}
+
+#[test]
+fn what_follows_a_mistake_is_checked() {
+    let shown = stages(&[r#"Load(path: "room.obj"), Multipath(lines: 9), SecondShot(lines: 9),"#]);
+    assert!(
+        shown.contains("`Multipath` before `FirstShot`") && shown.contains("`SecondShot` after `Multipath`"),
+        "{shown}"
+    );
+    let shown =
+        stages(&[r#"Load(path: "room.obj"), Repeat(times: 2, stages: [FirstShot(lines: 9), Save([])]),"#]);
+    assert!(
+        shown.contains("`Save` inside of `Repeat`") && shown.contains("move `Save` out of `Repeat`"),
+        "{shown}"
+    );
 }

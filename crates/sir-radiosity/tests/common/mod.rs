@@ -11,7 +11,7 @@ use sir_geom::{Material, MaterialId, Rgb, Scene, SceneBuilder, Side};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_radiosity::{
-    AnyOrder, BatchSettings, Batches, FirstShot, Job, Model, Multipath, MultipathSettings, SecondShot, Shot,
+    AnyOrder, BatchSettings, Batches, FirstShot, Job, Model, ReplicaSettings, Replicas, SecondShot, Shot,
     ShotSettings, Stage, StageTotals, Transported, Workers, run_stage,
 };
 
@@ -133,13 +133,13 @@ pub(crate) fn multipath(model: &Model, shot: Shot, lines: u64, seed: u64) -> Tra
 /// Transports light by multipath in one replica with lines of a given domain.
 pub(crate) fn multipath_in(domain: Domain, model: &Model, shot: Shot, lines: u64, seed: u64) -> Transported {
     // A long tail: the power left unshot must be far below standard errors of about 0.01 %.
-    let settings = MultipathSettings::new(model, domain, lines, seed);
-    replicas(shot, MultipathSettings { tail: 3 * (lines / 10), ..settings })
+    let settings = ReplicaSettings::new(model, domain, lines, seed);
+    replicas(shot, ReplicaSettings { tail: 3 * (lines / 10), ..settings })
 }
 
 /// Transports light by multipath in any number of replicas.
-pub(crate) fn replicas(shot: Shot, settings: MultipathSettings<'_>) -> Transported {
-    run_stage::<Multipath<'_>>(settings, shot).unwrap()
+pub(crate) fn replicas(shot: Shot, settings: ReplicaSettings<'_>) -> Transported {
+    run_stage::<Replicas<'_>>(settings, shot).unwrap()
 }
 
 /// Returns all domains around the scene of a model.
