@@ -1,7 +1,7 @@
 //! Third-party scenes, compared with radiosities of an independent path tracer.
 //!
 //! The scenes and tables are not part of the project. They are read from the folder in the variable `SIR_TEST_DATA`, or
-//! from the folder `shared` next to the repository. Without them the tests print this and pass.
+//! from the folder `shared` next to the repository. The tests are ignored unless they are asked for: `tests/all.sh` does where the data are.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers fail and print like tests")]
 
@@ -15,18 +15,19 @@ use sir::mesh::Subdivision;
 use sir::parallel::{Executor, Start};
 use sir::radiosity::{BatchSettings, Batches, FirstShot, Model, ShotSettings};
 
-/// Returns the folder of a scene, if it exists.
-fn scene_folder(name: &str) -> Option<PathBuf> {
+/// Returns the folder of a scene.
+fn scene_folder(name: &str) -> PathBuf {
     let data = match std::env::var_os("SIR_TEST_DATA") {
         Some(folder) => PathBuf::from(folder),
         None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
     };
     let folder = data.join("scenes").join(name);
-    let found = folder.is_dir();
-    if !found {
-        println!("skipped: no third-party data in {}", data.display());
-    }
-    found.then_some(folder)
+    assert!(
+        folder.is_dir(),
+        "there is no {}; set SIR_TEST_DATA to the folder of third-party data",
+        folder.display()
+    );
+    folder
 }
 
 /// Radiosity per band and its standard error \[W/m²\].
@@ -152,8 +153,9 @@ const COPIES: [(usize, usize); 4] = [(16, 20), (17, 21), (30, 32), (31, 33)];
 /// box are too dark: by 2 % with 20,000 patches, by 1 % with 80,000, in proportion to `h log(1/h)` for patches of the
 /// width `h`. The patches of this test are small enough for this error to be within the error bars.
 #[test]
+#[ignore = "needs third-party scenes: set SIR_TEST_DATA to their folder"]
 fn cornell_box() {
-    let Some(folder) = scene_folder("cornell-mcguire") else { return };
+    let folder = scene_folder("cornell-mcguire");
     let effort = Effort { patches: 160_000, lines: (200_000, 2_400_000), seeds: 12 };
     let model = model(&folder.join("CornellBox-Original.obj"), &effort);
     let runs = solve(&model, &effort);
@@ -244,8 +246,9 @@ const LEUVEN_FRAMES: [&str; 2] = ["487 ", "531 "];
 /// Smaller triangles need smaller patches, or differ like [`LEUVEN_FRAMES`]: the shells of the chairs
 /// (docs/accuracy.md).
 #[test]
+#[ignore = "needs third-party scenes: set SIR_TEST_DATA to their folder"]
 fn leuven_office() {
-    let Some(folder) = scene_folder("mgf-leuven-office") else { return };
+    let folder = scene_folder("mgf-leuven-office");
     let effort = Effort { patches: 300_000, lines: (2_000_000, 10_000_000), seeds: 8 };
     let compared = Compared::of(folder, "leuven-office.obj", &effort);
     assert_agrees(compared.by_material(&[]));
@@ -261,8 +264,9 @@ const SODA_IN_CONTACT: [&str; 5] = ["blue_vinyl", "chrome", "khaki", "normal_gla
 
 /// Materials and triangles of an ice cream store by Greg Ward.
 #[test]
+#[ignore = "needs third-party scenes: set SIR_TEST_DATA to their folder"]
 fn soda() {
-    let Some(folder) = scene_folder("mgf-soda") else { return };
+    let folder = scene_folder("mgf-soda");
     let effort = Effort { patches: 400_000, lines: (2_000_000, 6_000_000), seeds: 8 };
     let compared = Compared::of(folder, "soda.obj", &effort);
     assert_agrees(compared.by_material(&SODA_IN_CONTACT));

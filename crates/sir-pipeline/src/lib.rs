@@ -24,10 +24,10 @@
 //! use sir_pipeline::{RunOptions, check, run};
 //! # use std::path::Path;
 //! # let folder = tempfile::tempdir()?;
-//! # let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/furnace/furnace.gltf");
-//! # std::fs::copy(scene, folder.path().join("furnace.gltf"))?;
-//! # let path = &folder.path().join("furnace.ron");
-//! # let text = r#"Pipeline(stages: [Load(path: "furnace.gltf"), FirstShot(lines: 2_000), Multipath(lines: 2_000)])"#;
+//! # std::fs::write(folder.path().join("field.obj"), "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n")?;
+//! # let path = &folder.path().join("field.ron");
+//! # let text = r#"Pipeline(stages: [Load(path: "field.obj"), Light([Environment(radiance: 1)]),
+//! #     FirstShot(lines: 2_000), Multipath(lines: 2_000)])"#;
 //! # std::fs::write(path, text)?;
 //!
 //! let estimate = check(path)?;

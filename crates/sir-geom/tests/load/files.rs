@@ -162,13 +162,11 @@ impl Gltf {
     }
 }
 
-/// Returns the folder of third-party data that tests may read, if this machine has it.
-pub(crate) fn third_party_data() -> Option<std::path::PathBuf> {
+/// Returns the folder with third-party data.
+pub(crate) fn third_party_data() -> std::path::PathBuf {
     let folder = std::env::var_os("SIR_TEST_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared"), Into::into);
-    if folder.join("scenes").is_dir() && folder.join("corpus").is_dir() {
-        return Some(folder);
-    }
-    println!("skipped: no test data in {}; set SIR_TEST_DATA to its folder", folder.display());
-    None
+    let is_complete = folder.join("scenes").is_dir() && folder.join("corpus").is_dir();
+    assert!(is_complete, "no test data in {}; set SIR_TEST_DATA to its folder", folder.display());
+    folder
 }

@@ -22,8 +22,9 @@ const TRIANGLES: [(&str, usize); 11] = [
 ];
 
 #[test]
+#[ignore = "needs third-party scenes: set SIR_TEST_DATA to their folder"]
 fn scenes_have_as_many_triangles_as_their_readme_says() {
-    let Some(data) = third_party_data() else { return };
+    let data = third_party_data();
     for (name, expected) in TRIANGLES {
         let built = load(&data.join("scenes").join(name), &LoadOptions::default()).unwrap();
         let dropped: u64 = built
@@ -57,8 +58,9 @@ fn check_against_table(scene: &Scene, table: &str) -> usize {
 }
 
 #[test]
+#[ignore = "needs third-party scenes: set SIR_TEST_DATA to their folder"]
 fn triangles_have_the_order_of_the_reference_tables() {
-    let Some(data) = third_party_data() else { return };
+    let data = third_party_data();
     for (name, expected) in [
         ("cornell-mcguire/CornellBox-Original.obj", 36),
         ("mgf-leuven-office/leuven-office.obj", 741),
