@@ -1,6 +1,6 @@
 //! The numbers that the paper reports.
 //!
-//! Martínez, R., Forés, J. and Martín, I. (2009): *Parallel Global-Line Monte Carlo Radiosity*, section 5.
+//! Martínez, R., Forés, A. and Martín, I. (2009): *Parallel implementation of a global line Monte Carlo radiosity*, section 5.
 
 use serde::Serialize;
 
@@ -10,8 +10,7 @@ use crate::scaling::study::Row;
 use crate::scaling::workers::Workers;
 
 /// Citation of the paper, for the report.
-pub(crate) const CITATION: &str =
-    "Martínez, Forés and Martín (2009), \"Parallel Global-Line Monte Carlo Radiosity\", section 5";
+pub(crate) const CITATION: &str = "Martínez, Forés and Martín (2009), \"Parallel implementation of a global line Monte Carlo radiosity\", section 5";
 
 /// Machine on which the authors measured.
 pub(crate) const MACHINE: &str = "four HP ProLiant DL145 servers, each with two AMD Opteron 244 at 1.8 GHz \
