@@ -224,11 +224,13 @@ impl<T: 'static> Part for OneOf<T> {
             }
             return None;
         };
-        for (other, _) in given {
+        let value = (first.read)(reader, node);
+        for (other, node) in given {
             let message = format!("`{owner}` has both `{}` and `{}`", first.row.name, other.row.name);
-            reader.problem(place, message, "keep one of them");
+            reader.problem(node.text, message, "keep one of them");
+            (other.read)(reader, node);
         }
-        (first.read)(reader, node)
+        value
     }
 
     fn write(&self, value: &T, _: &'static str) -> Option<(&'static str, String)> {

@@ -453,12 +453,20 @@ fn numbers_out_of_range() {
         r#"Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),"#,
     ]), @r#"
     error: `Subdivide` has both `patches` and `max_edge`
-     --> x.ron:2:25
+     --> x.ron:2:45
       |
     2 | Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),
-      |                         ^^^^^^^^^
+      |                                             ^^^
       |
       = help: keep one of them
+
+    error: `max_edge` must be a finite number above 0, but it is the number NaN
+     --> x.ron:2:45
+      |
+    2 | Load(path: "room.obj"), Subdivide(max_edge: NaN, patches: 10), FirstShot(lines: 10),
+      |                                             ^^^
+      |
+      = help: write for instance `max_edge: 0.1`
     "#);
 }
 

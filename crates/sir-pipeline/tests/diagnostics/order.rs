@@ -176,14 +176,6 @@ fn repeats_that_do_not_say_how_often() {
     ");
     insta::assert_snapshot!(
         repeat("times: 0, until: Seconds(1), at_most: 0, stages: [FirstShot(lines: 9)]"), @r"
-    error: `Repeat` has both `times` and `until`
-     --> x.ron:3:1
-      |
-    3 | Repeat(times: 0, until: Seconds(1), at_most: 0, stages: [FirstShot(lines: 9)]),
-      | ^^^^^^
-      |
-      = help: keep one of them
-
     error: `times` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 0
      --> x.ron:3:15
       |
@@ -191,6 +183,14 @@ fn repeats_that_do_not_say_how_often() {
       |               ^
       |
       = help: write for instance `times: 16`
+
+    error: `Repeat` has both `times` and `until`
+     --> x.ron:3:25
+      |
+    3 | Repeat(times: 0, until: Seconds(1), at_most: 0, stages: [FirstShot(lines: 9)]),
+      |                         ^^^^^^^^^^
+      |
+      = help: keep one of them
 
     error: `at_most` must be a whole number from 1 to 1_000_000_000_000_000, but it is the number 0
      --> x.ron:3:46
