@@ -49,7 +49,10 @@ fn right_answers_end_with_0() {
     let json = fs::read_to_string(folder.path().join("there/validation.json")).unwrap();
     let report: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(report["cases"][1]["checks"][0]["verdict"], "passed");
-    assert_eq!(report["cases"][0]["skipped"].as_str().unwrap().split(';').next(), Some("a scene cannot be infinite"));
+    assert_eq!(
+        report["cases"][0]["skipped"].as_str().unwrap().split(';').next(),
+        Some("a scene cannot be infinite")
+    );
 }
 
 #[test]

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 /// Returns the names in backticks as an enumeration, such as "`a`, `b` and `c`" with `and` as conjunction.
 #[must_use]
-pub fn list(names: &[&str], and: &str) -> String {
-    let quoted: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
+pub fn list<S: AsRef<str>>(names: &[S], and: &str) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{}`", name.as_ref())).collect();
     match quoted.as_slice() {
         [] => String::new(),
         [one] => one.clone(),

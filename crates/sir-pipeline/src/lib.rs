@@ -79,6 +79,7 @@ pub mod progress;
 mod ranks;
 pub mod report;
 pub mod run;
+mod run_files;
 pub mod stopwatch;
 pub mod text;
 mod units;

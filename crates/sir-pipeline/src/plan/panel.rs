@@ -8,7 +8,7 @@ use crate::text::field::{Format, OneOf};
 use crate::text::formats::{Color, Vector};
 use crate::text::reader::Reader;
 use crate::text::record::record;
-use crate::text::ron_tree::{Node, Value};
+use crate::text::ron_tree::Node;
 
 record! {
     /// Black parallelogram that emits on the side from which its edges, in their order, run counterclockwise.
@@ -68,20 +68,19 @@ impl Format for Edges {
     type Value = [DVec3; 2];
 
     fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<[DVec3; 2]> {
-        let (Value::Items(items) | Value::List(items)) = &node.value else {
+        let Some(items) = node.elements() else {
             reader.wrong_value(node, name, "two vectors", self.example());
             return None;
         };
-        let help = format!("write for instance `{name}: {}`", self.example());
-        let [a, b] = items.as_slice() else {
+        let [a, b] = items else {
             let message = format!("`{name}` must be two vectors, but there are {}", items.len());
-            reader.problem(node.text, message, help);
+            reader.invalid_value(node, name, message, self.example());
             return None;
         };
         for vector in [a, b] {
-            if !matches!(&vector.value, Value::Items(numbers) | Value::List(numbers) if numbers.len() == 3) {
+            if vector.elements().is_none_or(|numbers| numbers.len() != 3) {
                 let message = format!("`{name}` must be two vectors of three numbers");
-                reader.problem(vector.text, message, help);
+                reader.invalid_value(vector, name, message, self.example());
                 return None;
             }
         }
@@ -90,7 +89,7 @@ impl Format for Edges {
         if a.cross(b).length() > 1e-9 * a.length() * b.length() {
             return Some([a, b]);
         }
-        reader.problem(node.text, format!("the `{name}` of a panel span no area"), help);
+        reader.invalid_value(node, name, format!("the `{name}` of a panel span no area"), self.example());
         None
     }
 

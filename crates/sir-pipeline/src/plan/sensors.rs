@@ -122,7 +122,8 @@ impl Sensors {
             reader.problem(node.text, message, "write for instance `name: \"desk\"`");
             return;
         }
-        for extension in ["csv", "png"].into_iter().take(if self.map().is_some() { 2 } else { 1 }) {
+        let extensions: &[&str] = if self.map().is_some() { &["csv", "png"] } else { &["csv"] };
+        for extension in extensions {
             reader.claim_output(node, &format!("{}.{extension}", self.name));
         }
     }

@@ -8,7 +8,9 @@ pub(crate) mod sensors;
 
 pub use compare::compare;
 pub use result::{
-    BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, FILE_NAME, LightReport, LinesReport, OutputReport,
+    BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, OutputReport,
     PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
 };
 pub use sensors::SensorsReport;
+
+pub use crate::run_files::REPORT as FILE_NAME;

@@ -11,9 +11,6 @@ use crate::units::Units;
 /// Version of the format of `result.json`.
 pub const VERSION: u32 = 3;
 
-/// Name of the report in a run directory.
-pub const FILE_NAME: &str = "result.json";
-
 /// The report of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {

@@ -5,8 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::report::result::FILE_NAME;
-use crate::run::resume::CHECKPOINT;
+use crate::run_files::{CHECKPOINT, REPORT};
 
 /// Returns the name for runs of a pipeline: the stem of its file, or the name of its folder if the file is called
 /// `pipeline`.
@@ -31,7 +30,7 @@ pub fn absolute(path: &Path) -> PathBuf {
 pub(crate) fn make_given(directory: &Path, force: bool) -> Result<(), Error> {
     check_given(directory, force)?;
     fs::create_dir_all(directory).map_err(Error::directory(directory))?;
-    match fs::remove_file(directory.join(FILE_NAME)) {
+    match fs::remove_file(directory.join(REPORT)) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(Error::directory(directory)(error)),
         _ => Ok(()),
     }
@@ -39,7 +38,7 @@ pub(crate) fn make_given(directory: &Path, force: bool) -> Result<(), Error> {
 
 /// Returns an error if the directory holds a result, or the checkpoint of an interrupted run, unless `force` is true.
 pub(crate) fn check_given(directory: &Path, force: bool) -> Result<(), Error> {
-    if !force && directory.join(FILE_NAME).exists() {
+    if !force && directory.join(REPORT).exists() {
         return Err(Error::Exists { directory: directory.to_owned() });
     }
     if !force && directory.join(CHECKPOINT).exists() {
@@ -87,10 +86,10 @@ mod tests {
         let directory = base.path().join("deep/run");
         make_given(&directory, false).unwrap();
         make_given(&directory, false).unwrap();
-        fs::write(directory.join(FILE_NAME), "{}").unwrap();
+        fs::write(directory.join(REPORT), "{}").unwrap();
         assert!(matches!(make_given(&directory, false), Err(Error::Exists { .. })));
         make_given(&directory, true).unwrap();
-        assert!(!directory.join(FILE_NAME).exists());
+        assert!(!directory.join(REPORT).exists());
         fs::write(directory.join(CHECKPOINT), "").unwrap();
         assert!(matches!(make_given(&directory, false), Err(Error::ExistsInterrupted { .. })));
         make_given(&directory, true).unwrap();

@@ -22,10 +22,11 @@ use crate::plan::Pipeline;
 use crate::prepare::prepared::{Prepared, prepare};
 use crate::progress::{NoProgress, Progress, of_rank};
 use crate::ranks::{agree, same_everywhere};
-use crate::report::result::{FILE_NAME, PipelineReport, Report, SceneReport, Time, VERSION};
+use crate::report::result::{PipelineReport, Report, SceneReport, Time, VERSION};
 use crate::run::directory::{absolute, check_given, make_given, make_new, run_name};
 use crate::run::resume as saved_run;
-use crate::run::resume::{CHECKPOINT, Head};
+use crate::run::resume::Head;
+use crate::run_files::{CHECKPOINT, REPORT};
 use crate::stopwatch::Stopwatch;
 
 /// Options of a run. Only the seed changes the result.
@@ -258,9 +259,7 @@ fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {
 }
 
 fn write_report(directory: &Path, report: &Report) -> Result<(), Error> {
-    sir_view::write_atomically(&directory.join(FILE_NAME), |file| {
-        file.write_all(report.to_json().as_bytes())
-    })?;
+    sir_view::write_atomically(&directory.join(REPORT), |file| file.write_all(report.to_json().as_bytes()))?;
     Ok(())
 }
 
@@ -271,7 +270,7 @@ fn write_report(directory: &Path, report: &Report) -> Result<(), Error> {
 /// If there is no report, it is invalid, or it has another version.
 pub fn read_report(directory: &Path) -> Result<Report, Error> {
     let no_result = |why: String| Error::NoResult { directory: directory.to_owned(), why };
-    let text = fs::read_to_string(directory.join(FILE_NAME)).map_err(|e| no_result(e.to_string()))?;
+    let text = fs::read_to_string(directory.join(REPORT)).map_err(|e| no_result(e.to_string()))?;
     let report: Report = serde_json::from_str(&text).map_err(|e| no_result(e.to_string()))?;
     if report.version == VERSION {
         return Ok(report);

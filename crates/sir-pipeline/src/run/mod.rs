@@ -13,8 +13,8 @@ pub(crate) mod save;
 mod sensor_files;
 mod stages;
 
+pub use crate::run_files::CHECKPOINT;
 pub use directory::{absolute, make_new, run_name};
 pub use execute::{
     RunOptions, RunResult, read_report, resume, resume_together, run, run_pipeline, run_together,
 };
-pub use resume::CHECKPOINT;

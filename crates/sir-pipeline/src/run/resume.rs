@@ -11,10 +11,8 @@ use crate::fingerprint;
 use crate::fingerprint::{Fingerprint, PROGRAM};
 use crate::plan::Pipeline;
 use crate::ranks::{agree, broadcast_text};
-use crate::report::result::{FILE_NAME, Report};
-
-/// File name of the checkpoint in a run directory. A finished run has no checkpoint.
-pub const CHECKPOINT: &str = "checkpoint";
+use crate::report::result::Report;
+use crate::run_files::{CHECKPOINT, REPORT};
 
 /// Metadata of a checkpoint, in addition to the state of its stage.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -70,7 +68,7 @@ pub(crate) fn open(directory: &Path, comm: &dyn Communicator) -> Result<(Saved, 
 fn find(directory: &Path) -> Result<Saved, Error> {
     let path = directory.join(CHECKPOINT);
     if !path.exists() {
-        return Err(if directory.join(FILE_NAME).exists() {
+        return Err(if directory.join(REPORT).exists() {
             refuse(directory, "the run is finished; see its result.json")
         } else if directory.is_dir() {
             refuse(directory, "it holds no checkpoint; start a new run")

@@ -204,9 +204,9 @@ impl<T: 'static> Part for OneOf<T> {
     fn rows(&self, _: &'static str, _: &'static str) -> Vec<Row> {
         let names = self.names();
         let row = |a: &Alternative<T>| {
-            let others = names.iter().filter(|name| **name != a.row.name);
-            let all: Vec<&str> = std::iter::once("this").chain(others.copied()).collect();
-            Row { default: list(&all, "or").replacen("`this`", "this", 1), ..a.row.clone() }
+            let others: Vec<&str> = names.iter().copied().filter(|name| *name != a.row.name).collect();
+            let comma = if others.len() > 1 { "," } else { " or" };
+            Row { default: format!("this{comma} {}", list(&others, "or")), ..a.row.clone() }
         };
         self.alternatives.iter().map(row).collect()
     }
@@ -218,7 +218,6 @@ impl<T: 'static> Part for OneOf<T> {
             if !self.names().iter().any(|name| fields.is_excused(name)) {
                 let examples: Vec<String> =
                     self.alternatives.iter().map(|a| format!("{}: {}", a.row.name, a.example)).collect();
-                let examples: Vec<&str> = examples.iter().map(String::as_str).collect();
                 let message = format!("`{owner}` needs one of the fields {}", list(&self.names(), "and"));
                 reader.problem(place, message, format!("write {}", list(&examples, "or")));
             }

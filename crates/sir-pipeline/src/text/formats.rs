@@ -150,11 +150,7 @@ impl Format for Text {
             Value::Text(text) if !text.is_empty() => Some(text.clone()),
             Value::Text(_) => {
                 let message = format!("`{name}` must be a string in quotes, but it is empty");
-                reader.problem(
-                    node.text,
-                    message,
-                    format!("write for instance `{name}: {}`", self.example()),
-                );
+                reader.invalid_value(node, name, message, self.example());
                 None
             }
             _ => {
@@ -191,16 +187,13 @@ impl Format for Vector {
     type Value = DVec3;
 
     fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<DVec3> {
-        let items = match &node.value {
-            Value::Items(items) | Value::List(items) if node.name().is_empty() => items,
-            _ => {
-                reader.wrong_value(node, name, "three numbers", self.example());
-                return None;
-            }
+        let Some(items) = node.elements() else {
+            reader.wrong_value(node, name, "three numbers", self.example());
+            return None;
         };
         if items.len() != 3 {
             let message = format!("`{name}` must be three numbers, but there are {}", items.len());
-            reader.problem(node.text, message, format!("write for instance `{name}: {}`", self.example()));
+            reader.invalid_value(node, name, message, self.example());
             return None;
         }
         read_numbers(reader, items, name, &self.example()).map(|numbers| DVec3::from_slice(&numbers))
@@ -254,14 +247,14 @@ impl Format for Direction {
         let direction = Vector(self.0).read(reader, node, name)?;
         if direction.try_normalize().is_none() {
             let message = format!("`{name}` must be a direction, but its length is zero");
-            reader.problem(node.text, message, format!("write for instance `{name}: {}`", self.example()));
+            reader.invalid_value(node, name, message, self.example());
             return None;
         }
         Some(direction)
     }
 
     fn write(&self, value: &DVec3) -> String {
-        write_numbers(value.to_array())
+        Vector(self.0).write(value)
     }
 
     fn describe(&self) -> String {
@@ -269,7 +262,7 @@ impl Format for Direction {
     }
 
     fn example(&self) -> String {
-        write_numbers(self.0)
+        Vector(self.0).example()
     }
 }
 
@@ -282,11 +275,9 @@ impl Format for Color {
 
     fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, name: &str) -> Option<Rgb> {
         const EXAMPLE: &str = "(100, 90, 80)";
-        let color = match &node.value {
-            Value::Number => Rgb::splat(number(self.0).read(reader, node, name)?),
-            Value::Items(items) | Value::List(items) if items.len() == 3 && node.name().is_empty() => {
-                Rgb::from_slice(&read_numbers(reader, items, name, EXAMPLE)?)
-            }
+        let color = match node.elements() {
+            None if node.value == Value::Number => Rgb::splat(number(self.0).read(reader, node, name)?),
+            Some(items) if items.len() == 3 => Rgb::from_slice(&read_numbers(reader, items, name, EXAMPLE)?),
             _ => {
                 reader.wrong_value(node, name, "a number or three", EXAMPLE);
                 return None;
@@ -294,7 +285,7 @@ impl Format for Color {
         };
         if color.min_element() < 0.0 {
             let message = format!("`{name}` must not be below zero, but it is {}", node.text);
-            reader.problem(node.text, message, format!("write for instance `{name}: {}`", self.example()));
+            reader.invalid_value(node, name, message, self.example());
             return None;
         }
         Some(color)

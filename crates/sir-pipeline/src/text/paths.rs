@@ -75,7 +75,7 @@ impl Format for OutputFile {
         if !self.extensions.contains(&extension(Path::new(&text)).as_str()) {
             let known: Vec<String> = self.extensions.iter().map(|e| format!(".{e}")).collect();
             let message = format!("the name of the output \"{text}\" does not end in {}", known.join(" or "));
-            reader.problem(node.text, message, format!("write for instance `{name}: {}`", self.example()));
+            reader.invalid_value(node, name, message, self.example());
             return None;
         }
         reader.claim_output(node, &text)

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
 use crate::format::list;
+use crate::run_files::{CHECKPOINT, REPORT};
 use crate::text::diagnostic::{Diagnostic, Position};
 use crate::text::ron_tree;
 use crate::text::ron_tree::{Node, Value};
@@ -66,6 +67,17 @@ impl<'a> Reader<'a> {
     /// Reports that the value of a field is not `what`, a description of valid values.
     pub(crate) fn wrong_value(&mut self, node: &Node<'a>, name: &str, what: &str, example: impl Display) {
         let message = format!("`{name}` must be {what}, but it is {}", node.kind());
+        self.invalid_value(node, name, message, example);
+    }
+
+    /// Reports a problem with the value of a field, with an example of a valid value.
+    pub(crate) fn invalid_value(
+        &mut self,
+        node: &Node<'a>,
+        name: &str,
+        message: impl Display,
+        example: impl Display,
+    ) {
         self.problem(node.text, message, format!("write for instance `{name}: {example}`"));
     }
 
@@ -179,16 +191,13 @@ pub(crate) fn inside(path: &Path) -> PathBuf {
     path.components().filter(|c| matches!(c, Component::Normal(_))).collect()
 }
 
-/// Names in a run directory that outputs cannot have.
-pub(crate) const RESERVED: [&str; 2] = ["result.json", "checkpoint"];
-
 /// Largest length of a file name in bytes, of most file systems.
 const MAX_NAME: usize = 255;
 
 /// Returns what makes an output path unusable, and what to do.
 fn unusable(path: &Path) -> Option<(&'static str, &'static str)> {
     let names: Vec<_> = path.components().map(|c| c.as_os_str().to_string_lossy()).collect();
-    if names.first().is_some_and(|name| RESERVED.contains(&name.as_ref())) {
+    if names.first().is_some_and(|name| [REPORT, CHECKPOINT].contains(&name.as_ref())) {
         return Some(("is reserved for the run itself", "choose another name"));
     }
     if names.iter().any(|name| name.contains(char::is_control)) {

@@ -108,6 +108,14 @@ impl<'a> Node<'a> {
         }
     }
 
+    /// Returns the elements of `(…)` or `[…]`, or `None` for all else.
+    pub(crate) fn elements(&self) -> Option<&[Self]> {
+        match &self.value {
+            Value::Items(items) | Value::List(items) if self.name().is_empty() => Some(items),
+            _ => None,
+        }
+    }
+
     /// Describes the node in words.
     pub(crate) fn kind(&self) -> String {
         match &self.value {
