@@ -1,5 +1,6 @@
 //! Writes the outputs of a stage `Save`.
 
+use std::cell::OnceCell;
 use std::fs;
 use std::path::Path;
 
@@ -29,33 +30,34 @@ pub(crate) fn save(
     written: &mut dyn FnMut(OutputReport) -> bool,
 ) -> Result<(), Error> {
     let Model { scene, mesh, accel } = &prepared.model;
-    let seen = outputs.iter().any(|o| !matches!(o, Output::Table(_)));
-    let display = seen.then(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
-    let denoise = match &display {
-        Some(display) if outputs.iter().any(is_denoised) => display.denoise(&solution.error, threads),
-        _ => Vec::new(),
+    let lit = OnceCell::new();
+    let display = || lit.get_or_init(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
+    let denoised = if outputs.iter().any(is_denoised) {
+        display().denoise(&solution.error, threads)
+    } else {
+        Vec::new()
     };
-    let denoise = (!denoise.is_empty()).then(|| DisplayMesh::new(scene, mesh, &denoise));
+    let denoised = (!denoised.is_empty()).then(|| DisplayMesh::new(scene, mesh, &denoised));
     let errors = outputs
         .iter()
         .any(|o| matches!(o, Output::Image(_)) && has_extension(o.path(), "exr"))
         .then(|| DisplayMesh::of_errors(scene, mesh, &solution.error));
-    let mut renderer = display.as_ref().map(|display| Renderer {
+    let mut renderer = Renderer {
         prepared,
-        display,
-        denoise: denoise.as_ref(),
+        display: &display,
+        denoised: denoised.as_ref(),
         threads,
         last: None,
         default: None,
-    });
+    };
     for output in outputs {
         let path = directory.join(output.path());
         progress.note(&format!("Save: {}", output.path().display()));
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(Error::directory(parent))?;
         }
-        let kind = match (output, &mut renderer) {
-            (Output::Image(image), Some(renderer)) => {
+        let kind = match output {
+            Output::Image(image) => {
                 let Rendered { camera, settings, picture, .. } =
                     renderer.render(image, is_denoised(output))?;
                 match &errors {
@@ -67,12 +69,11 @@ pub(crate) fn save(
                 }
                 "image"
             }
-            (Output::Gltf(_), Some(renderer)) => {
-                write_glb(&path, renderer.display, Exposure::Auto, scene.cameras(), prepared.up)?;
+            Output::Gltf(_) => {
+                write_glb(&path, display(), Exposure::Auto, scene.cameras(), prepared.up)?;
                 "gltf"
             }
-            // Only tables need no renderer.
-            (Output::Table(_) | Output::Image(_) | Output::Gltf(_), _) => {
+            Output::Table(_) => {
                 let table = Table::new(scene, mesh, &solution.irradiance, &solution.error);
                 if has_extension(&path, "npy") {
                     table.write_npy(&path)?
@@ -94,9 +95,10 @@ pub(crate) fn save(
 /// Renders images. Keeps the last one, because the same image is often requested as PNG and as EXR.
 struct Renderer<'a> {
     prepared: &'a Prepared,
-    display: &'a DisplayMesh<'a>,
+    /// Returns the display mesh, which is built when it is needed for the first time.
+    display: &'a dyn Fn() -> &'a DisplayMesh<'a>,
     /// Denoised display mesh, if an image needs it.
-    denoise: Option<&'a DisplayMesh<'a>>,
+    denoised: Option<&'a DisplayMesh<'a>>,
     threads: usize,
     last: Option<Rendered>,
     default: Option<Camera>,
@@ -123,7 +125,7 @@ impl Renderer<'_> {
                 last
             }
             _ => {
-                let display = self.denoise.filter(|_| is_denoised).unwrap_or(self.display);
+                let display = self.denoised.filter(|_| is_denoised).unwrap_or_else(self.display);
                 Rendered {
                     picture: render(display, accel, &camera, settings)?,
                     camera,
@@ -138,7 +140,7 @@ impl Renderer<'_> {
     /// Returns the camera for a scene without cameras. Keeps it, because finding it takes time.
     fn default_camera(&mut self) -> Camera {
         let Prepared { model, up, .. } = self.prepared;
-        self.default.get_or_insert_with(|| default_camera(self.display, &model.accel, *up)).clone()
+        self.default.get_or_insert_with(|| default_camera((self.display)(), &model.accel, *up)).clone()
     }
 }
 
