@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sir_types::{BoundingSphere, TriangleId};
 
-use crate::contact::ContactOrder;
+use crate::contact::{ContactOrder, Stacks};
 use crate::error::{AccelError, MAX_TRIANGLES};
 use crate::grid::Grid;
 use crate::opacity::OpacityTest;
@@ -16,8 +16,7 @@ use crate::triangle::GridTriangle;
 pub struct Accel {
     pub(crate) grid: Grid,
     pub(crate) tree: Tree,
-    /// Rank of each triangle in the order of contact priorities; `None` if the rank is its number.
-    ranks: Option<Vec<u32>>,
+    stacks: Stacks,
     /// `None` if all triangles are opaque.
     pub(crate) opacity: Option<OpacityTest>,
 }
@@ -35,18 +34,18 @@ impl Accel {
     /// Returns an error if an index is out of range, a coordinate is not finite, the coordinates are too large or too
     /// small for their squares to be computed, there are 2³¹ triangles or more, or a list in the options does not have
     /// one element per triangle.
-    pub fn build(positions: &[DVec3], indices: &[[u32; 3]], options: Options) -> Result<Self, AccelError> {
+    pub fn build(
+        positions: &[DVec3],
+        indices: &[[u32; 3]],
+        options: Options<'_>,
+    ) -> Result<Self, AccelError> {
         let grid = Grid::new(bounding_sphere(positions, indices)?);
         let Options { contact_priorities, opacity } = options;
-        let check = |list, found| {
-            if found == indices.len() {
-                Ok(())
-            } else {
-                Err(AccelError::WrongLength { list, found, triangles: indices.len() })
-            }
+        let check = |list, found, triangles| {
+            if found == triangles { Ok(()) } else { Err(AccelError::WrongLength { list, found, triangles }) }
         };
-        contact_priorities.as_ref().map_or(Ok(()), |list| check("contact priorities", list.len()))?;
-        opacity.as_ref().map_or(Ok(()), |test| check("transparent triangles", test.triangles()))?;
+        let count = indices.len();
+        opacity.as_ref().map_or(Ok(()), |test| check("transparent triangles", test.triangles(), count))?;
         let triangles: Vec<GridTriangle> = indices
             .iter()
             .zip(0..)
@@ -55,9 +54,13 @@ impl Accel {
                 GridTriangle::new(corners.map(|i| grid.vertex(positions[i as usize])), TriangleId(number))
             })
             .collect();
-        let tree = Tree::new(&triangles);
+        let mut tree = Tree::new(&triangles);
+        let stacks = tree.find_stacks(grid.origin(), |ids| {
+            let priorities = contact_priorities.map_or_else(|| vec![0; ids.len()], |of| of(ids));
+            check("contact priorities", priorities.len(), ids.len()).map(|()| priorities)
+        })?;
         let opacity = opacity.filter(OpacityTest::is_needed);
-        Ok(Self { grid, tree, ranks: contact_priorities.map(|list| ranks(&list)), opacity })
+        Ok(Self { grid, tree, stacks, opacity })
     }
 
     /// Returns true if some triangles are transparent, at least in places.
@@ -70,13 +73,32 @@ impl Accel {
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.tree.bytes()
-            + self.ranks.as_ref().map_or(0, |ranks| size_of_val(ranks.as_slice()))
+            + size_of_val(self.stacks.of_rank.as_slice())
             + self.opacity.as_ref().map_or(0, OpacityTest::bytes)
+    }
+
+    /// Returns true if two triangles are in contact, directly or through others between them (see [`Hit`](crate::Hit)).
+    #[must_use]
+    pub fn are_in_contact(&self, a: TriangleId, b: TriangleId) -> bool {
+        self.contacts().are_together(a, b)
+    }
+
+    /// Returns the contact distance of a triangle \[unit of the coordinates\]: two surfaces are in contact within the
+    /// smaller of their contact distances. `None` if there is no such triangle.
+    #[must_use]
+    pub fn contact_distance(&self, triangle: TriangleId) -> Option<f64> {
+        Some(self.grid.length(self.stacks.distance(self.tree.triangle(triangle)?)))
+    }
+
+    /// Returns the length of a step of the grid to which corners are rounded \[unit of the coordinates\].
+    #[must_use]
+    pub fn grid_step(&self) -> f64 {
+        self.grid.length(1.0)
     }
 
     /// Returns the order of triangles in contact.
     pub(crate) fn contacts(&self) -> ContactOrder<'_> {
-        ContactOrder { tree: &self.tree, ranks: self.ranks.as_deref() }
+        ContactOrder { tree: &self.tree, stacks: &self.stacks }
     }
 }
 
@@ -109,13 +131,4 @@ fn bounding_sphere(positions: &[DVec3], indices: &[[u32; 3]]) -> Result<Bounding
         Some(sphere) if (1e-140..=1e140).contains(&sphere.radius) => Ok(sphere),
         Some(sphere) => Err(AccelError::Extent { radius: sphere.radius }),
     }
-}
-
-/// Returns the rank of each element in the order by priority, then by number.
-fn ranks(priorities: &[u32]) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..priorities.len() as u32).collect();
-    order.sort_unstable_by_key(|&i| (priorities[i as usize], i));
-    let mut ranks = vec![0; order.len()];
-    order.iter().zip(0..).for_each(|(&i, rank)| ranks[i as usize] = rank);
-    ranks
 }

@@ -1,82 +1,155 @@
 //! The order of surfaces in contact.
 
+use glam::DVec3;
 use sir_types::{Side, TriangleId};
 
-use crate::grid::{GridLine, RADIUS};
+use crate::grid::{Grid, GridLine};
 use crate::hit::Hit;
 use crate::tree::Tree;
-use crate::triangle::{Crossing, GridTriangle};
+use crate::triangle::{Crossing, GridTriangle, NOT_STACKED};
 
-/// Distance within which parallel surfaces are in contact \[steps of the grid\]: a millionth of the radius of the
-/// scene.
-pub(crate) const CONTACT: f64 = 1e-6 * RADIUS;
+/// Contact distance of a triangle over its largest coordinate: four times the rounding of numbers in single precision,
+/// so that corners of two surfaces in one plane may differ by it.
+const ROUNDING: f64 = 1.0 / (1u64 << 21) as f64;
 
-/// Largest squared sine of the angle between surfaces in contact.
+/// Largest coordinate that counts, in extents of the triangle. The contact distance of a surface far from the origin of
+/// the coordinates stays small compared to the surface.
+const MAX_COORDINATE: f64 = 64.0;
+
+/// Part of the contact distance that covers the rounding of corners to the grid \[steps of the grid\].
+const STEPS: f64 = 4.0;
+
+/// Largest gap between neighbors in a stack that a line crosses, in contact distances.
+const MAX_GAP: f64 = 4.0;
+
+/// Smallest cosine between a line and a normal with which lengths along the line are computed.
+const GRAZING: f64 = 1e-3;
+
+/// Largest squared sine of the angle between surfaces that count as parallel.
 const PARALLEL: f64 = 1e-6;
+
+/// The stacks of triangles in contact, in the order of ranks, and where coordinates begin.
+#[derive(Clone, Debug)]
+pub(crate) struct Stacks {
+    /// Number of the stack to which the triangle of each rank belongs.
+    pub(crate) of_rank: Vec<u32>,
+    /// Origin of the coordinates of the scene \[steps of the grid\].
+    pub(crate) origin: DVec3,
+}
+
+impl Stacks {
+    /// Returns the contact distance of a triangle \[steps of the grid\].
+    pub(crate) fn distance(&self, triangle: &GridTriangle) -> f64 {
+        let corners = triangle.corners.map(|corner| DVec3::from_array(corner.map(f64::from)));
+        let [low, high] =
+            [corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2])];
+        let largest = (low - self.origin).abs().max((high - self.origin).abs()).max_element();
+        STEPS + ROUNDING * largest.min(MAX_COORDINATE * (high - low).max_element())
+    }
+
+    /// Returns true if two triangles are in one stack.
+    fn are_together(&self, a: &GridTriangle, b: &GridTriangle) -> bool {
+        let stack = |triangle: &GridTriangle| self.of_rank.get(triangle.rank as usize);
+        stack(a).is_some_and(|of_a| stack(b) == Some(of_a))
+    }
+}
 
 /// Order of surfaces in contact along a line, as [`Hit`] defines it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactOrder<'a> {
     pub(crate) tree: &'a Tree,
-    /// Rank of each triangle in the order of priorities; `None` if the rank is its number.
-    pub(crate) ranks: Option<&'a [u32]>,
+    pub(crate) stacks: &'a Stacks,
 }
 
 impl ContactOrder<'_> {
-    /// Returns the sort key of hits in contact along a line.
-    fn key(&self, triangle: TriangleId, side: Side) -> (Side, u32) {
-        let rank = self.ranks.and_then(|ranks| ranks.get(triangle.index())).copied().unwrap_or(triangle.0);
-        match side {
-            Side::Front => (side, !rank),
-            Side::Back => (side, rank),
-        }
+    /// Returns true if two triangles are in one stack.
+    pub(crate) fn are_together(&self, a: TriangleId, b: TriangleId) -> bool {
+        let triangles = (self.tree.triangle(a), self.tree.triangle(b));
+        matches!(triangles, (Some(a), Some(b)) if self.stacks.are_together(a, b))
     }
 
     /// Returns true if a crossing lies ahead of the surface that a ray leaves.
     #[inline]
     pub(crate) fn is_ahead(&self, leaving: TriangleId, other: &Crossing, line: &GridLine) -> bool {
-        if other.t.abs() > CONTACT { other.t > 0.0 } else { self.is_on_top(leaving, other, line) }
+        if other.t.abs() > other.near() { other.t > 0.0 } else { self.is_on_top(leaving, other, line) }
     }
 
-    /// Returns true if a crossing close to the surface that a ray leaves lies ahead of it.
-    #[cold]
+    /// Returns true if a crossing that may be in contact with the surface that a ray leaves lies ahead of it.
+    #[inline(never)]
     fn is_on_top(&self, leaving: TriangleId, other: &Crossing, line: &GridLine) -> bool {
         let (Some(left), Some(crossed)) = (self.tree.triangle(leaving), self.tree.triangle(other.id)) else {
             return other.t > 0.0;
         };
-        if !are_parallel(left, crossed) {
-            return other.t > 0.0;
+        let distance = other.t.abs();
+        if self.stacks.are_together(left, crossed)
+            && distance <= self.gap(left, line.direction).min(self.gap(crossed, line.direction))
+        {
+            // The side opposite to the one that the ray leaves: it faces an origin far behind.
+            let along = left.scaled_normal().dot(line.direction) > 0.0;
+            let side = if along { Side::Back } else { Side::Front };
+            return key(side, left.rank) < key(other.side, crossed.rank);
         }
-        // The side opposite to the one that the ray leaves: it faces an origin far behind.
-        let along = left.scaled_normal().dot(line.direction) > 0.0;
-        let side = if along { Side::Back } else { Side::Front };
+        let touches = distance <= self.stacks.distance(left).min(self.stacks.distance(crossed))
+            && are_parallel(left, crossed);
         // A line that does not cross the triangle that it leaves starts on its edge, and `other` is the neighbor there.
-        left.cross(line).is_some() && self.key(leaving, side) < self.key(other.id, other.side)
+        other.t > 0.0 && !(touches && left.cross(line).is_none())
     }
 
-    /// Sorts the hits of a line by distance, and those in contact by their key. `contact` is the distance [`CONTACT`]
-    /// as a length of the scene.
+    /// Returns the largest distance along a line between a triangle and its neighbor in a stack \[steps of the grid\].
+    pub(crate) fn gap(&self, triangle: &GridTriangle, direction: DVec3) -> f64 {
+        let normal = triangle.scaled_normal();
+        let cosine = (normal.dot(direction).abs() / normal.length()).max(GRAZING);
+        MAX_GAP * self.stacks.distance(triangle) / cosine
+    }
+
+    /// Returns the largest distance along a line between a crossing and its neighbor in a stack \[steps of the grid\];
+    /// zero if the triangle is in none.
+    #[inline]
+    pub(crate) fn reach(&self, crossing: &Crossing, line: &GridLine) -> f64 {
+        let triangle = if crossing.is_stacked() { self.tree.triangle(crossing.id) } else { None };
+        triangle.map_or(0.0, |triangle| self.gap(triangle, line.direction))
+    }
+
+    /// Sorts the hits of a line by distance, and those of a stack by their key.
     #[cold]
-    pub(crate) fn sort(&self, hits: &mut [Hit], contact: f64) {
-        let key = |hit: &Hit| self.key(hit.triangle, hit.side);
-        // Copies of a triangle have hits at the same distance. Sorted by their key, they need no swaps below; otherwise
-        // the time would grow with the square of their number.
-        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(key(a).cmp(&key(b))));
-        for i in 1..hits.len() {
-            for j in (1..=i).rev() {
-                let (first, second) = (hits[j - 1], hits[j]);
-                let is_apart = (first.t - second.t).abs() > contact || !self.are_parallel(&first, &second);
-                if is_apart || key(&first) < key(&second) {
-                    break;
-                }
-                hits.swap(j - 1, j);
-            }
+    pub(crate) fn sort(&self, hits: &mut [Hit], grid: &Grid, direction: DVec3) {
+        let rank = |hit: &Hit| self.tree.triangle(hit.triangle).map_or(NOT_STACKED, |triangle| triangle.rank);
+        // At equal distances, the order must be reversed in the opposite direction.
+        hits.sort_unstable_by(|a, b| {
+            a.t.total_cmp(&b.t).then_with(|| key(a.side, a.triangle.0).cmp(&key(b.side, b.triangle.0)))
+        });
+        // Place of each hit in a stack, by stack and distance.
+        let mut stacked: Vec<(u32, usize)> = hits
+            .iter()
+            .enumerate()
+            .filter_map(|(place, hit)| Some((*self.stacks.of_rank.get(rank(hit) as usize)?, place)))
+            .collect();
+        stacked.sort_unstable();
+        let gap = |place: usize| {
+            let triangle = self.tree.triangle(hits[place].triangle);
+            triangle.map_or(0.0, |triangle| grid.length(self.gap(triangle, direction)))
+        };
+        let is_together = |a: &(u32, usize), b: &(u32, usize)| {
+            a.0 == b.0 && hits[b.1].t - hits[a.1].t <= gap(a.1).min(gap(b.1))
+        };
+        let ends: Vec<usize> = stacked.chunk_by(is_together).map(<[_]>::len).collect();
+        let mut rest = stacked.as_slice();
+        for length in ends {
+            let (stack, after) = rest.split_at(length);
+            rest = after;
+            let mut members: Vec<Hit> = stack.iter().map(|&(_, place)| hits[place]).collect();
+            members.sort_unstable_by_key(|hit| key(hit.side, rank(hit)));
+            stack.iter().zip(members).for_each(|(&(_, place), hit)| hits[place] = hit);
         }
     }
+}
 
-    fn are_parallel(&self, a: &Hit, b: &Hit) -> bool {
-        let triangles = (self.tree.triangle(a.triangle), self.tree.triangle(b.triangle));
-        matches!(triangles, (Some(a), Some(b)) if are_parallel(a, b))
+/// Returns the sort key of a hit among those of a stack: fronts first, those of high rank before those of low rank, then
+/// backs in the opposite order.
+fn key(side: Side, rank: u32) -> (Side, u32) {
+    match side {
+        Side::Front => (side, !rank),
+        Side::Back => (side, rank),
     }
 }
 

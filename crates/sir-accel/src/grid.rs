@@ -47,6 +47,11 @@ impl Grid {
         Self { center: sphere.center, scale, step: 1.0 / scale }
     }
 
+    /// Returns the origin of the coordinates of the scene \[steps\].
+    pub(crate) fn origin(&self) -> DVec3 {
+        -self.center * self.scale
+    }
+
     /// Returns the grid point nearest to a point of the scene.
     pub(crate) fn vertex(&self, p: DVec3) -> [i32; 3] {
         ((p - self.center) * self.scale).to_array().map(|x| nearest(x) as i32)

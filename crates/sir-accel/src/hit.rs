@@ -8,12 +8,18 @@ use sir_types::{Barycentric, Side, TriangleId};
 ///
 /// # Surfaces in contact
 ///
-/// Hits of two parallel triangles within a millionth of the radius of the bounding sphere are *in contact*, and
-/// rounding does not decide their order. Seen along the line, triangles whose front faces the origin come first, those
-/// of high priority before those of low priority. Then come triangles whose back faces the origin, low priority before
-/// high priority. The opposite direction gives the same hits in reverse. As a result, two sheets back to back each show
-/// their front, and of a decal and its wall, the one with the higher priority is on top. Without
-/// [priorities](crate::Options::contact_priorities), a triangle has a higher priority than those before it in the list.
+/// Two triangles are *in contact* if they overlap in area, and the corners of one of them are within the
+/// [contact distance](crate::Accel::contact_distance) of the plane of the other; so are triangles that others in contact
+/// with them connect. Rounding does not decide the order of their hits. Seen along the line, triangles whose front faces
+/// the origin come first, those of high priority before those of low priority. Then come triangles whose back faces the
+/// origin, low priority before high priority. The opposite direction gives the same hits in reverse. As a result, two
+/// sheets back to back each show their front, and of a decal and its wall, the one with the higher priority is on top.
+/// Without [priorities](crate::Options::contact_priorities), a triangle has a higher priority than those before it in
+/// the list.
+///
+/// The contact distance of a triangle is its largest coordinate times 2⁻²¹, the rounding error of four numbers in single
+/// precision, and four steps of the grid. Coordinates count up to 64 times the extent of the triangle. Other triangles do
+/// not change it, except for the size of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance from the origin of the line, negative behind it.

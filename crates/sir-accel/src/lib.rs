@@ -79,6 +79,7 @@ mod queries;
 mod ray;
 mod search;
 mod simd;
+mod stacks;
 mod tracer;
 mod tree;
 mod triangle;

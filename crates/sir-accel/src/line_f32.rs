@@ -53,15 +53,18 @@ pub(crate) struct Span {
     pub(crate) to: f32,
 }
 
+/// Length by which a searched part of a line exceeds its range \[steps of the grid\]. It covers the rounding errors of
+/// single precision.
+pub(crate) const SLACK: f64 = 2e-6 * RADIUS;
+
 /// Upper bound of the distance from the origin of a line on the grid to any point of the scene \[radii\].
 const FAR: f64 = 4.0;
 
 impl Span {
-    /// Returns the span between two distances \[steps of the grid\], extended on both sides by a slack that covers the
-    /// rounding errors of single precision.
+    /// Returns the span between two distances \[steps of the grid\], extended by [`SLACK`] on both sides.
     #[inline(always)]
-    pub(crate) fn new(from: f64, to: f64, slack: f64) -> Self {
+    pub(crate) fn new(from: f64, to: f64) -> Self {
         let radii = |steps: f64| (steps / RADIUS).clamp(-FAR, FAR) as f32;
-        Self { from: radii(from - slack), to: radii(to + slack) }
+        Self { from: radii(from - SLACK), to: radii(to + SLACK) }
     }
 }

@@ -1,19 +1,17 @@
 //! Queries for rays: the closest hit, and occlusion (any hit).
 
+use sir_types::Line;
+
 use crate::accel::Accel;
-use crate::contact::CONTACT;
 use crate::grid::{GridLine, RADIUS};
 use crate::hit::Hit;
-use crate::line_f32::Span;
-use crate::ray::Ray;
+use crate::line_f32::{SLACK, Span};
+use crate::ray::{Ray, TRange};
 use crate::search::first_hit::Rays;
 use crate::triangle::Crossing;
 
 /// Number of rays by which prefetching runs ahead.
 const AHEAD: usize = 16;
-
-/// Distance from the nearest hit within which the contact order chooses the first hit \[steps of the grid\].
-const SLACK: f64 = 2.0 * CONTACT;
 
 /// Source of rays, which it converts to the grid one by one.
 struct Feed<'a> {
@@ -42,7 +40,7 @@ impl Feed<'_> {
                 Some(_) => 0.0,
                 None => start,
             };
-            let span = Span::new(start, grid.steps(ray.range.end) - line.start, SLACK);
+            let span = Span::new(start, grid.steps(ray.range.end) - line.start);
             let leaving = ray.leaving.and_then(|id| tree.place(id)).unwrap_or(u32::MAX);
             // The triangles that the next rays leave may not be in the cache.
             if let Some(id) = self.rays.get(index + AHEAD).and_then(|ray| ray.leaving) {
@@ -74,8 +72,8 @@ impl Feed<'_> {
 /// Query for closest hits.
 pub(crate) struct ClosestHits<'a, F> {
     feed: Feed<'a>,
-    /// Crossings that are close to another one, with the index of their ray.
-    close: Vec<(usize, Crossing)>,
+    /// Rays whose first hit the order of contacts decides, with the end of the part of the line to be searched for it.
+    stacked: Vec<(usize, f64)>,
     visit: F,
 }
 
@@ -84,39 +82,39 @@ pub(crate) struct Closest {
     index: usize,
     /// Crossing with the smallest distance.
     best: Option<Crossing>,
-    /// True if another crossing is close to it.
-    close: bool,
+    /// Distance beyond it within which neighbors in its stack may lie \[steps of the grid\].
+    reach: f64,
+    /// Number of crossings of triangles in stacks.
+    stacked: u32,
 }
 
 impl<'a, F> ClosestHits<'a, F> {
     pub(crate) fn new(accel: &'a Accel, rays: &'a [Ray], visit: F) -> Self {
-        Self { feed: Feed { accel, rays, next: 0 }, close: Vec::new(), visit }
+        Self { feed: Feed { accel, rays, next: 0 }, stacked: Vec::new(), visit }
     }
 
-    /// Records two crossings so close that the contact order may apply to them. This records all crossings within
-    /// [`SLACK`] of the nearest one, in whatever order they are found.
-    #[cold]
-    fn note_close(&mut self, ray: &mut Closest, one: Crossing, other: Crossing) {
-        ray.close = true;
-        self.close.extend([(ray.index, one), (ray.index, other)]);
+    /// Returns the rays that were not visited because the order of contacts decides which of several hits is the first
+    /// one. With each comes the part of its line in which these hits lie.
+    pub(crate) fn into_stacked(self) -> Vec<(usize, (Line, TRange))> {
+        let Self { feed, stacked, .. } = self;
+        let part = |(index, end): (usize, f64)| {
+            let Ray { line, range, leaving } = feed.rays[index];
+            // Where the order of contacts decides, the ray may begin before its origin.
+            let start = if leaving.is_some() { f64::NEG_INFINITY } else { range.start };
+            (index, (line, TRange { start, end }))
+        };
+        stacked.into_iter().map(part).collect()
     }
+}
 
-    /// Returns the first of the hits that are close together, by the contact order.
-    #[cold]
-    fn first_of_close(&mut self, index: usize, best: Crossing, line: &GridLine) -> Hit {
-        let grid = &self.feed.accel.grid;
-        let mut hits = vec![best.hit(grid, line)];
-        self.close.retain(|(of_ray, crossing)| {
-            if *of_ray == index && crossing.t <= best.t + SLACK {
-                hits.push(crossing.hit(grid, line));
-            }
-            *of_ray != index
-        });
-        hits.sort_unstable_by_key(|hit| hit.triangle);
-        hits.dedup_by_key(|hit| hit.triangle);
-        self.feed.accel.contacts().sort(&mut hits, grid.length(CONTACT));
-        hits[0]
-    }
+/// Returns true if a hit lies on a ray and stops it.
+pub(crate) fn is_on_ray(accel: &Accel, ray: &Ray, hit: &Hit) -> bool {
+    accel.grid.line(&ray.line).is_some_and(|line| {
+        let triangle = accel.tree.triangle(hit.triangle);
+        let crossing = triangle.and_then(|triangle| triangle.cross(&line));
+        let feed = Feed { accel, rays: std::slice::from_ref(ray), next: 0 };
+        ray.leaving != Some(hit.triangle) && crossing.is_some_and(|crossing| feed.is_hit(0, &line, &crossing))
+    })
 }
 
 impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
@@ -126,31 +124,32 @@ impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
     #[inline(always)]
     fn next(&mut self) -> Option<(Closest, GridLine, Span, u32)> {
         let (index, line, span, leaving) = self.feed.next(|index| (self.visit)(index, None))?;
-        Some((Closest { index, best: None, close: false }, line, span, leaving))
+        Some((Closest { index, best: None, reach: 0.0, stacked: 0 }, line, span, leaving))
     }
 
     #[inline(always)]
     fn cross(&mut self, ray: &mut Closest, line: &GridLine, crossing: Crossing) -> f32 {
         if self.feed.is_hit(ray.index, line, &crossing) {
-            if let Some(best) = ray.best
-                && (crossing.t - best.t).abs() <= SLACK
-            {
-                self.note_close(ray, crossing, best);
-            }
+            ray.stacked += u32::from(crossing.is_stacked());
             if ray.best.is_none_or(|best| (crossing.t, crossing.id) < (best.t, best.id)) {
                 ray.best = Some(crossing);
+                ray.reach = self.feed.accel.contacts().reach(&crossing, line);
             }
         }
-        ray.best.map_or(f32::INFINITY, |best| ((best.t + SLACK) / RADIUS) as f32)
+        ray.best.map_or(f32::INFINITY, |best| ((best.t + ray.reach + SLACK) / RADIUS) as f32)
     }
 
     #[inline(always)]
     fn done(&mut self, ray: Closest, line: &GridLine) {
-        let hit = match ray.best {
-            Some(best) if ray.close => Some(self.first_of_close(ray.index, best, line)),
-            best => best.map(|crossing| crossing.hit(&self.feed.accel.grid, line)),
-        };
-        (self.visit)(ray.index, hit);
+        let Closest { index, best, reach, stacked } = ray;
+        let grid = &self.feed.accel.grid;
+        match best {
+            Some(best) if best.is_stacked() && stacked > 1 => {
+                let end = grid.length(best.t + line.start + reach + SLACK);
+                self.stacked.push((index, end));
+            }
+            best => (self.visit)(index, best.map(|crossing| crossing.hit(grid, line))),
+        }
     }
 }
 

@@ -3,9 +3,8 @@
 use sir_types::Line;
 
 use crate::accel::Accel;
-use crate::contact::CONTACT;
 use crate::hit::{Hit, LineHits};
-use crate::queries::{ClosestHits, Occlusions};
+use crate::queries::{ClosestHits, Occlusions, is_on_ray};
 use crate::ray::{Ray, TRange};
 use crate::search::all_hits::{AllHits, AllHitsScratch, Part};
 use crate::search::first_hit::{FirstHitScratch, FirstHits};
@@ -53,10 +52,19 @@ impl<'a> Tracer<'a> {
     /// Finds the first hits of rays. Calls `visit` with the index of each ray and its hit, in any order.
     ///
     /// Tracing many rays at once is several times faster than tracing them one by one.
-    pub fn closest_each(&mut self, rays: &[Ray], visit: impl FnMut(usize, Option<Hit>)) {
-        let mut rays = ClosestHits::new(self.accel, rays, visit);
+    pub fn closest_each(&mut self, rays: &[Ray], mut visit: impl FnMut(usize, Option<Hit>)) {
+        let mut query = ClosestHits::new(self.accel, rays, &mut visit);
         let (tree, scratch) = (&self.accel.tree, &mut self.first_hit);
-        self.backend.run(FirstHits { tree, scratch, rays: &mut rays });
+        self.backend.run(FirstHits { tree, scratch, rays: &mut query });
+        let (accel, stacked) = (self.accel, query.into_stacked());
+        let parts: Vec<_> = stacked.iter().map(|(_, part)| *part).collect();
+        let mut rays = stacked.iter().map(|&(index, _)| (index, &rays[index]));
+        self.each(&parts, Self::find_crossings, |found| {
+            for (range, (index, ray)) in found.lines().zip(&mut rays) {
+                let mut hits = found.hits()[range].iter();
+                visit(index, hits.find(|hit| is_on_ray(accel, ray, hit)).copied());
+            }
+        });
     }
 
     /// Returns true exactly if [`closest`](Self::closest) finds a hit. This is faster, because any hit ends the search.
@@ -128,9 +136,11 @@ impl<'a> Tracer<'a> {
     fn find_crossings<P: Part>(&mut self, lines: &[P]) {
         let Self { accel: Accel { grid, tree, .. }, backend, all_hits, .. } = self;
         backend.run(AllHits { grid, tree, lines, scratch: all_hits });
-        for (line, _) in all_hits.close.iter().enumerate().filter(|(_, close)| **close) {
-            let hits = &mut all_hits.hits[all_hits.starts[line] as usize..all_hits.starts[line + 1] as usize];
-            self.accel.contacts().sort(hits, grid.length(CONTACT));
+        for (number, part) in lines.iter().enumerate() {
+            if all_hits.stacked[number] > 1 {
+                let range = all_hits.starts[number] as usize..all_hits.starts[number + 1] as usize;
+                self.accel.contacts().sort(&mut all_hits.hits[range], grid, part.line().direction);
+            }
         }
         if P::HAS_ENDS {
             all_hits.retain(lines.len(), |line, hit| lines[line].range().contains(hit.t));

@@ -14,7 +14,13 @@ pub(crate) struct GridTriangle {
     pub(crate) id: TriangleId,
     /// Error bound of edge functions in double precision: larger absolute values have the right sign.
     pub(crate) certain: f32,
+    /// Rank among the triangles in stacks: of two in one stack, the one of higher rank is on top. [`NOT_STACKED`] if the
+    /// triangle is in none.
+    pub(crate) rank: u32,
 }
+
+/// Rank of triangles that are not in a stack.
+pub(crate) const NOT_STACKED: u32 = u32::MAX;
 
 /// A crossing of a line and a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +31,8 @@ pub(crate) struct Crossing {
     /// The side that faces the origin of the line.
     pub(crate) side: Side,
     pub(crate) id: TriangleId,
+    /// Distance within which the triangle may be in contact with others \[steps of the grid\]; infinite in a stack.
+    near: f32,
 }
 
 /// Edge functions of pairs of a line and a triangle, one pair per lane, and the decisions that follow from their signs.
@@ -93,10 +101,30 @@ impl<D: F64Lanes> EdgeTest<D> {
 }
 
 impl Crossing {
+    #[inline(always)]
+    pub(crate) fn new(triangle: &GridTriangle, t: f64, point: Barycentric, side: Side) -> Self {
+        // More than `Stacks::distance`, which is at most 2⁻¹⁵ extents and four steps. `certain` is at least 2⁻¹⁴ extents.
+        let near = if triangle.rank == NOT_STACKED { 0.51 * triangle.certain + 4.0 } else { f32::INFINITY };
+        Self { t, point, side, id: triangle.id, near }
+    }
+
+    /// Returns a distance within which the order of contacts may decide whether the crossing is ahead of another
+    /// \[steps of the grid\].
+    #[inline(always)]
+    pub(crate) fn near(&self) -> f64 {
+        f64::from(self.near)
+    }
+
+    /// Returns true if the triangle is in a stack.
+    #[inline(always)]
+    pub(crate) fn is_stacked(&self) -> bool {
+        self.near == f32::INFINITY
+    }
+
     /// Converts the crossing to a hit.
     #[inline(always)]
     pub(crate) fn hit(&self, grid: &Grid, line: &GridLine) -> Hit {
-        let Self { t, point, side, id } = *self;
+        let Self { t, point, side, id, .. } = *self;
         Hit { t: grid.length(t + line.start), triangle: id, point, side }
     }
 
@@ -129,7 +157,7 @@ impl GridTriangle {
         // With u = 2⁻⁵³, offsets below M = 2³² and edges of 1-norm L, the edge functions have an error of at most
         // 50 u (M + L) L. L < 2³³, so 64 u · 3M · L = 2⁻¹³·⁴ L is a safe bound. 2⁻¹³ L also covers its rounding to f32.
         let certain = (longest / 8192.0) as f32;
-        Self { corners, id, certain }
+        Self { corners, id, certain, rank: NOT_STACKED }
     }
 
     /// Returns the normal of the front; its length is twice the area.
@@ -162,7 +190,7 @@ impl GridTriangle {
             return None;
         };
         let (t, point) = Crossing::locate(test.factors);
-        Some(Crossing { t, point, side, id: self.id })
+        Some(Crossing::new(self, t, point, side))
     }
 
     /// Returns the side that faces the origin of the line; `None` unless all three edges pass on the same side of the

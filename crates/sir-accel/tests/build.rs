@@ -7,7 +7,7 @@ use sir_accel::{Accel, AccelError, Barycentric, Line, Options, Ray, TriangleId};
 const SQUARE: [DVec3; 4] = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
 const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
-fn refused(positions: &[DVec3], indices: &[[u32; 3]], options: Options) -> AccelError {
+fn refused(positions: &[DVec3], indices: &[[u32; 3]], options: Options<'_>) -> AccelError {
     Accel::build(positions, indices, options).unwrap_err()
 }
 
@@ -29,7 +29,8 @@ fn bad_input_is_refused() {
         let error = refused(&SQUARE.map(|p| size * p), &HALVES, Options::default());
         assert!(matches!(error, AccelError::Extent { .. }), "{error}");
     }
-    let error = refused(&SQUARE, &HALVES, Options::default().contact_priorities(vec![1]));
+    let twice = [HALVES[0], HALVES[0]];
+    let error = refused(&SQUARE, &twice, Options::default().contact_priorities(|_| vec![1]));
     assert_eq!(error, AccelError::WrongLength { list: "contact priorities", found: 1, triangles: 2 });
     let opaque = |_: TriangleId, _: Barycentric| 1.0;
     let error = refused(&SQUARE, &HALVES, Options::default().opacity(vec![true; 3], opaque));
@@ -110,7 +111,7 @@ fn priorities_order_surfaces_in_contact() {
     let indices = [HALVES[0], HALVES[0], HALVES[0]];
     let down = Line { origin: DVec3::new(0.7, 0.2, 1.0), direction: DVec3::NEG_Z };
     let up = Line { direction: DVec3::Z, ..down };
-    let numbers = |options: Options, line: &Line| -> Vec<u32> {
+    let numbers = |options: Options<'_>, line: &Line| -> Vec<u32> {
         let accel = Accel::build(&SQUARE, &indices, options).unwrap();
         let mut tracer = accel.tracer();
         let all: Vec<u32> = tracer.all_hits(line).iter().map(|hit| hit.triangle.0).collect();
@@ -119,7 +120,9 @@ fn priorities_order_surfaces_in_contact() {
         }
         all
     };
-    let given = |list: [u32; 3]| Options::default().contact_priorities(list.to_vec());
+    let given = |list: [u32; 3]| {
+        Options::default().contact_priorities(move |ids| ids.iter().map(|id| list[id.index()]).collect())
+    };
     assert_eq!(numbers(Options::default(), &down), [2, 1, 0]);
     assert_eq!(numbers(Options::default(), &up), [0, 1, 2]);
     assert_eq!(numbers(given([5, 9, 7]), &down), [1, 2, 0]);

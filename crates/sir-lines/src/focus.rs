@@ -8,16 +8,16 @@
 //! of its density (balance heuristic, Veach and Guibas 1995), so that power is conserved and the estimate is unbiased
 //! wherever the box is.
 
-use sir_types::{BoundingBox, BoundingSphere, Line};
+use sir_types::{BoundingBox, Line};
 
 use crate::domain::Domain;
 use crate::forecast::Forecast;
 
-/// Largest ratio of the density of lines in a focus to that elsewhere. It is limited because power is counted in whole
-/// numbers, whose resolution must be sufficient for both.
-pub const MAX_FOCUS_DENSITY: u32 = 4096;
+/// Largest ratio of the density of lines in a focus to that elsewhere. It is limited because power and crossings are
+/// counted in whole numbers, whose range must be sufficient for both.
+pub const MAX_FOCUS_DENSITY: u32 = 1 << 18;
 
-/// Margin around a focus, in radii of the scene, so that surfaces in its faces belong to it.
+/// Margin around a focus, in lengths of its diagonal, so that surfaces in its faces belong to it.
 const MARGIN: f64 = 1e-6;
 
 /// Box that is sampled with a larger share of the lines.
@@ -29,12 +29,12 @@ pub struct Focus {
 
 impl Focus {
     /// Returns a focus on the part of a scene in the box `bounds`. `share` is the requested share of the lines through
-    /// it, in `[0, 1)`; `scene` and `sphere` are the bounding box and the bounding sphere of the scene.
+    /// it, in `[0, 1)`; `scene` is the bounding box of the scene.
     ///
     /// Returns `None` if the boxes do not intersect, or intersect in a point or a line only.
     #[must_use]
-    pub fn new(bounds: BoundingBox, share: f64, scene: BoundingBox, sphere: BoundingSphere) -> Option<Self> {
-        let margin = MARGIN * sphere.radius;
+    pub fn new(bounds: BoundingBox, share: f64, scene: BoundingBox) -> Option<Self> {
+        let margin = MARGIN * bounds.size().length();
         let bounds = BoundingBox { min: bounds.min - margin, max: bounds.max + margin };
         let bounds = bounds.intersection(&scene)?;
         (bounds.face_areas().element_sum() > 0.0).then_some(Self { bounds, share })
@@ -211,7 +211,7 @@ mod tests {
         cuboid(&mut b, DVec3::ZERO, DVec3::new(20.0, 2.0, 20.0), [gray; 6], Facing::Inward);
         let scene = b.build().unwrap().scene;
         let bounds = BoundingBox { min: DVec3::new(-5.0, 0.0, -5.0), max: DVec3::new(2.0, 3.0, 1.0) };
-        let focus = Focus::new(bounds, share, scene.bounding_box(), scene.bounding_sphere()).unwrap();
+        let focus = Focus::new(bounds, share, scene.bounding_box()).unwrap();
         let in_scene = focus.bounds();
         assert_eq!(in_scene.min, DVec3::ZERO);
         assert!((in_scene.max - DVec3::new(2.0, 2.0, 1.0)).abs().max_element() < 1e-4);

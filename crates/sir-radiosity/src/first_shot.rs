@@ -25,7 +25,7 @@ impl ShotInput for () {
 
     fn sources(&self, settings: &ShotSettings<'_>) -> Result<ShotSources, SolveError> {
         let ShotSettings { model, lines, .. } = settings;
-        let sources = FocusedSources::new(model, lines.focus.as_ref());
+        let sources = FocusedSources::new(model, lines.focus.as_ref(), lines.count);
         let total = sources.sources.iter().fold(Rgb::ZERO, |sum, s| sum + s.power);
         if total.max_element() <= 0.0 {
             return Err(SolveError::NoLight);

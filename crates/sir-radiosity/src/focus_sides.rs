@@ -13,10 +13,16 @@ use crate::model::Model;
 pub struct FocusSides(Option<Vec<bool>>);
 
 impl FocusSides {
+    /// Returns all sides, as without a focus.
+    #[must_use]
+    pub fn all() -> Self {
+        Self(None)
+    }
+
     /// Returns the sides of a model that are in a focus.
     #[must_use]
     pub fn of(model: &Model, focus: Option<&Focus>) -> Self {
-        let Some(focus) = focus else { return Self(None) };
+        let Some(focus) = focus else { return Self::all() };
         let bounds = focus.bounds();
         let mut in_focus = vec![true; model.mesh.side_count()];
         // A flat polygon that is one patch has several triangles.

@@ -95,7 +95,7 @@ pub use replicas::{Replica, ReplicaSettings, Replicas};
 pub use second_shot::SecondShot;
 pub use segments::{End, Segment, Segments};
 pub use sensors::{
-    Gatherer, Measurement, REPLICATIONS, SENSOR_OFFSET, Sensor, SensorSettings, SensorStage, SensorTask,
+    Gatherer, Measurement, REPLICATIONS, Sensor, SensorSettings, SensorStage, SensorStart, SensorTask,
 };
 pub use shot::{Shot, ShotSettings};
 pub use solution::Solution;

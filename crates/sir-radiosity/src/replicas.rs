@@ -20,6 +20,7 @@ use sir_lines::{Domain, Purpose, Streams};
 use sir_mesh::SideId;
 
 use crate::error::SolveError;
+use crate::focus_sides::FocusSides;
 use crate::global;
 use crate::model::Model;
 use crate::power::{PowerUnit, Quanta, visit_quanta};
@@ -28,7 +29,7 @@ use crate::segments::{End, Segment};
 use crate::shot::Shot;
 use crate::solution::Solution;
 use crate::stage::{Chain, Stage, Workers, chain_units, share};
-use crate::tallies::{Counters, PatchTallies, SquareUnit, WorkerTallies};
+use crate::tallies::{Counters, PatchTallies, SquareUnit, SquareUnits, WorkerTallies};
 use crate::totals::{Balance, StageTotals};
 use crate::transported::Transported;
 use crate::visitor::Visitor;
@@ -146,8 +147,8 @@ impl<'m> Stage for Replicas<'m> {
     ) -> Result<Self, SolveError> {
         let sides = settings.model.mesh.side_count();
         let unit = PowerUnit::restore(visitor);
-        let unit_of_squares = SquareUnit::restore(visitor);
-        let tallies = PatchTallies::new(sides, workers.count(), 1, unit_of_squares);
+        let units_of_squares = SquareUnits::restore(FocusSides::all(), visitor);
+        let tallies = PatchTallies::new(sides, workers.count(), 1, units_of_squares);
         let mut stage = Self::new(settings, Received::nothing(sides), unit, tallies);
         stage.visit_after_units(visitor);
         Ok(stage)
@@ -194,7 +195,7 @@ impl<'m> Stage for Replicas<'m> {
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
         self.unit.visit(visitor);
-        self.tallies.visit_unit(visitor);
+        self.tallies.visit_units(visitor);
         self.visit_after_units(visitor);
     }
 

@@ -38,7 +38,8 @@ impl ShotInput for Shot {
         let unshot = self.unshot(model);
         let total = self.balance.emitted.total() * lines.count as f64 / self.counts.lines.max(1) as f64;
         let focus = lines.focus.as_ref();
-        let share = focus.map_or(1.0, |focus| FocusedSources::new(model, Some(focus)).inner_share());
+        let of_first = |focus| FocusedSources::new(model, Some(focus), self.counts.lines);
+        let share = focus.map_or(1.0, |focus| of_first(focus).inner_share());
         let bright = brightest(model, &unshot, &FocusSides::of(model, focus), total * share);
         let (sources, sides) = sources_of(model, self, &unshot, &bright);
         Ok(ShotSources { sources: FocusedSources::plain(sources), sides, unit: self.unit })

@@ -107,11 +107,11 @@ pub(crate) struct FocusedSources {
 
 impl FocusedSources {
     /// Returns the sources of a scene. Those in the focus get enough lines to reach the share of all lines that the
-    /// focus asks for.
+    /// focus asks for, as far as the squares of the power of `lines` lines can be counted.
     ///
     /// Within and outside the focus, lines are in proportion to power. If the sources in the focus already have that
     /// share of the power, all lines carry the same power.
-    pub(crate) fn new(model: &Model, focus: Option<&Focus>) -> Self {
+    pub(crate) fn new(model: &Model, focus: Option<&Focus>, lines: u64) -> Self {
         let scene = &model.scene;
         let all = sources(scene, &model.mesh);
         let Some(focus) = focus else { return Self::plain(all) };
@@ -131,7 +131,7 @@ impl FocusedSources {
         if wanted <= 1.0 {
             return Self::plain(all);
         }
-        Self { sources: cut, in_focus: inside, density: wanted.min(f64::from(MAX_FOCUS_DENSITY)) }
+        Self { sources: cut, in_focus: inside, density: wanted.min(max_density(lines)) }
     }
 
     /// Returns sources whose lines all carry the same power.
@@ -154,6 +154,12 @@ impl FocusedSources {
         let power: f64 = self.sources.iter().map(|source| source.power.element_sum()).sum();
         self.weights().iter().sum::<f64>() / power / self.density
     }
+}
+
+/// Returns the largest ratio of the density of lines in a focus to that elsewhere for which the squares of the power of
+/// both fit the same counter of 60 bits, up to `lines` times.
+fn max_density(lines: u64) -> f64 {
+    (2f64.powi(28) / (lines.max(1) as f64).sqrt()).clamp(1.0, f64::from(MAX_FOCUS_DENSITY))
 }
 
 /// Splits a source into the part that is in a focus, marked true, and the part that is not.

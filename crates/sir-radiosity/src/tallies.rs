@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicI64, AtomicU32};
 
 use sir_mesh::SideId;
 
+use crate::focus_sides::FocusSides;
 use crate::power::Quanta;
 use crate::received::Received;
 use crate::visitor::Visitor;
@@ -38,7 +39,7 @@ pub(crate) struct PatchTallies {
     /// All sides of the first copy, then all of the second, and so on.
     records: Vec<Record>,
     sides: usize,
-    unit: SquareUnit,
+    units: SquareUnits,
     /// True if several workers write to the same copy.
     shared: bool,
 }
@@ -63,11 +64,16 @@ const CHUNK: usize = 1 << 14;
 impl PatchTallies {
     /// Returns empty tallies for some workers. There are at least `min_copies` copies, whatever their size, if there
     /// are as many workers.
-    pub(crate) fn new(sides: usize, workers: usize, min_copies: usize, unit: SquareUnit) -> Self {
+    pub(crate) fn new(
+        sides: usize,
+        workers: usize,
+        min_copies: usize,
+        units: impl Into<SquareUnits>,
+    ) -> Self {
         let fits = workers * sides * size_of::<Record>() <= MAX_COPIES_SIZE;
         let copies = if fits { workers.max(1) } else { workers.clamp(1, min_copies) };
         let records = sir_accel::collect_in_huge_pages((0..sides * copies).map(|_| Record::default()));
-        Self { records, sides, unit, shared: copies < workers }
+        Self { records, sides, units: units.into(), shared: copies < workers }
     }
 
     /// Returns the records of a side, one in each copy.
@@ -80,7 +86,7 @@ impl PatchTallies {
         let copy = worker % (self.records.len() / self.sides);
         WorkerTallies {
             records: &self.records[copy * self.sides..][..self.sides],
-            unit: self.unit,
+            units: &self.units,
             shared: self.shared,
         }
     }
@@ -122,7 +128,7 @@ impl PatchTallies {
     pub(crate) fn squares(&self, side: SideId) -> [f64; 3] {
         std::array::from_fn(|band| {
             let squares: i64 = self.of(side.index()).map(|record| record.squares[band].load(Relaxed)).sum();
-            squares as f64 * self.unit.size[band]
+            squares as f64 * self.units.of(side).size[band]
         })
     }
 
@@ -136,9 +142,9 @@ impl PatchTallies {
         }
     }
 
-    /// Visits the unit of the squares.
-    pub(crate) fn visit_unit(&mut self, visitor: &mut dyn Visitor) {
-        self.unit.visit(visitor);
+    /// Visits the units of the squares.
+    pub(crate) fn visit_units(&mut self, visitor: &mut dyn Visitor) {
+        self.units.visit(visitor);
     }
 
     /// Visits counters of all sides.
@@ -197,7 +203,7 @@ impl PatchTallies {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WorkerTallies<'a> {
     records: &'a [Record],
-    unit: SquareUnit,
+    units: &'a SquareUnits,
     shared: bool,
 }
 
@@ -240,7 +246,7 @@ impl WorkerTallies<'_> {
     #[inline]
     fn change(self, side: SideId, lines: u32, power: Quanta) {
         let record = &self.records[side.index()];
-        let squares = self.unit.counts(power);
+        let squares = self.units.of(side).counts(power);
         let crossings = if self.shared { record.lock() } else { record.crossings.load(Relaxed) };
         let add = |sum: &AtomicI64, more: i64| sum.store(sum.load(Relaxed).wrapping_add(more), Relaxed);
         record.power.iter().zip(power.0).for_each(|(sum, power)| add(sum, power));
@@ -294,6 +300,44 @@ pub(crate) struct SquareUnit {
     max_count: f64,
 }
 
+/// Units of the squares: those of sides in the focus, where lines bring little power each, and those of all others.
+#[derive(Clone, Debug)]
+pub(crate) struct SquareUnits {
+    pub(crate) inside: SquareUnit,
+    pub(crate) outside: SquareUnit,
+    pub(crate) in_focus: FocusSides,
+}
+
+impl From<SquareUnit> for SquareUnits {
+    fn from(unit: SquareUnit) -> Self {
+        Self { inside: unit, outside: unit, in_focus: FocusSides::all() }
+    }
+}
+
+impl SquareUnits {
+    #[inline]
+    fn of(&self, side: SideId) -> &SquareUnit {
+        if self.in_focus.contains(side) { &self.inside } else { &self.outside }
+    }
+
+    /// Restores the units that were passed to the visitor that saved them.
+    pub(crate) fn restore(in_focus: FocusSides, visitor: &mut dyn Visitor) -> Self {
+        let none = SquareUnit::of([1.0; 3], 0.0);
+        let mut units = Self { inside: none, outside: none, in_focus };
+        units.visit(visitor);
+        units
+    }
+
+    fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.inside.visit(visitor);
+        if self.in_focus.is_all() {
+            self.outside = self.inside;
+        } else {
+            self.outside.visit(visitor);
+        }
+    }
+}
+
 /// Safety factor on the largest squared contribution.
 pub(crate) const HEADROOM: f64 = 64.0;
 
@@ -316,13 +360,6 @@ impl SquareUnit {
             let power = power.0[band] as f64;
             (power * power * self.density[band] + 0.5).min(self.max_count) as i64
         })
-    }
-
-    /// Restores the unit that was passed to the visitor that saved it.
-    pub(crate) fn restore(visitor: &mut dyn Visitor) -> Self {
-        let mut unit = Self::of([1.0; 3], 0.0);
-        unit.visit(visitor);
-        unit
     }
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {

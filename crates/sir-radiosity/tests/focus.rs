@@ -36,7 +36,7 @@ fn square() -> (Model, Focus, f64) {
     });
     let model = Model::new(scene(b), Subdivision::PerTriangle).unwrap();
     let bounds = BoundingBox { min: DVec3::new(-0.5, -0.5, 0.05), max: DVec3::new(0.5, 0.5, 3.0) };
-    let focus = Focus::new(bounds, 0.75, model.scene.bounding_box(), model.scene.bounding_sphere()).unwrap();
+    let focus = Focus::new(bounds, 0.75, model.scene.bounding_box()).unwrap();
     (model, focus, 100.0 + 500.0 * 0.8)
 }
 
@@ -111,7 +111,7 @@ fn furnace() -> (Model, Focus) {
     shapes::quad(&mut b, [at(-12.0, -12.0), at(13.0, -12.0), at(13.0, 13.0), at(-12.0, 13.0)], ground);
     let model = Model::new(scene(b), Subdivision::MaxEdge(0.5)).unwrap();
     let bounds = BoundingBox { min: DVec3::ZERO, max: DVec3::ONE };
-    let focus = Focus::new(bounds, 0.75, model.scene.bounding_box(), model.scene.bounding_sphere()).unwrap();
+    let focus = Focus::new(bounds, 0.75, model.scene.bounding_box()).unwrap();
     (model, focus)
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use sir_geom::{Rgb, Scene};
 use sir_mesh::Subdivision;
 use sir_parallel::{Executor, RunError, Start};
-use sir_radiosity::{Model, SENSOR_OFFSET, Sensor, SensorSettings, SensorStage, SensorTask, Solution};
+use sir_radiosity::{Model, Sensor, SensorSettings, SensorStage, SensorTask, Solution};
 
 use crate::data::{Case, Point, Surface};
 use crate::effort::Effort;
@@ -84,18 +84,6 @@ impl Lighting {
         Ok(builder.build()?.scene)
     }
 
-    /// Returns the sensor to use for a point. Sensors look from a little above their position, so as not to be below
-    /// the surface that they lie on. Where this surface is not built, the offset is undone: it is not needed, and some
-    /// points see nothing from exactly their position.
-    fn place(&self, sensor: Sensor, scene: &Scene) -> Sensor {
-        let lift = SENSOR_OFFSET * scene.bounding_sphere().radius;
-        let lowered = Sensor::new(sensor.position() - lift * sensor.direction(), sensor.direction());
-        match self {
-            Self::Reflector => lowered.unwrap_or(sensor),
-            _ => sensor,
-        }
-    }
-
     /// Returns the factor from irradiance to the unit of the answers.
     fn unit(&self) -> f64 {
         match self {
@@ -115,8 +103,7 @@ pub(crate) fn points(case: &Case, lighting: Lighting) -> Result<Vec<Trial<'_>>, 
     let rays = if matches!(lighting, Lighting::Sky) { RAYS_TO_SKY } else { RAYS };
     let prepare = move |_: Effort| -> Result<Sample<'_>, ValidateError> {
         let model = Model::new(lighting.scene(case)?, Subdivision::PerTriangle)?;
-        let place = |&sensor: &Sensor| lighting.place(sensor, &model.scene);
-        let (sensors, unit): (Vec<_>, _) = (sensors.iter().map(place).collect(), lighting.unit());
+        let (sensors, unit) = (sensors.clone(), lighting.unit());
         Ok(Box::new(move |lines, seed, executor| {
             // All surfaces are black, so the light that they receive is not needed.
             let solution = Solution::dark(model.mesh.side_count());

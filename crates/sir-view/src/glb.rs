@@ -12,7 +12,7 @@ use sir_geom::{Barycentric, Camera, Projection, TriangleId};
 
 use crate::atomic_file::write_atomically;
 use crate::camera_rays::camera_axes;
-use crate::display::DisplayMesh;
+use crate::display::{DisplayMesh, extent};
 use crate::error::ViewError;
 use crate::exposure::Exposure;
 use crate::tone::{rgb, tone_map};
@@ -46,7 +46,7 @@ pub fn write_glb(
     let factor = exposure.factor_for_mesh(display);
     let mut file = Contents::default();
     file.add_mesh(display, factor);
-    let near = 1e-3 * display.scene.bounding_sphere().radius;
+    let near = 1e-3 * extent(display.scene.vertices()).1;
     file.add_cameras(cameras, near);
     let json = file.json(up);
     file.write(path, &json)

@@ -2,7 +2,6 @@
 
 use sir_types::{Barycentric, Line, Side, TriangleId};
 
-use crate::contact::CONTACT;
 use crate::grid::{Grid, GridLine};
 use crate::hit::Hit;
 use crate::line_f32::{LineF32, Span};
@@ -66,8 +65,8 @@ pub(crate) struct AllHitsScratch {
     pub(crate) starts: [u32; MAX_LINES + 3],
     /// Hits line by line, in order of distance; longer than needed.
     pub(crate) hits: Vec<Hit>,
-    /// True for lines with hits so close together that the contact order may apply.
-    pub(crate) close: [bool; MAX_LINES],
+    /// Number of hits of each line on triangles in stacks.
+    pub(crate) stacked: [u32; MAX_LINES],
 }
 
 impl Default for AllHitsScratch {
@@ -82,7 +81,7 @@ impl Default for AllHitsScratch {
             places: Vec::new(),
             starts: [0; MAX_LINES + 3],
             hits: Vec::new(),
-            close: [false; MAX_LINES],
+            stacked: [0; MAX_LINES],
         }
     }
 }
@@ -119,10 +118,6 @@ pub(crate) struct AllHits<'a, P> {
     pub(crate) scratch: &'a mut AllHitsScratch,
 }
 
-/// Length by which the searched part of a line exceeds its range on both sides \[steps of the grid\], so that hits in
-/// contact with those in the range are found, too.
-const SLACK: f64 = 2.0 * CONTACT;
-
 impl<P: Part> Kernel for AllHits<'_, P> {
     type Output = ();
 
@@ -143,7 +138,7 @@ impl<P: Part> Kernel for AllHits<'_, P> {
             let [mut near, mut far] = root.slabs(backend, &boxes);
             if P::HAS_ENDS {
                 let TRange { start, end } = part.range();
-                let span = Span::new(grid.steps(start) - line.start, grid.steps(end) - line.start, SLACK);
+                let span = Span::new(grid.steps(start) - line.start, grid.steps(end) - line.start);
                 spans.push(span);
                 near = near.max(backend.splat_node(span.from));
                 far = far.min(backend.splat_node(span.to));
@@ -185,7 +180,7 @@ impl<P: Part> Kernel for AllHits<'_, P> {
 /// Converts crossings to hits, sorted by line and distance.
 #[inline(always)]
 fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scratch: &mut AllHitsScratch) {
-    let AllHitsScratch { lines, candidates, distances, places, starts, hits, close, .. } = scratch;
+    let AllHitsScratch { lines, candidates, distances, places, starts, hits, stacked, .. } = scratch;
     // Counting sort by line: while hits are added, each start moves to the start of the next line. Candidates that are
     // not crossed come after all lines.
     starts.fill(0);
@@ -193,7 +188,7 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
     for line in 2..starts.len() {
         starts[line] += starts[line - 1];
     }
-    close.fill(false);
+    stacked.fill(0);
     let nothing =
         Hit { t: 0.0, triangle: TriangleId(0), point: Barycentric { v: 0.0, w: 0.0 }, side: Side::Back };
     if hits.len() < count {
@@ -217,7 +212,7 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
         let Some((grid_line, _)) = lines.get(line) else { continue };
         let (start, end, place) = (starts[line] as usize, starts[line + 1] as usize, places[i] as usize);
         let mine = backend.splat_f64(t[i]);
-        let (mut rank, mut first, mut near) = (0, start, 0);
+        let (mut rank, mut first) = (0, start);
         while first < end {
             let others = distances[first..].first_chunk().map_or(mine, |chunk| backend.load_f64(chunk));
             let of_line = u32::MAX >> (32 - (end - first).min(LEAF_WIDTH));
@@ -227,13 +222,10 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
             // Among equal distances, the crossing found first comes first.
             let (before, not_after) = (others.mask_lt(mine), others.mask_le(mine));
             rank += ((before | (not_after & earlier)) & of_line).count_ones() as usize;
-            near |= not_after & mine.mask_le(others.add(backend.splat_f64(CLOSE))) & of_line & !this;
             first += LEAF_WIDTH;
         }
-        close[line] |= near != 0;
-        hits[start + rank] = candidates.crossing(i, tree).hit(grid, grid_line);
+        let crossing = candidates.crossing(i, tree);
+        stacked[line] += u32::from(crossing.is_stacked());
+        hits[start + rank] = crossing.hit(grid, grid_line);
     }
 }
-
-/// Distance \[steps of the grid\] within which hits may be in contact.
-const CLOSE: f64 = 1.001 * CONTACT;

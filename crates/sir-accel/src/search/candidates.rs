@@ -51,12 +51,9 @@ impl Candidates {
     #[inline(always)]
     pub(crate) fn crossing(&self, i: usize, tree: &Tree) -> Crossing {
         let [.., t, v, w] = &self.factors;
-        Crossing {
-            t: t[i],
-            point: Barycentric { v: v[i], w: w[i] },
-            side: if self.fronts[i] { Side::Front } else { Side::Back },
-            id: tree.triangles[self.found.items[i] as usize].id,
-        }
+        let side = if self.fronts[i] { Side::Front } else { Side::Back };
+        let triangle = &tree.triangles[self.found.items[i] as usize];
+        Crossing::new(triangle, t[i], Barycentric { v: v[i], w: w[i] }, side)
     }
 
     /// Tests pairs of a line and a triangle, eight at a time.

@@ -44,8 +44,9 @@ fn mesh() -> impl Strategy<Value = Mesh> {
 impl Mesh {
     fn arrange(&self) -> Accel {
         let half = |_: TriangleId, _: Barycentric| 0.5;
+        let priorities = self.priorities.clone();
         let options = Options::default()
-            .contact_priorities(self.priorities.clone())
+            .contact_priorities(move |ids| ids.iter().map(|id| priorities[id.index()]).collect())
             .opacity(self.is_transparent.clone(), half);
         Accel::build(&self.positions, &self.indices, options).unwrap()
     }

@@ -14,7 +14,7 @@ pub(crate) fn mesh(scene: &Scene) -> (&[DVec3], Vec<[u32; 3]>) {
 }
 
 /// Returns options with the transparent triangles of a scene and their opacity.
-pub(crate) fn options(scene: &Scene) -> Options {
+pub(crate) fn options(scene: &Scene) -> Options<'static> {
     let Some(opacities) = Opacities::of(scene) else { return Options::default() };
     let is_transparent = scene.triangle_ids().map(|t| scene.is_transparent(t)).collect();
     Options::default().opacity(is_transparent, move |t, p| opacities.at(t, p).unwrap_or(1.0))

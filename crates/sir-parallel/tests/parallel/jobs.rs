@@ -131,7 +131,7 @@ impl Room {
     /// Returns a focus on a part of the room.
     fn focus(&self) -> Focus {
         let bounds = BoundingBox { min: DVec3::splat(-1.0), max: DVec3::new(0.2, 0.6, 0.1) };
-        Focus::new(bounds, 0.75, self.model.scene.bounding_box(), self.model.scene.bounding_sphere()).unwrap()
+        Focus::new(bounds, 0.75, self.model.scene.bounding_box()).unwrap()
     }
 
     fn focused_shot(&self) -> ShotSettings<'_> {

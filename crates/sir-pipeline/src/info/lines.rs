@@ -15,9 +15,6 @@ pub(super) const LINES: u64 = 100_000;
 /// Number of lines that are traced together.
 const BLOCK: u64 = 1 << 12;
 
-/// Largest distance of two parallel surfaces that count as coincident, in radii of the scene.
-const CONTACT: f64 = 1e-6;
-
 /// Statistics of all random lines.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Lines {
@@ -46,7 +43,7 @@ pub struct Global {
     /// Share of segments (between neighboring crossings) with a front at one end and a back at the other; zero if the
     /// winding of closed surfaces is consistent.
     pub mixed: f64,
-    /// Share of crossings that coincide with the next one, on a parallel triangle with other corners.
+    /// Share of crossings after which the next one is of a triangle in contact that has other corners.
     pub coincident: f64,
 }
 
@@ -97,7 +94,6 @@ fn emitting_side(source: &Source) -> Option<(TriangleId, Side, f64)> {
 
 fn global(scene: &Scene, accel: &Accel) -> Global {
     let (domain, streams) = (Domain::hull(scene.vertices()), Streams::new(0, Purpose::PROBE));
-    let contact = CONTACT * scene.bounding_sphere().radius;
     let (mut met, mut odd, mut segments, mut mixed, mut crossings, mut coincident) = (0, 0, 0, 0, 0, 0);
     let mut tracer = accel.tracer();
     for first in (0..LINES).step_by(BLOCK as usize) {
@@ -114,7 +110,7 @@ fn global(scene: &Scene, accel: &Accel) -> Global {
                     // A line that hits a front leaves through the back, and the next hit names the side that faces that
                     // back.
                     mixed += u64::from(pair[0].side == pair[1].side);
-                    coincident += u64::from(pair[1].t - pair[0].t <= contact && coincide(scene, pair));
+                    coincident += u64::from(coincide(scene, accel, pair));
                 }
             }
         });
@@ -127,16 +123,15 @@ fn global(scene: &Scene, accel: &Accel) -> Global {
     }
 }
 
-/// Returns true if two triangles hit at the same point lie in the same plane and do not have the same corners.
-fn coincide(scene: &Scene, hits: &[Hit]) -> bool {
+/// Returns true if two triangles are in contact and do not have the same corners.
+fn coincide(scene: &Scene, accel: &Accel, hits: &[Hit]) -> bool {
     let corners = |hit: &Hit| {
         let mut corners = scene.triangle(hit.triangle).vertices;
         corners.sort_unstable();
         corners
     };
     let [a, b] = [&hits[0], &hits[1]];
-    let sine = scene.normal(a.triangle).cross(scene.normal(b.triangle)).length();
-    sine < 1e-3 && corners(a) != corners(b)
+    accel.are_in_contact(a.triangle, b.triangle) && corners(a) != corners(b)
 }
 
 /// Origin of a diffuse line: a point on a side.

@@ -19,7 +19,7 @@ record! {
         /// Opposite corner.
         pub max: DVec3 = Vector([5.0, 3.0, 4.0]).required().unit("m");
         /// Approximate share of the lines of `FirstShot` and `Multipath` that goes through the box, if that is more
-        /// than without a focus. Lines in the box are at most 4,096 times as dense as elsewhere.
+        /// than without a focus. Lines in the box are at most 262,144 times as dense as elsewhere.
         pub share: f64 = number(0.75).with_range(|x| (0.0..=MAX_SHARE).contains(&x), "from 0 to 0.95").or(0.75);
     }
 }

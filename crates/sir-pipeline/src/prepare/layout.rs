@@ -1,9 +1,9 @@
 //! Positions of the sensors of a grid or a work plane.
 
 use glam::{DVec2, DVec3};
-use sir_accel::{Ray, Tracer};
-use sir_geom::{Line, Scene};
-use sir_radiosity::{Model, SENSOR_OFFSET, Sensor};
+use sir_accel::Tracer;
+use sir_geom::{Scene, Side};
+use sir_radiosity::{Model, Sensor, SensorStart};
 
 use crate::plan::{Grid, Place, Plane};
 
@@ -117,13 +117,16 @@ fn extent(scene: &Scene, axis: DVec3) -> [f64; 2] {
 /// point, and the first surfaces below and above must not show the back of a one-sided surface. (The sky may be above.)
 fn is_inside(sensor: &Sensor, model: &Model, tracer: &mut Tracer<'_>) -> bool {
     let up = sensor.direction();
-    // Offset as when measuring: a sensor that lies on a desk counts as above it.
-    let origin = sensor.position() + SENSOR_OFFSET * model.scene.bounding_sphere().radius * up;
-    let mut sees = |direction| {
-        let hit = tracer.closest(&Ray::from(Line { origin, direction }));
-        hit.map(|hit| model.scene.is_active(hit.triangle, hit.side))
+    let start = SensorStart::of(sensor, model, tracer);
+    let is_active = |triangle, side| model.scene.is_active(triangle, side);
+    let mut sees =
+        |direction| tracer.closest(&start.ray(direction)).map(|hit| is_active(hit.triangle, hit.side));
+    let below = match start.surface {
+        Some(surface) if model.scene.normal(surface).dot(up) > 0.0 => Some(is_active(surface, Side::Front)),
+        Some(surface) => Some(is_active(surface, Side::Back)),
+        None => sees(-up),
     };
-    sees(-up) == Some(true) && sees(up) != Some(false)
+    below == Some(true) && sees(up) != Some(false)
 }
 
 #[cfg(test)]

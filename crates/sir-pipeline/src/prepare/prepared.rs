@@ -84,7 +84,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     let watch = Stopwatch::start();
     let (how, span) = subdivision;
     let focus = requested_focus.map(|(bounds, share)| {
-        let focus = Focus::new(bounds, share, built.scene.bounding_box(), built.scene.bounding_sphere());
+        let focus = Focus::new(bounds, share, built.scene.bounding_box());
         focus.ok_or_else(|| pipeline.diagnostics(nothing_inside(pipeline, &built.scene)))
     });
     let focus = focus.transpose()?;

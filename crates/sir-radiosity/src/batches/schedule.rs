@@ -77,15 +77,17 @@ impl Schedule {
         reflected_share: f64,
     ) -> Self {
         let parts = (lines as f64 / lines_per_crossing / CROSSINGS_PER_PART) as u64;
+        // Batches are smaller with a dense focus. Their number must suffice for most lines to carry light of the sources.
+        let max_lines = domain.max_lines();
         let mut schedule = Self {
             lines,
             batch: [0; 2],
             number: 0,
-            parts: parts.clamp(1, MAX_PARTS),
+            parts: parts.clamp(1, MAX_PARTS).max(lines / max_lines),
             min_lines: (MIN_CROSSINGS * lines_per_crossing).ceil() as u64,
             reflected_share,
             source,
-            max_lines: domain.max_lines(),
+            max_lines,
             outside_weight: 1.0 / f64::from(domain.weight()),
             unshot_at_tail: FocusSums::default(),
             sums: BatchSums { unshot: source, ..BatchSums::default() },

@@ -19,7 +19,7 @@ use crate::segments::{End, Segment};
 use crate::shot::Shot;
 use crate::solution::Solution;
 use crate::stage::{AnyOrder, Stage, Workers, map_parts};
-use crate::tallies::{Counters, PatchTallies, SquareUnit, WorkerTallies};
+use crate::tallies::{Counters, PatchTallies, SquareUnit, SquareUnits, WorkerTallies};
 use crate::totals::{Balance, StageTotals};
 use crate::transported::Transported;
 use crate::visitor::Visitor;
@@ -145,18 +145,21 @@ impl<'m> Stage for Batches<'m> {
         let focus_sides = FocusSides::of(model, domain.focus());
         let unshot = shot.unshot(model);
         let Shot { received: direct, unit, balance, .. } = shot;
-        let forecast = domain.forecast(lines);
+        let (forecast, heavy) = (domain.forecast(lines), f64::from(domain.weight()));
         let mut source = FocusSums::default();
-        let (mut most, mut brightest) = (0.0, [0.0; 3]);
+        // Outside the focus and in it: the number of lines that cross a side, and the power that they bring.
+        let (mut most, mut brightest) = ([0.0; 2], [[0.0; 3]; 2]);
         model.mesh.for_each_side(|triangle, _, _, side| {
             let reflectance = model.reflectance(triangle, side);
             let unshot = unshot[side.index()];
             let in_focus = focus_sides.contains(side);
             source.add(unshot, in_focus);
             let crossings = forecast.crossings(model.area(triangle, side));
-            let weight = if in_focus { 1.0 } else { f64::from(domain.weight()) };
+            let weight = if in_focus { 1.0 } else { heavy };
             // There are fewer lines than their total weight, and each crosses the side at most once.
-            most = f64::max(most, if in_focus { crossings } else { crossings.min(lines as f64) });
+            let crossed = if in_focus { crossings } else { crossings.min(lines as f64) };
+            let (most, brightest) = (&mut most[usize::from(in_focus)], &mut brightest[usize::from(in_focus)]);
+            *most = f64::max(*most, crossed);
             for band in 0..3 {
                 // All light that the side reflects, if the surfaces it sees are as bright, over all its crossings.
                 let share = weight * (unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings);
@@ -164,8 +167,16 @@ impl<'m> Stage for Batches<'m> {
                 brightest[band] = f64::max(brightest[band], share);
             }
         });
-        let unit_of_squares = SquareUnit::new(brightest, most);
-        let tallies = PatchTallies::new(model.mesh.side_count(), workers.count(), 1, unit_of_squares);
+        // Sides in the focus and outside send power to each other, each with the weight of the line.
+        let [outer, inner] = brightest;
+        let brightest = [
+            [0, 1, 2].map(|band| outer[band].max(inner[band])),
+            [0, 1, 2].map(|band| inner[band].max(outer[band] / heavy)),
+        ];
+        let of_part = |part: usize| SquareUnit::new(brightest[part], most[part]);
+        let units_of_squares =
+            SquareUnits { inside: of_part(1), outside: of_part(0), in_focus: focus_sides.clone() };
+        let tallies = PatchTallies::new(model.mesh.side_count(), workers.count(), 1, units_of_squares);
         let reflected_share = balance.unshot.total() / balance.emitted.total().max(1.0);
         let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (source, reflected_share));
         for (state, unshot) in stage.states.iter_mut().zip(unshot) {
@@ -184,8 +195,8 @@ impl<'m> Stage for Batches<'m> {
         let focus_sides = FocusSides::of(model, settings.domain.focus());
         let sides = model.mesh.side_count();
         let unit = PowerUnit::restore(visitor);
-        let unit_of_squares = SquareUnit::restore(visitor);
-        let tallies = PatchTallies::new(sides, workers.count(), 1, unit_of_squares);
+        let units_of_squares = SquareUnits::restore(focus_sides.clone(), visitor);
+        let tallies = PatchTallies::new(sides, workers.count(), 1, units_of_squares);
         let direct = Received::nothing(sides);
         let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (FocusSums::default(), 0.0));
         stage.visit_after_units(visitor);
@@ -243,7 +254,7 @@ impl<'m> Stage for Batches<'m> {
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
         self.unit.visit(visitor);
-        self.tallies.visit_unit(visitor);
+        self.tallies.visit_units(visitor);
         self.visit_after_units(visitor);
     }
 

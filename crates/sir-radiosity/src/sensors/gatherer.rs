@@ -1,8 +1,7 @@
 //! Final gathering at a sensor.
 
-use glam::DVec3;
-use sir_accel::{Ray, Tracer};
-use sir_geom::{Line, Rgb};
+use sir_accel::Tracer;
+use sir_geom::Rgb;
 use sir_lines::{Purpose, Streams};
 
 use crate::model::Model;
@@ -10,11 +9,8 @@ use crate::sensors::emitters::Emitters;
 use crate::sensors::measurement::Measurement;
 use crate::sensors::replication::{PatchHits, Replication};
 use crate::sensors::sensor::{REPLICATIONS, Sensor, SensorSettings};
+use crate::sensors::start::SensorStart;
 use crate::solution::Solution;
-
-/// Height above the position of a sensor at which its rays start, in radii of the scene's bounding sphere: 0.1 mm in a
-/// room of 10 m. The surface on which the sensor lies is then below it in spite of rounding in the scene file.
-pub const SENSOR_OFFSET: f64 = 1e-5;
 
 /// Rays of all replications before the first check of the error.
 const FIRST: u64 = 2048;
@@ -27,8 +23,6 @@ pub struct Gatherer<'s> {
     settings: SensorSettings,
     emitters: Emitters,
     streams: Streams,
-    /// Height above a sensor at which rays start.
-    offset: f64,
 }
 
 impl<'s> Gatherer<'s> {
@@ -42,7 +36,6 @@ impl<'s> Gatherer<'s> {
             settings,
             emitters: Emitters::of(model),
             streams: Streams::new(seed, Purpose::SENSORS),
-            offset: SENSOR_OFFSET * model.scene.bounding_sphere().radius,
         }
     }
 
@@ -52,10 +45,10 @@ impl<'s> Gatherer<'s> {
     /// Backs of one-sided surfaces are black.
     #[must_use]
     pub fn measure(&self, number: u64, sensor: &Sensor) -> Measurement {
-        let origin = sensor.position() + self.offset * sensor.direction();
         let mut tracer = self.model.accel.tracer();
-        let lights = self.lights(sensor, origin, &mut tracer);
-        let choice = self.emitters.from(origin, sensor);
+        let start = SensorStart::of(sensor, self.model, &mut tracer);
+        let lights = self.lights(sensor, start, &mut tracer);
+        let choice = self.emitters.from(start.origin, sensor);
         let stream = |k| self.streams.line(number * REPLICATIONS + k);
         let mut replications: Vec<_> = (0..REPLICATIONS).map(|k| Replication::new(&mut stream(k))).collect();
         let mut patch_hits = PatchHits::default();
@@ -66,7 +59,7 @@ impl<'s> Gatherer<'s> {
                 replication.trace(
                     rays,
                     (self.model, self.solution),
-                    (origin, sensor.direction()),
+                    (start, sensor.direction()),
                     &choice,
                     &mut tracer,
                     &mut patch_hits,
@@ -83,18 +76,16 @@ impl<'s> Gatherer<'s> {
     }
 
     /// Returns the irradiance by lights without a surface.
-    fn lights(&self, sensor: &Sensor, origin: DVec3, tracer: &mut Tracer<'_>) -> Rgb {
+    fn lights(&self, sensor: &Sensor, start: SensorStart, tracer: &mut Tracer<'_>) -> Rgb {
         let (mut rays, mut brings) = (Vec::new(), Vec::new());
         for light in self.model.scene.lights() {
-            // The arrival is computed at the sensor itself. Only the shadow ray starts above it.
+            // The arrival is computed at the sensor itself. Only the shadow ray starts on the surface.
             let Some(arrival) = light.kind.arrival(sensor.position()) else { continue };
             let cosine = arrival.towards.dot(sensor.direction());
             if cosine <= 0.0 {
                 continue;
             }
-            let ray = Ray::new(Line { origin, direction: arrival.towards });
-            // A light that lies on a surface is in front of it, as sensors are.
-            rays.push(ray.within(0.0..arrival.distance - self.offset));
+            rays.push(start.ray_to_light(arrival.towards, arrival.distance, self.model));
             brings.push(cosine * arrival.irradiance);
         }
         let mut seen = vec![false; rays.len()];

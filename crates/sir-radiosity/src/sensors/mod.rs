@@ -11,9 +11,11 @@ mod measurement;
 mod replication;
 mod sensor;
 mod stage;
+mod start;
 mod tree;
 
-pub use gatherer::{Gatherer, SENSOR_OFFSET};
+pub use gatherer::Gatherer;
 pub use measurement::Measurement;
 pub use sensor::{REPLICATIONS, Sensor, SensorSettings};
 pub use stage::{SensorStage, SensorTask};
+pub use start::SensorStart;

@@ -4,12 +4,13 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use sir_accel::{Hit, Ray, Tracer};
-use sir_geom::{Line, Rgb, TriangleId};
+use sir_geom::{Rgb, TriangleId};
 use sir_lines::{R2Sequence, Stream, cosine_direction};
 use sir_mesh::SideId;
 
 use crate::model::Model;
 use crate::sensors::emitters::{Aim, Choice};
+use crate::sensors::start::SensorStart;
 use crate::solution::Solution;
 
 /// Number of rays that are generated at a time.
@@ -51,7 +52,7 @@ impl Replication {
         &mut self,
         rays: u64,
         (model, solution): (&Model, &Solution),
-        (origin, normal): (DVec3, DVec3),
+        (start, normal): (SensorStart, DVec3),
         choice: &Choice<'_>,
         tracer: &mut Tracer<'_>,
         patch_hits: &mut PatchHits,
@@ -59,7 +60,7 @@ impl Replication {
         while self.rays < rays {
             let numbers = self.rays..rays.min(self.rays + RAYS);
             self.rays = numbers.end;
-            let ray = |direction| Ray::from(Line { origin, direction });
+            let ray = |direction| start.ray(direction);
             let mut all: Vec<Ray> =
                 numbers.clone().map(|i| ray(cosine_direction(normal, self.hemisphere.at(i)))).collect();
             let free = all.len();

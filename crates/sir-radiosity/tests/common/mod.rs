@@ -11,8 +11,8 @@ use sir_geom::{Material, MaterialId, Rgb, Scene, SceneBuilder, Side};
 use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_radiosity::{
-    AnyOrder, BatchSettings, Batches, FirstShot, Job, Model, ReplicaSettings, Replicas, SecondShot, Shot,
-    ShotSettings, Stage, StageTotals, Transported, Workers, run_stage,
+    AnyOrder, BatchSettings, Batches, FirstShot, Job, Model, ReplicaSettings, Replicas, SecondShot, Sensor,
+    Shot, ShotSettings, Stage, StageTotals, Transported, Workers, run_stage,
 };
 
 /// Returns the exact answers of a file: see `data/README.md` in `sir-validate`.
@@ -228,4 +228,15 @@ pub(crate) fn per_face(builder: SceneBuilder) -> Model {
 
 pub(crate) fn scene(builder: SceneBuilder) -> Scene {
     builder.build().unwrap().scene
+}
+
+/// Returns the cosine-weighted share of the hemisphere of a sensor that a polygon takes, as a sum over its edges
+/// (Lambert 1760). The polygon must be completely in front of the sensor.
+pub(crate) fn factor(sensor: &Sensor, corners: &[DVec3]) -> f64 {
+    let to = |i: usize| (corners[i % corners.len()] - sensor.position()).normalize();
+    let edge = |i: usize| {
+        let cross = to(i).cross(to(i + 1));
+        cross.normalize().dot(sensor.direction()) * to(i).angle_between(to(i + 1))
+    };
+    ((0..corners.len()).map(edge).sum::<f64>() / (2.0 * PI)).abs()
 }

@@ -10,3 +10,4 @@ mod seams;
 mod smooth;
 
 pub use mesh::{DisplayMesh, DisplayPiece, DisplayVertex};
+pub(crate) use seams::extent;

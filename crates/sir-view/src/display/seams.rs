@@ -10,8 +10,8 @@ use glam::DVec3;
 
 use crate::display::points::{PointTree, Weld};
 
-/// Distance below which points are welded, in radii of the bounding sphere of the scene.
-const TOLERANCE: f64 = 1e-6;
+/// Distance below which points are welded, in typical distances of vertices from the middle of the scene.
+const TOLERANCE: f64 = 4e-6;
 
 /// Edges of all triangles of a scene.
 pub(super) struct Seams {
@@ -44,10 +44,22 @@ struct TriangleEdge {
     place: u64,
 }
 
+/// Returns the middle of points, and their typical distance from it: medians, which a few points far away do not change.
+pub(crate) fn extent(points: &[DVec3]) -> (DVec3, f64) {
+    let median = |mut numbers: Vec<f64>| {
+        let middle = numbers.len() / 2;
+        *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    let along = |axis: usize| median(points.iter().map(|point| point[axis]).collect());
+    let middle = DVec3::new(along(0), along(1), along(2));
+    (middle, median(points.iter().map(|point| point.distance(middle)).collect()))
+}
+
 impl Seams {
     pub(super) fn new(scene: &Scene, mesh: &PatchMesh) -> Self {
-        let tolerance = TOLERANCE * scene.bounding_sphere().radius;
-        let mut weld = Weld::new(scene.bounding_sphere().center, tolerance);
+        let (middle, distance) = extent(scene.vertices());
+        let tolerance = TOLERANCE * distance;
+        let mut weld = Weld::new(middle, tolerance);
         let corners: Vec<u32> = scene.vertices().iter().map(|&p| weld.add(p)).collect();
         let positions: Vec<DVec3> = scene.vertices().to_vec();
 
