@@ -54,6 +54,14 @@ pub enum LoadError {
         /// Element of the file, and what is wrong with it.
         what: String,
     },
+    /// The file is of another version of glTF than 2.0, or needs a later one.
+    #[error("{}: this is a file of glTF {version}, but only glTF 2.0 is supported; convert it to glTF 2.0, or export it again", path.display())]
+    GltfVersion {
+        /// The scene file.
+        path: PathBuf,
+        /// Version of the file, shortened if it is long.
+        version: String,
+    },
     /// The file requires extensions that are not supported.
     #[error("{}: the file requires the glTF extensions {}, which are not supported; export it without them", path.display(), names.join(", "))]
     RequiredExtensions {

@@ -10,12 +10,30 @@ use crate::load::error::LoadError;
 const MAX_NAME_LENGTH: usize = 500;
 
 /// Reads a regular file. Anything else is an error, because a pipe or a device may never end.
+///
+/// The error about an absent file names another one whose name differs in upper and lower case only: some systems do not
+/// distinguish them.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
-    if fs::metadata(path)?.is_file() {
-        fs::read(path)
-    } else {
-        Err(io::Error::new(io::ErrorKind::InvalidInput, "this is not a regular file"))
+    match fs::metadata(path) {
+        Ok(metadata) if metadata.is_file() => fs::read(path),
+        Ok(_) => Err(io::Error::new(io::ErrorKind::InvalidInput, "this is not a regular file")),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Err(match in_other_case(path) {
+            Some(name) => io::Error::new(
+                e.kind(),
+                format!("there is {name}, whose name differs in upper and lower case; rename it"),
+            ),
+            None => e,
+        }),
+        Err(e) => Err(e),
     }
+}
+
+/// Returns the first file in the folder of an absent file whose name differs in upper and lower case only.
+fn in_other_case(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_string_lossy().to_uppercase();
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let names = fs::read_dir(folder).ok()?.flatten().map(|e| e.file_name().to_string_lossy().into_owned());
+    names.filter(|other| other.to_uppercase() == name).min().map(|name| shortened(&name, MAX_NAME_LENGTH))
 }
 
 /// Reads the scene file itself.
@@ -30,12 +48,19 @@ pub(super) fn read_scene(path: &Path) -> Result<Vec<u8>, LoadError> {
 pub(super) fn beside(scene: &Path, name: &str) -> Option<PathBuf> {
     // `Path` recognizes drive letters on some systems only.
     let drive = name.as_bytes().get(1) == Some(&b':');
-    let is_inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
-    let path = Path::new(name);
-    (is_name(name) && !drive && path.components().all(is_inside)).then(|| {
-        let plain: PathBuf = path.components().filter(|part| *part != Component::CurDir).collect();
-        scene.with_file_name(plain)
-    })
+    if drive || !is_name(name) {
+        return None;
+    }
+    let mut plain = PathBuf::new();
+    for part in Path::new(name).components() {
+        match part {
+            Component::Normal(part) => plain.push(part),
+            Component::CurDir => {}
+            Component::ParentDir if plain.pop() => {}
+            _ => return None,
+        }
+    }
+    Some(scene.with_file_name(plain))
 }
 
 /// Returns true if a text can be the name of a file, and can be shown in an error message.

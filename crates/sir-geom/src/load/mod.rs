@@ -39,7 +39,8 @@ use crate::warning::Built;
 /// # glTF 2.0
 ///
 /// * **Content**: the default scene, or else the first scene, or else all nodes. Triangles are in the order of a
-///   traversal of the nodes, parents before children.
+///   traversal of the nodes, parents before children. Instances (`EXT_mesh_gpu_instancing`) are expanded. Hidden nodes
+///   (`KHR_node_visibility`) are left out with the meshes and lights below them.
 /// * **Materials**: the base color times the vertex colors is the reflectance, also of metals and unlit materials. Its
 ///   alpha is the opacity, as `alphaMode` states. The emitted color times its strength is a radiance `L`, which gives
 ///   the exitance `π L`.
@@ -47,6 +48,8 @@ use crate::warning::Built;
 /// * **Cameras and punctual lights** (`KHR_lights_punctual`) are read. Intensities in cd and lx are taken as W/sr and
 ///   W/m²; the range of lights is ignored.
 /// * **Buffers and images** may be embedded, or lie in files in the scene's folder or below it.
+/// * **Extensions** that are not read are warnings that say what is missing. Required ones without which surfaces or
+///   light would be wrong are errors.
 ///
 /// # OBJ
 ///

@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use glam::{DVec2, Vec2};
-use image::{ImageReader, Limits};
+use image::{ImageError, ImageReader, Limits};
 
 use crate::builder::SceneBuilder;
 use crate::color::Rgb;
@@ -28,10 +28,12 @@ const MAX_TEXELS: u64 = 1 << 28;
 /// unbounded time.
 const MAX_DECODED: u64 = 1 << 30;
 
-/// Maximum number of bytes of pixels per byte of a file. PNG packs 1,032 bytes into one (the limit of deflate). JPEG
-/// needs a bit for each of the at least six blocks of 256 pixels, which makes 1,024. Images with 16 bits per channel
-/// may need room for two copies.
-const MAX_EXPANSION: u64 = 2200;
+/// Maximum number of pixels per byte of a file. Deflate packs 1,032 bytes into one, and PNG has up to 8 pixels in a byte.
+/// JPEG needs a bit for each of the at least six blocks of 256 pixels, which makes 340.
+const MAX_PIXELS_PER_BYTE: u64 = 8 * 1032;
+
+/// Number of pixels that any file may have.
+const FREE_PIXELS: u64 = 1 << 16;
 
 /// Cached data about an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,20 +182,34 @@ impl Placement {
 
 /// Decodes a PNG or JPEG image, whose values are read as 8-bit sRGB.
 ///
-/// The decoder may use as much memory as a file of this size can need, at most 512 MiB.
+/// The decoder may use 512 MiB. An image with more pixels than a file of this size can have is not decoded.
 ///
 /// # Errors
 ///
-/// The message of the decoder.
+/// The reason why the image cannot be read.
 fn decode(bytes: &[u8]) -> Result<Texture, String> {
-    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    let reader = || ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string());
+    let (width, height) = reader()?.into_dimensions().map_err(|e| reason(&e))?;
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels > FREE_PIXELS.max(MAX_PIXELS_PER_BYTE.saturating_mul(bytes.len() as u64)) {
+        return Err(format!("its {} bytes cannot have {width} × {height} pixels", bytes.len()));
+    }
+    let mut reader = reader()?;
     let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_MEMORY.min(MAX_EXPANSION.saturating_mul(bytes.len() as u64) + (1 << 20)));
+    limits.max_alloc = Some(MAX_MEMORY);
     reader.limits(limits);
-    let pixels = reader.decode().map_err(|e| e.to_string())?.into_rgba8();
-    let (width, height) = pixels.dimensions();
+    let pixels = reader.decode().map_err(|e| reason(&e))?.into_rgba8();
     let (texels, _) = pixels.as_chunks::<4>();
     Texture::new(width, height, texels.to_vec()).ok_or_else(|| "the image has no pixels".to_owned())
+}
+
+/// Returns the reason why an image cannot be decoded.
+fn reason(error: &ImageError) -> String {
+    match error {
+        ImageError::Unsupported(_) => "it is neither a PNG nor a JPEG image".to_owned(),
+        ImageError::Limits(_) => "it needs more than 512 MiB".to_owned(),
+        other => other.to_string(),
+    }
 }
 
 #[cfg(test)]

@@ -104,5 +104,5 @@ fn impossible_lights_are_errors() {
         "{message}"
     );
     let message = error(point(json!("much")), 0);
-    assert!(message.contains("invalid type: string \"much\""), "{message}");
+    assert!(message.contains("lights[0].intensity: found the text \"much\", expected a number"), "{message}");
 }

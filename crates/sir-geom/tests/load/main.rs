@@ -6,6 +6,8 @@ mod as_it_comes;
 mod broken;
 mod files;
 mod gltf;
+mod gltf_as_written;
+mod gltf_extensions;
 mod gltf_lights;
 mod gltf_materials;
 mod obj;

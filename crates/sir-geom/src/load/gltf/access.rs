@@ -11,6 +11,14 @@ use crate::load::gltf::reader::{Reader, lookup};
 /// zeros cost a file nothing.
 const MAX_UNBACKED: usize = 1 << 16;
 
+/// Extensions that compress accessors or buffer views.
+const COMPRESSIONS: [&str; 4] = [
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+    "MESHOPT_compression",
+];
+
 /// Storage format of the components of an element.
 #[derive(Clone, Copy)]
 struct Layout {
@@ -29,9 +37,11 @@ impl Reader<'_> {
         let number = view.buffer.value();
         let (buffer, length) = match (self.buffers.get(number), self.root.buffers.get(number)) {
             (Some(bytes), Some(buffer)) if bytes.is_empty() && buffer.byte_length.0 > 0 => {
-                return Err(self.invalid(format!(
-                    "buffer {number} has no data: it has no uri, and there is no binary chunk for it"
-                )));
+                let reason = match self.compression() {
+                    Some(name) => format!("its views are compressed with {name}, which is not supported"),
+                    None => "it has no uri, and there is no binary chunk for it".to_owned(),
+                };
+                return Err(self.invalid(format!("buffer {number} has no data: {reason}")));
             }
             (Some(bytes), Some(buffer)) => (&bytes[..], buffer.byte_length.0 as usize),
             _ => (&[][..], 0),
@@ -80,6 +90,11 @@ impl Reader<'_> {
                 self.read_elements(view, accessor.byte_offset.unwrap_or_default().0, layout, count, &name)?
             }
             None => {
+                if let (None, Some(compression)) = (&accessor.sparse, self.compression()) {
+                    return Err(self.invalid(format!(
+                        "{name} has no data that is not compressed with {compression}, which is not supported"
+                    )));
+                }
                 let so_far = self.unbacked.get().saturating_add(count);
                 if so_far > MAX_UNBACKED {
                     return Err(self.invalid(format!("{name} has {count} elements, but no data")));
@@ -110,6 +125,11 @@ impl Reader<'_> {
             }
         }
         Ok(elements)
+    }
+
+    /// Returns the compression of geometry that the file uses, if any.
+    fn compression(&self) -> Option<&'static str> {
+        COMPRESSIONS.into_iter().find(|name| self.document.extensions.contains(*name))
     }
 
     /// Returns `count` elements that start at an offset of a buffer view.

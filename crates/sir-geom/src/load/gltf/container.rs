@@ -1,62 +1,37 @@
-//! Reading of the JSON document and its buffers.
+//! Reading of the file and its buffers.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use ::gltf::json::{Root, Value, deserialize};
+use ::gltf::json::Root;
 
 use crate::load::error::LoadError;
 use crate::load::files;
+use crate::load::gltf::document::{self, Document};
 use crate::load::gltf::uri::{self, Reference};
 
-/// Maximum length of a parser's message \[characters\], which may quote the file at length.
-const MAX_MESSAGE_LENGTH: usize = 160;
-
 /// Reads the document, and the binary chunk if the file is a GLB that has one.
-pub(super) fn open(path: &Path) -> Result<(Root, Option<Vec<u8>>), LoadError> {
-    let invalid = |what: String| LoadError::Gltf { path: path.to_owned(), what };
+pub(super) fn open(path: &Path) -> Result<(Document, Option<Vec<u8>>), LoadError> {
+    let invalid = |what: &str| LoadError::Gltf { path: path.to_owned(), what: what.to_owned() };
     let bytes = files::read_scene(path)?;
     let (json, binary) = match &bytes[..] {
-        [] => return Err(invalid("the file is empty".to_owned())),
-        [b'g', b'l', b'T', b'F', ..] => split_glb(&bytes).map_err(|what| invalid(what.to_owned()))?,
+        [] => return Err(invalid("the file is empty")),
+        [b'g', b'l', b'T', b'F', 1, 0, 0, 0, ..] => {
+            return Err(LoadError::GltfVersion { path: path.to_owned(), version: "1.0".to_owned() });
+        }
+        [b'g', b'l', b'T', b'F', ..] => split_glb(&bytes).map_err(invalid)?,
         // JSON should have no byte order mark; readers may ignore one (RFC 8259, section 8.1).
         [0xef, 0xbb, 0xbf, text @ ..] => (text, None),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
+            return Err(invalid("its text is in UTF-16, but must be in UTF-8"));
+        }
+        text if text.starts_with(b"version https://git-lfs") => {
+            return Err(invalid("it is a pointer of Git LFS; `git lfs pull` gets the file itself"));
+        }
         text => (text, None),
     };
-    let message = |error: &dyn std::fmt::Display| files::shortened(&error.to_string(), MAX_MESSAGE_LENGTH);
-    let mut document: Value = deserialize::from_slice(json)
-        .map_err(|e| invalid(format!("its text is not complete, valid JSON ({})", message(&e))))?;
-    forget_unused(&mut document);
-    // For a value of the wrong type, its path is more useful than its line.
-    let root = serde_path_to_error::deserialize(document).map_err(|e| {
-        // The path of the whole document is ".".
-        let place = e.path().to_string();
-        invalid(match place.as_str() {
-            "." => message(e.inner()),
-            place => format!("{}: {}", files::shortened(place, MAX_MESSAGE_LENGTH), message(e.inner())),
-        })
-    })?;
-    Ok((root, binary.map(<[u8]>::to_vec)))
-}
-
-/// Removes what no scene needs, so that errors in it do not matter. Adds the empty list of nodes that a scene may omit,
-/// but that the crate `gltf` requires.
-fn forget_unused(document: &mut Value) {
-    let Some(members) = document.as_object_mut() else { return };
-    for unused in ["animations", "skins"] {
-        members.remove(unused);
-    }
-    for sampler in members.get_mut("samplers").and_then(Value::as_array_mut).into_iter().flatten() {
-        if let Some(sampler) = sampler.as_object_mut() {
-            sampler.retain(|name, _| name == "wrapS" || name == "wrapT");
-        }
-    }
-    for scene in members.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
-        if let Some(scene) = scene.as_object_mut() {
-            scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
-        }
-    }
+    Ok((document::parse(path, json)?, binary.map(<[u8]>::to_vec)))
 }
 
 /// Splits a GLB into the JSON chunk and the binary chunk (glTF 2.0 specification, section 4.4). Further data are

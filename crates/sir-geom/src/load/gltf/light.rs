@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 use crate::color::Rgb;
 use crate::light::{Light, LightKind, Spread};
 use crate::load::error::LoadError;
-use crate::load::gltf::reader::{Reader, lookup};
+use crate::load::gltf::reader::{Reader, label, lookup};
 
 impl Reader<'_> {
     /// Adds the light of a node, if it has one.
@@ -18,24 +18,26 @@ impl Reader<'_> {
         };
         let source = lookup(self.path, self.root, light.light, "a node: light")?;
         let name = source.name.as_deref().or(node.name.as_deref()).unwrap_or_default();
-        let quoted = format!("\"{name}\"");
+        let number = light.light.value();
+        let label = label("light", number, name);
         let Checked::Valid(kind) = source.type_ else {
-            self.notes.name("lights have an unknown type and were ignored", quoted);
+            self.notes.name("lights have an unknown type and were ignored", label);
             return Ok(());
         };
         if source.range.is_some() {
             self.notes.name(
                 "lights have a range, which is ignored: light falls off with the square of the distance alone",
-                quoted.clone(),
+                label.clone(),
             );
         }
         let axis = to_world.transform_vector3(DVec3::NEG_Z).try_normalize();
         let Some(kind) = convert(source, kind, to_world.translation, axis) else {
-            self.notes.name("lights have no valid direction or cone and were ignored", quoted);
+            self.notes.name("lights have no valid direction or cone and were ignored", label);
             return Ok(());
         };
         if let Err((what, rule)) = kind.check() {
-            let what = format!("light {} ({quoted}) has a bad {what}: {rule}", light.light.value());
+            let named = if name.is_empty() { label } else { format!("light {number} ({label})") };
+            let what = format!("{named} has a bad {what}: {rule}");
             return Err(self.invalid(what));
         }
         self.builder.add_light(Light { name: name.to_owned(), kind });

@@ -21,6 +21,9 @@ use crate::load::texture::{Image, Layer, Placement};
 use crate::material::{MAX_REFLECTANCE, Material, Opacity, Sides};
 use crate::texture::Wrap;
 
+/// Index that the crate `gltf` gives to the image of a texture without one.
+const NO_IMAGE: usize = u32::MAX as usize;
+
 impl Reader<'_> {
     /// Returns the material at an index of the file, which is added on first use. `None` is the default material, which
     /// is white if vertices have colors.
@@ -124,7 +127,10 @@ impl Reader<'_> {
             }
             None => [Wrap::Repeat; 2],
         };
-        let image = self.decoded(source.source.value());
+        let image = match source.source.value() {
+            NO_IMAGE => self.without_image(info.index.value()),
+            image => self.decoded(image),
+        };
         Ok(image.map(|image| Layer::new(image, wrap, coordinates(info), sets)))
     }
 
@@ -147,10 +153,21 @@ impl Reader<'_> {
         image
     }
 
+    /// Notes that a texture has no image.
+    fn without_image(&mut self, texture: usize) -> Option<Image> {
+        let formats = self.document.textures.get(&texture).map(|names| names.join(" and "));
+        let why = match formats.filter(|names| !names.is_empty()) {
+            Some(names) => format!("it has no PNG or JPEG image, only one for {names}"),
+            None => "it has no image".to_owned(),
+        };
+        self.notes.name(texture::UNREADABLE, format!("texture {texture} ({why})"));
+        None
+    }
+
     fn pixels(&self, index: usize) -> Pixels {
         let image = self.root.images.get(index);
         match image.map(|image| (&image.uri, image.buffer_view)) {
-            Some((Some(uri), _)) if !uri.starts_with("data:") => match uri::resolve(self.path, uri) {
+            Some((Some(uri), _)) if !uri::is_data(uri) => match uri::resolve(self.path, uri) {
                 Ok(Reference::File(path)) => Pixels::File(path),
                 _ => Pixels::Own(index),
             },
@@ -161,7 +178,7 @@ impl Reader<'_> {
 
     /// Returns the encoded bytes of an image.
     fn image(&self, index: usize, pixels: &Pixels) -> Result<Vec<u8>, String> {
-        let image = self.root.images.get(index).ok_or("it does not exist in a supported format")?;
+        let image = self.root.images.get(index).ok_or("it does not exist")?;
         match (pixels, &image.uri, image.buffer_view) {
             (Pixels::File(path), ..) => {
                 files::read(path).map_err(|source| format!("{}: {source}", path.display()))

@@ -9,8 +9,9 @@ use ::gltf::json::{Index, Root, root::Get};
 
 use crate::builder::SceneBuilder;
 use crate::load::error::LoadError;
+use crate::load::gltf::document::Document;
 use crate::load::gltf::known::{Known, Pixels};
-use crate::load::notes::Notes;
+use crate::load::notes::{Notes, quoted};
 use crate::load::options::LoadOptions;
 use crate::load::texture::{Image, Images};
 
@@ -18,6 +19,8 @@ use crate::load::texture::{Image, Images};
 pub(super) struct Reader<'a> {
     pub(super) path: &'a Path,
     pub(super) root: &'a Root,
+    /// The document with `root`, and what `root` lacks.
+    pub(super) document: &'a Document,
     pub(super) buffers: Vec<Rc<Vec<u8>>>,
     pub(super) options: LoadOptions,
     pub(super) builder: &'a mut SceneBuilder,
@@ -42,6 +45,11 @@ impl Reader<'_> {
     pub(super) fn invalid(&self, what: impl Into<String>) -> LoadError {
         LoadError::Gltf { path: self.path.to_owned(), what: what.into() }
     }
+}
+
+/// Returns the name of an element in quotes or, if it has none, its number.
+pub(super) fn label(kind: &str, number: usize, name: &str) -> String {
+    if name.is_empty() { format!("{kind} {number}") } else { quoted(name) }
 }
 
 /// Returns the element of a file at an index. `what` names the requester and the kind of element in error messages.

@@ -6,8 +6,9 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::load::error::LoadError;
 use crate::load::gltf::camera;
+use crate::load::gltf::instances::unit;
 use crate::load::gltf::primitive::Shared;
-use crate::load::gltf::reader::{Reader, lookup};
+use crate::load::gltf::reader::{Reader, label, lookup};
 
 /// Maximum number of mesh primitives after instances are expanded.
 const MAX_PRIMITIVES: usize = 1 << 23;
@@ -25,47 +26,71 @@ impl Reader<'_> {
         };
         // The stack is explicit, because the depth of a tree from a file has no limit. Children are pushed in reverse
         // order, so that they are visited in file order.
-        let mut stack: Vec<_> = roots.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
+        let mut stack: Vec<_> =
+            roots.into_iter().rev().map(|node| (node, DAffine3::IDENTITY, false)).collect();
         let mut visited = vec![false; self.root.nodes.len()];
-        while let Some((index, parent)) = stack.pop() {
+        while let Some((index, parent, is_parent_hidden)) = stack.pop() {
             let node = lookup(self.path, self.root, index, "a scene or node: node")?;
             if std::mem::replace(&mut visited[index.value()], true) {
                 let what = format!("node {} has two parents or is its own descendant", index.value());
                 return Err(self.invalid(what));
             }
             let to_world = parent * local_transform(node);
-            self.node(node, &to_world)?;
-            stack.extend(node.children.iter().flatten().rev().map(|&child| (child, to_world)));
+            let is_hidden = is_parent_hidden || self.is_hidden(index.value(), node);
+            self.camera(node, &to_world)?;
+            if !is_hidden {
+                self.light(node, &to_world)?;
+                self.mesh(index.value(), node, &to_world)?;
+            }
+            stack.extend(node.children.iter().flatten().rev().map(|&child| (child, to_world, is_hidden)));
         }
         Ok(())
     }
 
-    fn node(&mut self, node: &Node, to_world: &DAffine3) -> Result<(), LoadError> {
-        if let Some(index) = node.camera {
-            let source = lookup(self.path, self.root, index, "a node: camera")?;
-            let name = source.name.as_deref().or(node.name.as_deref()).unwrap_or_default();
-            match camera::convert(source, name, to_world) {
-                Some(camera) => self.builder.add_camera(camera),
-                None => self.notes.name(
-                    "cameras have no valid projection or orientation and were ignored",
-                    format!("\"{name}\""),
-                ),
-            }
+    /// Returns true if a node hides itself and its descendants (`KHR_node_visibility`), which is noted.
+    fn is_hidden(&mut self, index: usize, node: &Node) -> bool {
+        let is_hidden = self.document.nodes.get(&index).is_some_and(|extensions| extensions.is_hidden);
+        if is_hidden {
+            let name = label("node", index, node.name.as_deref().unwrap_or_default());
+            self.notes.name("nodes are hidden; they and the meshes and lights below them were skipped", name);
         }
-        self.light(node, to_world)?;
-        if let Some(index) = node.mesh {
-            if node.skin.is_some() {
-                self.notes.count("skinned meshes are read in the pose of their nodes", 1);
-            }
-            let mesh = lookup(self.path, self.root, index, "a node: mesh")?;
-            self.builder.begin_group(node.name.as_deref().or(mesh.name.as_deref()).unwrap_or_default());
-            // Primitives without triangles count, too: they take time, and a small file can ask for many.
-            self.primitives += mesh.primitives.len();
-            self.check_limit("mesh primitives", self.primitives, MAX_PRIMITIVES)?;
+        is_hidden
+    }
+
+    /// Adds the camera of a node, if it has one. Hidden nodes keep their cameras.
+    fn camera(&mut self, node: &Node, to_world: &DAffine3) -> Result<(), LoadError> {
+        let Some(index) = node.camera else { return Ok(()) };
+        let source = lookup(self.path, self.root, index, "a node: camera")?;
+        let name = source.name.as_deref().or(node.name.as_deref()).unwrap_or_default();
+        match camera::convert(source, name, to_world) {
+            Some(camera) => self.builder.add_camera(camera),
+            None => self.notes.name(
+                "cameras have no valid projection or orientation and were ignored",
+                label("camera", index.value(), name),
+            ),
+        }
+        Ok(())
+    }
+
+    /// Adds all instances of the mesh of a node, if it has one.
+    fn mesh(&mut self, number: usize, node: &Node, to_world: &DAffine3) -> Result<(), LoadError> {
+        let Some(index) = node.mesh else { return Ok(()) };
+        if node.skin.is_some() {
+            self.notes.count("skinned meshes are read in the pose of their nodes", 1);
+        }
+        let mesh = lookup(self.path, self.root, index, "a node: mesh")?;
+        self.builder.begin_group(node.name.as_deref().or(mesh.name.as_deref()).unwrap_or_default());
+        let instances = self.instances(number)?;
+        // Instances without triangles count, too: they take time, and a small file can ask for many.
+        let primitives = instances.count().saturating_mul(mesh.primitives.len().max(1));
+        self.primitives = self.primitives.saturating_add(primitives);
+        self.check_limit("mesh primitives", self.primitives, MAX_PRIMITIVES)?;
+        for instance in 0..instances.count() {
+            let to_world = *to_world * instances.to_node(instance);
             let mut shared = Shared::default();
             for (i, primitive) in mesh.primitives.iter().enumerate() {
                 let what = format!("mesh {}, primitive {i}", index.value());
-                self.primitive(primitive, to_world, &mut shared, &what)?;
+                self.primitive(primitive, &to_world, &mut shared, &what)?;
             }
         }
         Ok(())
@@ -91,9 +116,7 @@ fn local_transform(node: &Node) -> DAffine3 {
         let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
         return DAffine3::from_mat3_translation(DMat3::from_cols(column(0), column(1), column(2)), column(3));
     }
-    // A rotation in single precision is a unit quaternion to seven digits only.
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
-    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
+    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| unit(DQuat::from_array(q.0.map(f64::from))));
     DAffine3::from_scale_rotation_translation(
         node.scale.map_or(DVec3::ONE, vector),
         rotation,
