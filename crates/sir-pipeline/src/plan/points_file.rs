@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use sir_radiosity::Sensor;
 
+use crate::text::back_slashes::{path_help, printable};
 use crate::text::formats::quoted;
 use crate::text::reader::Reader;
 use crate::text::record::Body;
@@ -32,6 +33,7 @@ impl Body for PointsFile {
             },
             _ => PathBuf::new(),
         };
+        let example = path_help(node.text, example);
         if path.as_os_str().is_empty() {
             reader.problem(node.text, "`File` must have the path of a file in quotes", example);
             return None;
@@ -45,7 +47,7 @@ impl Body for PointsFile {
                 None
             }
             Err(error) => {
-                let message = format!("cannot read the points of {}: {error}", path.display());
+                let message = format!("cannot read the points of {}: {error}", printable(&path));
                 reader.problem(node.text, message, example);
                 None
             }

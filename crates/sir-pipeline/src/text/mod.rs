@@ -6,6 +6,7 @@
 //! * `field`, `formats`, `paths`, `span`: the syntax of values, and their defaults.
 //! * `record`: types with named fields, and choices among types, declared once for reader, writer and reference.
 
+pub(crate) mod back_slashes;
 pub(crate) mod diagnostic;
 pub(crate) mod field;
 pub(crate) mod formats;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::text::back_slashes::{path_help, printable};
 use crate::text::field::Format;
 use crate::text::formats::{Text, quoted};
 use crate::text::reader::Reader;
@@ -25,7 +26,7 @@ impl Format for SceneFile {
         let path = reader.folder.join(&text);
         if !Self::EXTENSIONS.contains(&extension(&path).as_str()) {
             let message = format!("the extension of \"{text}\" is not that of a scene file");
-            reader.problem(node.text, message, "use a .gltf, .glb or .obj file");
+            reader.problem(node.text, message, path_help(node.text, "use a .gltf, .glb or .obj file"));
             return None;
         }
         if path.is_file() {
@@ -39,9 +40,12 @@ impl Format for SceneFile {
         neighbors.sort();
         let what = if path.exists() { "is not a file" } else { "does not exist" };
         neighbors.retain(|neighbor| *neighbor != name);
-        let help = did_you_mean(&name, &neighbors)
-            .unwrap_or_else(|| "paths are relative to the folder of the pipeline file".into());
-        reader.problem(node.text, format!("the scene file {} {what}", path.display()), help);
+        let help = did_you_mean(&name, &neighbors);
+        let help = path_help(
+            node.text,
+            help.as_deref().unwrap_or("paths are relative to the folder of the pipeline file"),
+        );
+        reader.problem(node.text, format!("the scene file {} {what}", printable(&path)), help);
         None
     }
 
@@ -75,7 +79,8 @@ impl Format for OutputFile {
         if !self.extensions.contains(&extension(Path::new(&text)).as_str()) {
             let known: Vec<String> = self.extensions.iter().map(|e| format!(".{e}")).collect();
             let message = format!("the name of the output \"{text}\" does not end in {}", known.join(" or "));
-            reader.invalid_value(node, name, message, self.example());
+            let example = format!("write for instance `{name}: {}`", self.example());
+            reader.problem(node.text, message, path_help(node.text, &example));
             return None;
         }
         reader.claim_output(node, &text)

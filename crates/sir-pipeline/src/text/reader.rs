@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::format::list;
 use crate::run_files::{CHECKPOINT, REPORT};
+use crate::text::back_slashes::path_help;
 use crate::text::diagnostic::{Diagnostic, Position};
 use crate::text::ron_tree;
 use crate::text::ron_tree::{Node, Value};
@@ -164,13 +165,13 @@ impl<'a> Reader<'a> {
         if !stays_inside || text.contains('\\') {
             let message = format!("the output path \"{text}\" may lead out of the run directory");
             let help = "write a relative path without `..`; outputs are written into the run directory";
-            self.problem(node.text, message, help);
+            self.problem(node.text, message, path_help(node.text, help));
             return None;
         }
         let path = inside(given);
         let key = PathBuf::from(path.to_string_lossy().to_lowercase());
         if let Some((what, help)) = unusable(&key) {
-            self.problem(node.text, format!("the output path {text:?} {what}"), help);
+            self.problem(node.text, format!("the output path {text:?} {what}"), path_help(node.text, help));
             return None;
         }
         let clash =

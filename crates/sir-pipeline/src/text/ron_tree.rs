@@ -11,6 +11,7 @@ use std::ops::Range;
 use ron::value::RawValue;
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
+use crate::text::back_slashes::SLASHES;
 use crate::text::diagnostic::{Diagnostic, Position};
 use crate::text::literal::float;
 
@@ -74,6 +75,7 @@ fn syntax_error(source: &str, error: &ron::error::SpannedError) -> Diagnostic {
             "put a comma between two values, and close every `(` with `)` and every `[` with `]`"
         }
         E::ExpectedStringEnd => "end the string with `\"`",
+        E::InvalidEscape(_) => SLASHES,
         E::ExpectedMapColon => "a field is written `name: value`",
         E::TrailingCharacters => "a pipeline is one value, `Pipeline(…)`; only comments may follow it",
         E::ExceededRecursionLimit => "a pipeline needs about ten levels of brackets; remove some",

@@ -101,6 +101,27 @@ fn paths() {
     "#);
 }
 
+/// RON reads `\r` as a special character, refuses `\U`, and leaves back slashes of raw strings alone.
+#[test]
+fn paths_with_back_slashes_are_told_to_have_slashes() {
+    for stage in [
+        r#"Load(path: "models\room.obj"),"#,
+        r#"Load(path: "models\\room.obj"),"#,
+        r##"Load(path: r"models\room.obj"),"##,
+        r#"Load(path: "C:\Users\me\room.obj"),"#,
+        r#"Load(path: "C:\work\room.obj"),"#,
+        r#"Load(path: "\x\room.obj"),"#,
+        r#"Load(path: "room.obj"), FirstShot(lines: 10), Save([Image(path: "out\room.png")])"#,
+        r#"Load(path: "room.obj"), FirstShot(lines: 10), Save([Image(path: "out\\room.png")])"#,
+        r#"Load(path: "room.obj"), FirstShot(lines: 10), Save([Image(path: "out\room")])"#,
+        r#"Load(path: "room.obj"), FirstShot(lines: 10), Sensors(name: "s", at: File("data\table.txt"))"#,
+    ] {
+        let shown = stages(&[stage]);
+        assert!(shown.contains("help: write `/` in paths, also on Windows"), "{stage}: {shown}");
+        assert!(!shown.contains('\r') && !shown.contains('\t'), "{stage}: {shown:?}");
+    }
+}
+
 #[test]
 fn the_new_form_of_a_field_is_told() {
     let shown = stages(&[
