@@ -111,7 +111,7 @@ impl Checkpoints {
         self.last = Instant::now();
         let written = written.map_err(|source| {
             let _ = std::fs::remove_file(&part);
-            CheckpointError::Write { path: self.path.clone(), source }
+            CheckpointError::Write { path: self.path.clone(), earlier: self.path.exists(), source }
         });
         agree(comm, written)
     }

@@ -28,11 +28,17 @@ pub enum RunError {
 /// Error while saving or restoring a checkpoint.
 #[derive(Debug, Error)]
 pub enum CheckpointError {
-    /// The checkpoint cannot be written. The previous one is still there.
-    #[error("cannot write the checkpoint {}; free disk space or use another directory (an earlier checkpoint is still intact, and the run can be resumed from it)", path.display())]
+    /// The checkpoint cannot be written. An earlier one, if any, is still there.
+    #[error(
+        "cannot write the checkpoint {}; free disk space or use another directory{}",
+        path.display(),
+        if *earlier { " (an earlier checkpoint is still intact, and the run can be resumed from it)" } else { "" }
+    )]
     Write {
         /// Path of the checkpoint.
         path: PathBuf,
+        /// True if there is an earlier checkpoint.
+        earlier: bool,
         /// Error of the operating system.
         source: io::Error,
     },

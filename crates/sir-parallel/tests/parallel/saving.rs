@@ -24,14 +24,16 @@ fn stop(
     job.run(&ROOM, &mut executor, None)
 }
 
-/// Fails unless the message names the file and states that an earlier checkpoint can still be used.
+/// Fails unless the message names the file, and states that an earlier checkpoint can still be used exactly if there is
+/// one.
 #[track_caller]
 fn assert_not_written(end: Result<Outcome, RunError>, file: &Path) {
     let Err(RunError::Checkpoint(error)) = end else { panic!("no checkpoint error") };
     let CheckpointError::Write { path, .. } = &error else { panic!("{error:?}") };
     assert_eq!(path, file);
     let message = error.to_string();
-    assert!(message.contains(file.to_str().unwrap()) && message.contains("still intact"), "{message}");
+    assert!(message.contains(file.to_str().unwrap()), "{message}");
+    assert_eq!(message.contains("still intact"), file.exists(), "{message}");
     assert!(error.source().is_some());
 }
 
