@@ -46,7 +46,8 @@ pub enum Error {
     },
     /// The run does not fit the memory of this machine.
     #[error(
-        "the run needs {needed} of memory in addition to its scene, but only {available} are available; make fewer patches or \
+        "the run needs {needed} of memory in addition to its scene, but only {available} are available (of the machine, or within the \
+         limits of a container, batch job or `ulimit`); make fewer patches or \
          smaller pictures, end other programs, or use a machine with more memory"
     )]
     Memory {

@@ -66,6 +66,7 @@
 //! | [`info`] | a scene file | its contents, and recommended pipeline settings |
 //! | [`view_factors`] | a scene file | view factors of its parts |
 
+mod available_memory;
 pub mod check;
 mod error;
 mod error_kind;
