@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
+use sir_pipeline::fingerprint::PROGRAM_VERSION;
 
 use crate::experiment::ExperimentArgs;
 use crate::info::InfoArgs;
@@ -46,7 +47,7 @@ Exit codes: 0 success; 1 failure; 2 invalid usage or pipeline; 130 interrupted."
 /// Computes the light on every part of every surface of a scene, with all diffuse reflections between the surfaces, and
 /// states the accuracy of the result.
 #[derive(Debug, Parser)]
-#[command(name = "sir", version, after_long_help = EXAMPLES, after_help = "`sir --help` shows examples and exit codes.")]
+#[command(name = "sir", version = PROGRAM_VERSION, after_long_help = EXAMPLES, after_help = "`sir --help` shows examples and exit codes.")]
 pub struct Args {
     /// Command to execute.
     #[command(subcommand)]
@@ -64,7 +65,7 @@ pub enum Command {
     Run(RunArgs),
     /// Continue an interrupted run.
     ///
-    /// A run writes a checkpoint every few minutes, and when Ctrl-C or SIGTERM stops it. The result has the same bytes
+    /// A run writes a checkpoint every few minutes, and when Ctrl-C, SIGTERM or a closed terminal stops it. The result has the same bytes
     /// as that of an uninterrupted run, on any number of threads and ranks.
     Resume {
         /// The run directory.

@@ -117,7 +117,7 @@ pub fn run_together(
     let prepared = agree(comm, prepare(&pipeline, progress))?;
     agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
     let seed = options.seed.unwrap_or(pipeline.seed);
-    let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared.model);
+    let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared);
     agree(comm, same_everywhere(comm, fingerprint))?;
     let directory = agree(
         comm,
@@ -179,7 +179,7 @@ pub fn resume_together(
     // The warnings were shown when the run began.
     let prepared = agree(comm, prepare(&pipeline, &NoProgress))?;
     agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
-    let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared.model);
+    let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared);
     agree(comm, saved_run::check_fingerprint(directory, &head, fingerprint))?;
     if comm.is_first() {
         saved_run::clean_up(directory);

@@ -106,7 +106,8 @@ pub(crate) fn check_fingerprint(directory: &Path, head: &Head, now: Fingerprint)
     Err(refuse(
         directory,
         format!(
-            "the scene {scene} has changed; restore it, or start a new run (files of points count as part of the scene)"
+            "the scene {scene} has changed; restore it, or start a new run (its cameras and names and files of points are part \
+             of the scene)"
         ),
     ))
 }
