@@ -46,6 +46,17 @@ fn temporary_name(path: &Path) -> io::Result<PathBuf> {
     Ok(path.with_file_name(hidden))
 }
 
+/// Returns true if a file of this name can only be an unfinished file of a process that was killed while
+/// [`write_atomically`] wrote it.
+#[must_use]
+pub fn is_partial_file(name: &str) -> bool {
+    let inner = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
+    let process = inner.and_then(|inner| inner.rsplit_once('.'));
+    process.is_some_and(|(name, id)| {
+        !name.is_empty() && !id.is_empty() && id.bytes().all(|b| b.is_ascii_digit())
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -73,6 +84,20 @@ mod tests {
         assert_eq!(names(dir.path()), ["a.txt"]);
         write_atomically(&path, |f| f.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    fn unfinished_files_are_told_from_others() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.txt");
+        write_atomically(&path, |_| {
+            assert!(names(dir.path()).iter().all(|name| is_partial_file(name)));
+            Ok(())
+        })
+        .unwrap();
+        for other in ["a.txt", ".a.txt.part", ".a.12x.part", "a.txt.1.part", "..1.part", ".1.part", ".part"] {
+            assert!(!is_partial_file(other), "{other}");
+        }
     }
 
     #[test]

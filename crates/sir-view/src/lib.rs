@@ -73,7 +73,7 @@ mod table;
 mod tone;
 mod viewpoint;
 
-pub use atomic_file::write_atomically;
+pub use atomic_file::{is_partial_file, write_atomically};
 pub use display::{DisplayMesh, DisplayPiece, DisplayVertex};
 pub use error::ViewError;
 pub use exposure::Exposure;
