@@ -46,9 +46,9 @@ pub enum Error {
     },
     /// The run does not fit the memory of this machine.
     #[error(
-        "the run needs {needed} of memory in addition to its scene, but only {available} are available (of the machine, or within the \
-         limits of a container, batch job or `ulimit`); make fewer patches or \
-         smaller pictures, end other programs, or use a machine with more memory"
+        "the run needs {needed} of memory in addition to its scene, but only {available} are available (of the machine, or \
+         within the limits of a container, batch job or `ulimit`); make fewer patches or smaller pictures, end other \
+         programs, raise the limit, or use a machine with more memory"
     )]
     Memory {
         /// Memory needed in addition to the scene, as `sir check` counts it.
@@ -70,6 +70,20 @@ pub enum Error {
     ExistsInterrupted {
         /// The directory.
         directory: PathBuf,
+    },
+    /// Another run uses the directory.
+    #[error("{} is in use by another run; wait until that run ends, or choose another directory", directory.display())]
+    InUse {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// The run directory exists, but no file can be written to it.
+    #[error("cannot write to the directory {}; allow it, or choose another directory", path.display())]
+    NotWritable {
+        /// The directory.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: io::Error,
     },
     /// The run directory cannot be created.
     #[error("cannot create the directory {}; choose another", path.display())]
@@ -180,6 +194,11 @@ impl Error {
         move |source| Self::Directory { path: path.to_owned(), source }
     }
 
+    /// Returns a function that wraps the error of writing to a directory.
+    pub(crate) fn not_writable(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::NotWritable { path: path.to_owned(), source }
+    }
+
     /// Returns the kind of failure.
     #[must_use]
     pub fn kind(&self) -> ErrorKind {
@@ -190,6 +209,7 @@ impl Error {
             | Self::LongPipeline { .. }
             | Self::Exists { .. }
             | Self::ExistsInterrupted { .. }
+            | Self::InUse { .. }
             | Self::CannotResume { .. } => ErrorKind::Usage,
             Self::Interrupted { .. }
             | Self::InterruptedSaving { .. }

@@ -137,6 +137,16 @@ impl Pipeline {
         })
     }
 
+    /// Returns the paths of all files in the run directory that the stages write.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let sensors = self.stages.iter().filter_map(|stage| match &stage.action {
+            Action::Sensors(sensors) => Some(sensors),
+            _ => None,
+        });
+        let measured = sensors.flat_map(|sensors| [Some(sensors.table()), sensors.map()]).flatten();
+        self.outputs().map(|output| output.path().to_owned()).chain(measured).collect()
+    }
+
     /// Returns the path of the scene file.
     #[must_use]
     pub fn scene_path(&self) -> &Path {

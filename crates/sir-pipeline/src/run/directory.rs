@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
+use crate::progress::Progress;
+use crate::run::lock::{DirectoryLock, check_unused};
 use crate::run_files::{CHECKPOINT, REPORT};
 
 /// Returns the name for runs of a pipeline: the stem of its file, or the name of its folder if the file is called
@@ -26,18 +28,35 @@ pub fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Creates the requested run directory, and removes the report of an older run in it.
-pub(crate) fn make_given(directory: &Path, force: bool) -> Result<(), Error> {
-    check_given(directory, force)?;
+/// Creates and locks the requested run directory, and removes the report and the checkpoint of an older run in it.
+pub(crate) fn make_given(
+    directory: &Path,
+    force: bool,
+    progress: &dyn Progress,
+) -> Result<DirectoryLock, Error> {
     fs::create_dir_all(directory).map_err(Error::directory(directory))?;
-    match fs::remove_file(directory.join(REPORT)) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(Error::directory(directory)(error)),
-        _ => Ok(()),
+    let lock = DirectoryLock::acquire(directory, progress)?;
+    check_empty(directory, force)?;
+    for name in [REPORT, CHECKPOINT] {
+        match fs::remove_file(directory.join(name)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                return Err(Error::not_writable(directory)(error));
+            }
+            _ => {}
+        }
     }
+    Ok(lock)
+}
+
+/// Returns an error if another run uses the directory, or if it holds a result or the checkpoint of an interrupted run,
+/// unless `force` is true. Writes nothing.
+pub(crate) fn check_given(directory: &Path, force: bool) -> Result<(), Error> {
+    check_unused(directory)?;
+    check_empty(directory, force)
 }
 
 /// Returns an error if the directory holds a result, or the checkpoint of an interrupted run, unless `force` is true.
-pub(crate) fn check_given(directory: &Path, force: bool) -> Result<(), Error> {
+fn check_empty(directory: &Path, force: bool) -> Result<(), Error> {
     if !force && directory.join(REPORT).exists() {
         return Err(Error::Exists { directory: directory.to_owned() });
     }
@@ -65,6 +84,7 @@ pub fn make_new(base: &Path, name: &str) -> Result<PathBuf, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::progress::NoProgress;
 
     #[test]
     fn runs_are_named_after_their_pipeline() {
@@ -84,14 +104,27 @@ mod tests {
     fn a_result_is_replaced_only_by_force() {
         let base = tempfile::tempdir().unwrap();
         let directory = base.path().join("deep/run");
-        make_given(&directory, false).unwrap();
-        make_given(&directory, false).unwrap();
+        let make = |force| make_given(&directory, force, &NoProgress);
+        make(false).unwrap();
+        make(false).unwrap();
         fs::write(directory.join(REPORT), "{}").unwrap();
-        assert!(matches!(make_given(&directory, false), Err(Error::Exists { .. })));
-        make_given(&directory, true).unwrap();
-        assert!(!directory.join(REPORT).exists());
+        assert!(matches!(make(false), Err(Error::Exists { .. })));
+        make(true).unwrap();
         fs::write(directory.join(CHECKPOINT), "").unwrap();
-        assert!(matches!(make_given(&directory, false), Err(Error::ExistsInterrupted { .. })));
-        make_given(&directory, true).unwrap();
+        assert!(matches!(make(false), Err(Error::ExistsInterrupted { .. })));
+        make(true).unwrap();
+        assert_eq!(fs::read_dir(&directory).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_directory_in_use_is_not_replaced_even_by_force() {
+        let base = tempfile::tempdir().unwrap();
+        let _lock = make_given(base.path(), false, &NoProgress).unwrap();
+        fs::write(base.path().join(CHECKPOINT), "").unwrap();
+        for force in [false, true] {
+            assert!(matches!(check_given(base.path(), force), Err(Error::InUse { .. })));
+            assert!(matches!(make_given(base.path(), force, &NoProgress), Err(Error::InUse { .. })));
+        }
+        assert!(base.path().join(CHECKPOINT).exists());
     }
 }

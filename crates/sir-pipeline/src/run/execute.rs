@@ -24,6 +24,7 @@ use crate::progress::{NoProgress, Progress, of_rank};
 use crate::ranks::{agree, same_everywhere};
 use crate::report::result::{PipelineReport, Report, SceneReport, Time, VERSION};
 use crate::run::directory::{absolute, check_given, make_given, make_new, run_name};
+use crate::run::lock::DirectoryLock;
 use crate::run::resume as saved_run;
 use crate::run::resume::Head;
 use crate::run_files::{CHECKPOINT, REPORT};
@@ -119,12 +120,17 @@ pub fn run_together(
     let seed = options.seed.unwrap_or(pipeline.seed);
     let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared);
     agree(comm, same_everywhere(comm, fingerprint))?;
-    let directory = agree(
+    let (directory, lock) = agree(
         comm,
         match (given, comm.is_first()) {
-            (_, false) => Ok(PathBuf::new()),
-            (Some(directory), _) => make_given(directory, options.force).map(|()| directory.to_owned()),
-            (None, _) => make_new(&options.results, &run_name(&pipeline.path)),
+            (_, false) => Ok((PathBuf::new(), None)),
+            (Some(directory), _) => {
+                make_given(directory, options.force, progress).map(|lock| (directory.to_owned(), Some(lock)))
+            }
+            (None, _) => make_new(&options.results, &run_name(&pipeline.path)).and_then(|directory| {
+                let lock = DirectoryLock::acquire(&directory, progress)?;
+                Ok((directory, Some(lock)))
+            }),
         },
     )?;
     let report = Report {
@@ -147,7 +153,8 @@ pub fn run_together(
         report,
     };
     let (pipeline, prepared) = (&pipeline, &prepared);
-    Run { pipeline, prepared, directory, options, comm, progress, watch, seconds_before: 0.0, head }
+    let seconds_before = 0.0;
+    Run { pipeline, prepared, directory, lock, options, comm, progress, watch, seconds_before, head }
         .finish(None)
 }
 
@@ -165,7 +172,8 @@ pub fn resume(directory: &Path, options: &RunOptions) -> Result<RunResult, Error
 ///
 /// # Errors
 ///
-/// If there is no checkpoint, or it belongs to another program, pipeline or scene, or if [`run_together`] would fail.
+/// If there is no checkpoint, if it belongs to another program, pipeline or scene, if another run uses the directory, or
+/// if [`run_together`] would fail.
 pub fn resume_together(
     directory: &Path,
     options: &RunOptions,
@@ -173,7 +181,7 @@ pub fn resume_together(
 ) -> Result<RunResult, Error> {
     let watch = Stopwatch::start();
     let progress = of_rank(&*options.progress, comm);
-    let (saved, head) = saved_run::open(directory, comm)?;
+    let (lock, saved, head) = saved_run::open(directory, comm, progress)?;
     let pipeline = agree(comm, saved_run::pipeline(directory, &head))?;
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     // The warnings were shown when the run began.
@@ -182,13 +190,14 @@ pub fn resume_together(
     let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared);
     agree(comm, saved_run::check_fingerprint(directory, &head, fingerprint))?;
     if comm.is_first() {
-        saved_run::clean_up(directory);
+        saved_run::clean_up(directory, &pipeline);
     }
     let directory = directory.to_owned();
     // A run that had not begun a stage with lines starts with the first stage.
     let saved = (head.stage > 0).then_some(saved);
     let (pipeline, prepared, seconds_before) = (&pipeline, &prepared, head.report.time.seconds);
-    Run { pipeline, prepared, directory, options, comm, progress, watch, seconds_before, head }.finish(saved)
+    Run { pipeline, prepared, directory, lock, options, comm, progress, watch, seconds_before, head }
+        .finish(saved)
 }
 
 /// A run in progress.
@@ -196,6 +205,8 @@ pub(crate) struct Run<'a> {
     pub(crate) pipeline: &'a Pipeline,
     pub(crate) prepared: &'a Prepared,
     pub(crate) directory: PathBuf,
+    /// Lock of the directory; only on the first rank.
+    pub(crate) lock: Option<DirectoryLock>,
     pub(crate) options: &'a RunOptions,
     pub(crate) comm: &'a dyn Communicator,
     pub(crate) progress: &'a dyn Progress,
@@ -220,12 +231,13 @@ impl Run<'_> {
         self.stages(&mut checkpoints, saved).map_err(|error| name_directory(error, &self.directory))?;
         let peak_memory = largest_peak(self.comm);
         self.head.report.time = Time { peak_memory, ..Time::of(self.seconds()) };
-        let Self { directory, comm, head, .. } = self;
+        let Self { directory, lock, comm, head, .. } = self;
         let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
         agree(comm, written.map_err(|error| name_directory(error, &directory)))?;
         if comm.is_first() {
             checkpoints.remove();
         }
+        drop(lock);
         Ok(RunResult { directory, report: head.report })
     }
 

@@ -1,12 +1,13 @@
 //! Runs a pipeline: its stages in order, checkpoints, files and the report.
 //!
-//! * `execute`: starts or resumes a run; `resume`: contents of a checkpoint; `directory`: run directories.
+//! * `execute`: starts or resumes a run; `resume`: contents of a checkpoint; `directory`: run directories, `lock`: their locks.
 //! * `stages`: one stage after the other; `lighting`: the light so far; `repeat`: the stage `Repeat`.
 //! * `save`: images, lit scenes and tables; `sensor_files`: files of sensors.
 
 pub(crate) mod directory;
 pub(crate) mod execute;
 mod lighting;
+pub(crate) mod lock;
 mod repeat;
 pub(crate) mod resume;
 pub(crate) mod save;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
 use crate::format::list;
-use crate::run_files::{CHECKPOINT, REPORT};
+use crate::run_files::RESERVED;
 use crate::text::back_slashes::path_help;
 use crate::text::diagnostic::{Diagnostic, Position};
 use crate::text::ron_tree;
@@ -198,7 +198,7 @@ const MAX_NAME: usize = 255;
 /// Returns what makes an output path unusable, and what to do.
 fn unusable(path: &Path) -> Option<(&'static str, &'static str)> {
     let names: Vec<_> = path.components().map(|c| c.as_os_str().to_string_lossy()).collect();
-    if names.first().is_some_and(|name| [REPORT, CHECKPOINT].contains(&name.as_ref())) {
+    if names.first().is_some_and(|name| RESERVED.contains(&name.as_ref())) {
         return Some(("is reserved for the run itself", "choose another name"));
     }
     if names.iter().any(|name| name.contains(char::is_control)) {

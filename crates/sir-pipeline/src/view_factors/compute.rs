@@ -15,6 +15,7 @@ use crate::fingerprint;
 use crate::format::grouped;
 use crate::progress::{Progress, of_rank};
 use crate::ranks::{agree, same_everywhere};
+use crate::run::lock::{DirectoryLock, check_unused};
 use crate::view_factors::error::ViewFactorsError;
 use crate::view_factors::files;
 use crate::view_factors::options::{By, ViewFactorsOptions};
@@ -43,7 +44,7 @@ pub fn view_factors(
     stop: &Arc<AtomicBool>,
 ) -> Result<ViewFactorsResult, Error> {
     let progress = of_rank(progress, comm);
-    let (model, grouping, warnings) = agree(comm, prepare(options, comm, progress))?;
+    let (model, grouping, warnings, lock) = agree(comm, prepare(options, comm, progress))?;
     let settings = options.settings;
     agree(comm, same_everywhere(comm, fingerprint::of_view_factors(&model, &grouping, &settings)))?;
 
@@ -68,16 +69,19 @@ pub fn view_factors(
         _ => Ok(Vec::new()),
     };
     let files = agree(comm, written)?;
+    drop(lock);
     Ok(ViewFactorsResult { report, files })
 }
 
-/// Reads the scene and makes the groups. On the first rank, also checks and creates the output directory.
+/// Reads the scene and makes the groups. On the first rank, also checks, creates and locks the output directory.
 fn prepare(
     options: &ViewFactorsOptions,
     comm: &dyn Communicator,
     progress: &dyn Progress,
-) -> Result<(Model, Grouping, Vec<String>), Error> {
-    if let Some(directory) = options.out.as_deref().filter(|_| comm.is_first()) {
+) -> Result<(Model, Grouping, Vec<String>, Option<DirectoryLock>), Error> {
+    let directory = options.out.as_deref().filter(|_| comm.is_first());
+    if let Some(directory) = directory {
+        check_unused(directory)?;
         check(directory, options.force)?;
     }
     progress.note(&format!("Load: {}", options.scene.display()));
@@ -87,10 +91,11 @@ fn prepare(
     let grouping = groups(options, &built.scene)?;
     // One patch per triangle is always possible.
     let model = Model::new(built.scene, Subdivision::PerTriangle).map_err(ViewFactorsError::from)?;
-    if let Some(directory) = options.out.as_deref().filter(|_| comm.is_first()) {
+    let lock = directory.map(|directory| {
         fs::create_dir_all(directory).map_err(Error::directory(directory))?;
-    }
-    Ok((model, grouping, warnings))
+        DirectoryLock::acquire(directory, progress)
+    });
+    Ok((model, grouping, warnings, lock.transpose()?))
 }
 
 fn groups(options: &ViewFactorsOptions, scene: &Scene) -> Result<Grouping, ViewFactorsError> {
