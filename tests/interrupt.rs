@@ -65,6 +65,13 @@ fn finish(folder: &Path, out: &str) {
     assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
 }
 
+/// Waits until a file exists.
+fn wait_for(path: &Path) {
+    while !path.exists() {
+        sleep(Duration::from_millis(10));
+    }
+}
+
 fn signal(child: &Child, name: &str) {
     // `kill` of the shell, because not every system has a program of that name.
     Command::new("sh").args(["-c", &format!("kill {name} {}", child.id())]).status().unwrap();
@@ -133,20 +140,22 @@ fn a_run_that_is_killed_twenty_times_gives_the_same_bytes() {
 }
 
 #[test]
-fn ctrl_c_and_sigterm_save_the_state_and_exit_with_130() {
+fn signals_save_the_state_and_exit_with_130() {
     for (name, text) in
         [("batches", PIPELINE.to_owned()), ("replicas", in_replicas()), ("repeats", repeated())]
     {
         let folder = folder(&text);
         let folder = folder.path();
         finish(folder, "whole");
-        for which in ["-INT", "-TERM", "-INT"] {
+        for which in ["-INT", "-TERM", "-HUP"] {
             let child = start(folder, "stopped", 1, "300");
-            while !folder.join("stopped/checkpoint").exists() {
-                sleep(Duration::from_millis(10));
-            }
+            wait_for(&folder.join("stopped/checkpoint"));
             sleep(Duration::from_millis(300));
             signal(&child, which);
+            if which == "-HUP" {
+                // A closed terminal sends it twice.
+                signal(&child, which);
+            }
             let Output { status, stderr, .. } = child.wait_with_output().unwrap();
             let stderr = String::from_utf8(stderr).unwrap();
             assert_eq!(status.code(), Some(130), "{name}: {stderr}");
@@ -155,11 +164,86 @@ fn ctrl_c_and_sigterm_save_the_state_and_exit_with_130() {
                 "{stderr}"
             );
             assert!(!folder.join("stopped/result.json").exists());
+            assert!(!folder.join("stopped/.lock").exists());
         }
         let again = sir().args(["run", "work.ron", "--out", "stopped"]).current_dir(folder).output().unwrap();
         assert_eq!(again.status.code(), Some(2), "an interrupted run is not replaced by accident");
         finish(folder, "stopped");
         assert_same(folder, "stopped", "whole");
+    }
+}
+
+#[test]
+fn a_run_started_by_nohup_outlives_its_terminal() {
+    let folder = folder(PIPELINE);
+    let folder = folder.path();
+    let mut command = Command::new("sh");
+    command.args(["-c", "trap '' HUP; exec \"$0\" run work.ron --out run", env!("CARGO_BIN_EXE_sir")]);
+    let child = command.current_dir(folder).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    wait_for(&folder.join("run/checkpoint"));
+    signal(&child, "-HUP");
+    let Output { status, stderr, .. } = child.wait_with_output().unwrap();
+    assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
+}
+
+#[test]
+fn a_directory_in_use_is_refused_until_its_run_has_ended() {
+    let folder = folder(PIPELINE);
+    let folder = folder.path();
+    let mut child = start(folder, "used", 1, "0.05");
+    wait_for(&folder.join("used/checkpoint"));
+    for (args, text) in [
+        (&["run", "work.ron", "--out", "used"][..], "used is in use by another run"),
+        (&["run", "work.ron", "--out", "used", "--force"], "used is in use by another run"),
+        (&["resume", "used"], "the run in used cannot be resumed: it is in use by another run"),
+    ] {
+        let Output { status, stderr, .. } = sir().args(args).current_dir(folder).output().unwrap();
+        let stderr = String::from_utf8(stderr).unwrap();
+        assert_eq!(status.code(), Some(2), "{args:?}: {stderr}");
+        assert!(stderr.contains(text) && !stderr.contains("interrupted"), "{args:?}: {stderr}");
+    }
+    assert!(child.try_wait().unwrap().is_none(), "the run must take longer than the refusals");
+    signal(&child, "-KILL");
+    child.wait().unwrap();
+    // A killed run holds no lock.
+    finish(folder, "used");
+    finish(folder, "whole");
+    assert_same(folder, "used", "whole");
+}
+
+/// A folder with the name of the lock emulates a folder in which no file can be created, which nothing is for root.
+#[test]
+fn a_directory_that_cannot_be_written_to_is_named() {
+    let folder = folder(PIPELINE);
+    let folder = folder.path();
+    fs::create_dir_all(folder.join("fixed/.lock")).unwrap();
+    let Output { status, stderr, .. } =
+        sir().args(["run", "work.ron", "--out", "fixed"]).current_dir(folder).output().unwrap();
+    let stderr = String::from_utf8(stderr).unwrap();
+    assert_eq!(status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("error: cannot write to the directory fixed; "), "{stderr}");
+    assert!(!stderr.contains("checkpoint"), "{stderr}");
+}
+
+/// Environment variables of launchers stand in for the launchers.
+#[cfg(not(feature = "mpi"))]
+#[test]
+fn several_processes_need_mpi() {
+    let folder = folder(PIPELINE);
+    for (variable, size, code) in [
+        ("OMPI_COMM_WORLD_SIZE", "4", 1),
+        ("PMI_SIZE", "4", 1),
+        ("SLURM_STEP_NUM_TASKS", "4", 1),
+        ("SLURM_STEP_NUM_TASKS", "1", 2),
+        ("SLURM_NTASKS", "4", 2),
+    ] {
+        // Without the refusal, the command fails because there is no such run.
+        let mut command = sir();
+        let Output { status, stderr, .. } =
+            command.args(["resume", "none"]).env(variable, size).current_dir(folder.path()).output().unwrap();
+        let stderr = String::from_utf8(stderr).unwrap();
+        assert_eq!(status.code(), Some(code), "{variable}={size}: {stderr}");
+        assert_eq!(stderr.contains("built without MPI") && stderr.contains(variable), code == 1, "{stderr}");
     }
 }
 
@@ -180,6 +264,14 @@ fn a_full_disk_is_an_error_that_leaves_the_checkpoint_before_it() {
     assert!(last.contains("still intact") && last.contains("too large"), "{stderr}");
     finish(folder, "full");
     assert_same(folder, "full", "whole");
+    // Without room for any checkpoint, there is none to resume from.
+    let script = script.replace("ulimit -f 100", "ulimit -f 0").replace("--out full", "--out empty");
+    let Output { status, stderr, .. } =
+        Command::new("sh").args(["-c", &script, sir]).current_dir(folder).output().unwrap();
+    let stderr = String::from_utf8(stderr).unwrap();
+    assert_eq!(status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("error: cannot write the checkpoint empty/checkpoint; "), "{stderr}");
+    assert!(!stderr.contains("intact") && !stderr.contains("resumed"), "{stderr}");
 }
 
 #[test]
@@ -213,6 +305,13 @@ fn what_cannot_be_resumed_is_refused_with_the_reason() {
     };
     let error = with("work.ron", &text("8_000_000", "9_000_000"));
     assert!(error.contains("work.ron has changed; restore it, or start a new run"), "{error}");
+    let other_camera = |bytes: Vec<u8>| {
+        let mut scene: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
+        scene["cameras"][0]["perspective"]["yfov"] = 0.5.into();
+        serde_json::to_vec(&scene).unwrap()
+    };
+    let error = with("furnace.gltf", &other_camera);
+    assert!(error.contains("furnace.gltf has changed; restore it, or start a new run"), "{error}");
     let error = with("furnace.gltf", &text("0.5", "0.25"));
     assert!(error.contains("furnace.gltf has changed; restore it, or start a new run"), "{error}");
     let flip = |mut bytes: Vec<u8>| {

@@ -55,7 +55,9 @@ fn pipeline_hint(error: &Error) -> Option<String> {
             "`sir resume {}` continues the run, `--out DIR` chooses another directory, `--force` replaces the existing run",
             directory.display()
         ),
-        Error::Directory { .. } => "`--out DIR` chooses another directory".into(),
+        Error::Directory { .. } | Error::NotWritable { .. } | Error::InUse { .. } => {
+            "`--out DIR` chooses another directory".into()
+        }
         Error::Interrupted { directory, .. }
         | Error::InterruptedSaving { directory }
         | Error::InterruptedMeasuring { directory }

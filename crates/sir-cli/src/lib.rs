@@ -2,7 +2,7 @@
 //! the work: [`sir_pipeline`] runs pipelines, [`sir_study`] makes studies, and [`sir_validate`] compares with known
 //! answers.
 //!
-//! Results go to files and standard output, everything else to standard error. [`main`] is the whole program;
+//! Results go to files and standard output, everything else to standard error (`output`). [`main`] is the whole program;
 //! [`main_from`] is the same with given arguments (`examples/own_command.rs`). The functions that format the printed
 //! texts are public, so that other programs can use them.
 //!
@@ -14,6 +14,8 @@
 //! }
 //! ```
 
+#![warn(clippy::print_stderr)]
+
 pub mod args;
 pub mod compare;
 mod error;
@@ -22,6 +24,7 @@ pub mod experiment;
 pub mod info;
 mod interrupt;
 mod numbers;
+mod output;
 pub mod progress;
 pub mod scaling;
 pub mod summary;
@@ -29,7 +32,6 @@ pub mod validate;
 mod viewfactors;
 
 use std::ffi::OsString;
-use std::io::Write as _;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -60,17 +62,17 @@ pub fn main_from(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) ->
     let args = match Args::try_parse_from(args) {
         Ok(args) => args,
         Err(error) => {
-            // The parser returns help and version as errors, too. A failure to print them cannot be reported.
-            let _ = error.print();
-            return if error.use_stderr() { exit::code(ErrorKind::Usage) } else { ExitCode::SUCCESS };
+            let printed = error.print();
+            // The parser returns help and version as errors, too.
+            return if error.use_stderr() {
+                exit::code(ErrorKind::Usage)
+            } else {
+                output::exit_code(printed)
+            };
         }
     };
     match execute(args.command) {
-        Ok(text) => match std::io::stdout().write_all(text.as_bytes()) {
-            Ok(()) => ExitCode::SUCCESS,
-            // The reader has closed the output or cannot take it. The failure cannot be reported there.
-            Err(_) => ExitCode::FAILURE,
-        },
+        Ok(text) => output::print_text(&text),
         Err(code) => code,
     }
 }
@@ -91,7 +93,10 @@ fn execute(command: Command) -> Result<String, ExitCode> {
 
 /// Prints an error to standard error and returns its exit code.
 fn show(error: &CliError) -> ExitCode {
-    eprint!("{}", exit::message(error));
+    let message = exit::message(error);
+    if !message.is_empty() {
+        output::print_note(message.trim_end_matches('\n'));
+    }
     exit::code(error.kind())
 }
 

@@ -8,6 +8,8 @@ use sir_pipeline::Progress;
 use sir_pipeline::format::grouped;
 use sir_pipeline::progress::{Meter, PAUSE, StageKind};
 
+use crate::output::print_note;
+
 /// Maximum number of warnings that are printed one by one.
 const MAX_WARNINGS: usize = 10;
 
@@ -45,16 +47,19 @@ impl Default for Stderr {
 impl Progress for Stderr {
     fn warnings(&self, warnings: &[String]) {
         for warning in warnings.iter().take(MAX_WARNINGS) {
-            eprintln!("warning: {warning}");
+            print_note(format_args!("warning: {warning}"));
         }
         if warnings.len() > MAX_WARNINGS {
-            eprintln!("warning: … and {} more, see result.json", warnings.len() - MAX_WARNINGS);
+            print_note(format_args!(
+                "warning: … and {} more, see result.json",
+                warnings.len() - MAX_WARNINGS
+            ));
         }
     }
 
     fn message(&self, text: &str) {
         if *self != Self::Quiet {
-            eprintln!("{text}");
+            print_note(text);
         }
     }
 
@@ -117,13 +122,13 @@ impl Meter for StageMeter {
             self.last = Instant::now();
             let seconds = self.start.elapsed().as_secs_f64();
             let rate = ((done - first) as f64 / seconds).max(1.0);
-            eprintln!(
+            print_note(format_args!(
                 "{}: {:.0} %, {} lines/s, {:.0} s left",
                 self.name,
                 100.0 * done as f64 / total.max(1) as f64,
                 grouped(rate as u64),
                 (total - done) as f64 / rate
-            );
+            ));
         }
     }
 }
@@ -133,7 +138,7 @@ impl Drop for StageMeter {
         self.bar.finish_and_clear();
         if self.announces_end {
             let seconds = self.start.elapsed().as_secs_f64();
-            eprintln!("{}: {} lines after {seconds:.1} s", self.name, grouped(self.done));
+            print_note(format_args!("{}: {} lines after {seconds:.1} s", self.name, grouped(self.done)));
         }
     }
 }

@@ -14,6 +14,7 @@ use sir_validate::{Effort, FILES, Reference, Settings, validate};
 
 use crate::error::CliError;
 use crate::interrupt;
+use crate::output;
 use crate::progress::Stderr;
 use watch::Watch;
 
@@ -53,8 +54,8 @@ pub fn command(args: &ValidateArgs) -> Result<String, CliError> {
     if report.passed() {
         return Ok(text);
     }
-    // The report says more than the error. If it cannot be printed, the exit code still tells the failure.
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    // The report says more than the error. The exit code is that of the error, even if the report cannot be printed.
+    let _ = output::print_text(&text);
     Err(ValidationError::Failed { summary: report.summary() }.into())
 }
 

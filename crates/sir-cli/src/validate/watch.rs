@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use sir_validate::Watcher;
 
+use crate::output::print_note;
 use crate::progress::Stderr;
 
 /// Time between two progress lines if there is no terminal.
@@ -46,7 +47,7 @@ impl Watcher for Watch {
         self.begun = true;
         self.bar.set_message(case.to_owned());
         if self.progress == Stderr::Lines {
-            eprintln!("{:.0} s: {case}, {title}", self.start.elapsed().as_secs_f64());
+            print_note(format_args!("{:.0} s: {case}, {title}", self.start.elapsed().as_secs_f64()));
         }
     }
 
@@ -57,7 +58,7 @@ impl Watcher for Watch {
             self.last = Instant::now();
             let share = done as f64 / total.max(1) as f64;
             let left = self.start.elapsed().as_secs_f64() * (1.0 - share) / share.max(1e-3);
-            eprintln!("{:.0} %, {left:.0} s left", 100.0 * share);
+            print_note(format_args!("{:.0} %, {left:.0} s left", 100.0 * share));
         }
     }
 
@@ -70,7 +71,7 @@ impl Drop for Watch {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
         if self.begun && self.progress == Stderr::Lines {
-            eprintln!("after {:.0} s", self.start.elapsed().as_secs_f64());
+            print_note(format_args!("after {:.0} s", self.start.elapsed().as_secs_f64()));
         }
     }
 }
