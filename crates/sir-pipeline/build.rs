@@ -42,8 +42,8 @@ fn add_with_dependencies(folder: &Path, package: &str, found: &mut BTreeSet<Stri
     let Ok(manifest) = fs::read_to_string(folder.join(package).join("Cargo.toml")) else { return false };
     let sections = manifest.split("\n[").filter_map(|section| section.strip_prefix("dependencies]"));
     let lines = sections.flat_map(str::lines).filter(|line| line.starts_with("sir-"));
-    let names = lines.filter_map(|line| line.split(['.', ' ', '=']).next());
-    names.fold(true, |all, name| add_with_dependencies(folder, name, found) && all)
+    let mut names = lines.filter_map(|line| line.split(['.', ' ', '=']).next());
+    names.all(|name| add_with_dependencies(folder, name, found))
 }
 
 /// Returns the hash of the sources of packages, and of the files of the workspace that choose the libraries.
