@@ -110,7 +110,9 @@ fn a_reader_that_has_read_enough_is_no_failure() {
     for args in [&["info", "room.obj"][..], &["check", "room.ron"], &["--help"], &["--version"]] {
         let Output { status, stderr, .. } =
             sir(folder.path(), args).stdout(closed()).stderr(Stdio::piped()).output().unwrap();
-        assert_eq!((status.code(), String::from_utf8(stderr).unwrap()), (Some(0), String::new()), "{args:?}");
+        let stderr = String::from_utf8(stderr).unwrap();
+        assert_eq!(status.code(), Some(0), "{args:?}: {stderr}");
+        assert!(stderr.lines().all(|line| line.starts_with("warning: ")), "{args:?}: {stderr}");
     }
 }
 
