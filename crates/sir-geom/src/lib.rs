@@ -55,6 +55,7 @@ pub mod shapes;
 mod sky;
 mod split;
 mod surface;
+mod text;
 mod texture;
 mod warning;
 
@@ -70,5 +71,6 @@ pub use scene::{Scene, Triangle};
 pub use sir_types::{Barycentric, BoundingBox, BoundingSphere, Line, Side, TriangleId, typed_index};
 pub use sky::{Sky, SkyModel};
 pub use surface::Opacities;
+pub use text::utf8_text;
 pub use texture::{ColorMap, Texture, TextureId, TextureMap, TextureMean, TextureSums, Wrap};
 pub use warning::{Built, Warning};

@@ -53,7 +53,7 @@ pub(crate) fn cut(corners: &[DVec3]) -> Cut {
 }
 
 /// Returns a vector in the direction of the normal: the sum of cross products (Newell).
-fn normal(corners: &[DVec3]) -> DVec3 {
+pub(crate) fn normal(corners: &[DVec3]) -> DVec3 {
     let Some(&first) = corners.first() else { return DVec3::ZERO };
     corners.windows(2).map(|edge| (edge[0] - first).cross(edge[1] - first)).sum()
 }

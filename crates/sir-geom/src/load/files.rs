@@ -45,14 +45,20 @@ pub(super) fn read_scene(path: &Path) -> Result<Vec<u8>, LoadError> {
 /// from an untrusted source must not make its reader open unrelated files.
 ///
 /// Every file has one path, however its name is written, so that its contents can be cached by path.
+#[cfg(feature = "gltf")]
 pub(super) fn beside(scene: &Path, name: &str) -> Option<PathBuf> {
+    beside_path(scene, Path::new(name))
+}
+
+/// Does the same for a name that need not be UTF-8.
+pub(super) fn beside_path(scene: &Path, name: &Path) -> Option<PathBuf> {
     // `Path` recognizes drive letters on some systems only.
-    let drive = name.as_bytes().get(1) == Some(&b':');
-    if drive || !is_name(name) {
+    let drive = name.as_os_str().as_encoded_bytes().get(1) == Some(&b':');
+    if drive || !is_name(&name.to_string_lossy()) {
         return None;
     }
     let mut plain = PathBuf::new();
-    for part in Path::new(name).components() {
+    for part in name.components() {
         match part {
             Component::Normal(part) => plain.push(part),
             Component::CurDir => {}

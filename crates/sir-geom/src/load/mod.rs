@@ -59,6 +59,8 @@ use crate::warning::Built;
 ///   `map_Ke` is a radiance, which gives the exitance `π Ke`. `d` (or else `1 − Tr`) times the alpha, or brightness, of
 ///   `map_d` is the opacity.
 /// * **Groups** have the names in `o` and `g` statements; the last one before a face counts.
+/// * **Text** is UTF-8, UTF-16 or in any other encoding that contains ASCII. Names are compared, and files found, by
+///   their bytes; names that are not UTF-8 get escapes such as `\xB0` for them.
 ///
 /// # Errors
 ///

@@ -1,5 +1,6 @@
 //! Collection of warnings, where any number of one kind make one line.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 
 use crate::builder::SceneBuilder;
@@ -17,7 +18,7 @@ pub(super) struct Notes {
 
 #[derive(Debug)]
 struct Note {
-    what: &'static str,
+    what: Cow<'static, str>,
     count: usize,
     /// The first few names.
     names: Vec<String>,
@@ -26,24 +27,28 @@ struct Note {
 
 impl Notes {
     /// Adds `count` things of the kind `what`, a phrase that follows a number.
-    pub(super) fn count(&mut self, what: &'static str, count: usize) {
+    pub(super) fn count(&mut self, what: impl Into<Cow<'static, str>>, count: usize) {
         if count > 0 {
             self.kind(what).count += count;
         }
     }
 
     /// Adds a thing of the kind `what` by name, unless it was added before.
-    pub(super) fn name(&mut self, what: &'static str, name: impl Into<String>) {
-        let (note, name) = (self.kind(what), name.into());
-        if note.seen.insert(name.clone()) {
-            note.count += 1;
-            if note.names.len() < MAX_NAMES {
-                note.names.push(shortened(&name, 120));
-            }
-        }
+    pub(super) fn name(&mut self, what: impl Into<Cow<'static, str>>, name: impl Into<String>) {
+        let note = self.kind(what);
+        note.count += usize::from(note.remember(name.into()));
     }
 
-    fn kind(&mut self, what: &'static str) -> &mut Note {
+    #[cfg(feature = "obj")]
+    /// Adds one thing of the kind `what` that belongs to something with a name.
+    pub(super) fn count_in(&mut self, what: impl Into<Cow<'static, str>>, name: impl Into<String>) {
+        let note = self.kind(what);
+        note.count += 1;
+        note.remember(name.into());
+    }
+
+    fn kind(&mut self, what: impl Into<Cow<'static, str>>) -> &mut Note {
+        let what = what.into();
         let i = self.kinds.iter().position(|n| n.what == what).unwrap_or_else(|| {
             self.kinds.push(Note { what, count: 0, names: Vec::new(), seen: HashSet::new() });
             self.kinds.len() - 1
@@ -59,16 +64,29 @@ impl Notes {
 
     /// Adds all notes to the builder as warnings.
     pub(super) fn warn(self, builder: &mut SceneBuilder) {
-        for Note { what, count, names, .. } in self.kinds {
+        for Note { what, count, names, seen } in self.kinds {
             let mut line = format!("{count} {what}");
             if !names.is_empty() {
                 line = format!("{line}: {}", names.join(", "));
             }
-            if count > names.len() && !names.is_empty() {
-                line = format!("{line} and {} more", count - names.len());
+            if seen.len() > names.len() {
+                line = format!("{line} and {} more", seen.len() - names.len());
             }
             builder.warn(Warning::Ignored { what: line });
         }
+    }
+}
+
+impl Note {
+    /// Adds a name; returns false if it was added before.
+    fn remember(&mut self, name: String) -> bool {
+        if self.seen.contains(&name) {
+            return false;
+        }
+        if self.names.len() < MAX_NAMES {
+            self.names.push(if name.is_empty() { "(no name)".to_owned() } else { shortened(&name, 120) });
+        }
+        self.seen.insert(name)
     }
 }
 

@@ -191,32 +191,39 @@ fn coordinates_that_are_no_numbers_drop_their_triangles() {
 #[test]
 fn faults_are_errors_with_their_line() {
     for (bad, what) in [
-        ("v 1 2", "position parse error in \"v 1 2\""),
-        ("v 1 2 x", "position parse error"),
-        ("f 1 2 x", "face parse error"),
-        ("f 1 2 1.5", "face parse error"),
-        ("usemtl", "material parse error"),
+        ("v 1 2", "\"v 1 2\" must have three numbers"),
+        ("v 1 2 x", "\"v 1 2 x\" must have three numbers"),
+        ("v 0,5 0,5 0", "with a point before decimals"),
+        ("f 1 2 x", "\"x\" of a face does not begin with a vertex number"),
+        ("f 1 2 1.5", "\"1.5\" of a face"),
+        ("f 1 2 /1", "\"/1\" of a face"),
+        ("f 1 2 //1", "\"//1\" of a face"),
     ] {
         let error = refused(&format!("{SQUARE}# line 5\n{bad}\nf 1 2 3\n"));
         assert!(matches!(&error, LoadError::Syntax { line: 6, .. }), "{bad}: {error:?}");
         assert!(error.to_string().contains(what) && error.to_string().contains("a.obj:6"), "{error}");
     }
-    for bad in ["5", "0", "-5", "99999999999999", "-9223372036854775808", "9223372036854775807", "/1", "//1"]
-    {
-        let error = refused(&format!("{SQUARE}f 1 2 3\n\nf 1 2 {bad}\ng x\nf 1 2 3\n"));
+    for bad in ["5", "0", "-5", "99999999999999", "-9223372036854775808", "99999999999999999999"] {
+        let error = refused(&format!("{SQUARE}f 1 2 3\n\nf 1 2 {bad}/1\ng x\nf 1 2 3\n"));
         let LoadError::NoSuchVertex { line, index, count, .. } = &error else { panic!("{bad}: {error:?}") };
         assert_eq!((*line, &**index, *count), (7, bad, 4));
     }
-    for (mtl, line) in [
-        ("newmtl a\nKd 1 x 1", 2),
-        ("newmtl\n", 1),
-        ("\nnewmtl a\n\nKe 1 2", 4),
-        ("newmtl a\nKd spectral a.rfl 1", 2),
+    for (mtl, line, what) in [
+        ("newmtl a\nKd 1 x 1", 2, "\"Kd 1 x 1\" must have one or three numbers"),
+        ("newmtl a\nKd 0,3 0,3 0,3", 2, "with a point before decimals"),
+        ("\nnewmtl a\n\nKe 1 2", 4, "\"Ke 1 2\" must have one or three numbers"),
+        ("newmtl a\nKd", 2, "\"Kd\" must have one or three numbers"),
+        ("newmtl a\nKe 1\nKd nan 0 0", 3, "\"Kd nan 0 0\" must have finite numbers"),
+        ("newmtl a\nKe -nan(ind)", 2, "must have finite numbers"),
+        ("newmtl a\nKe 0 -0.1 0", 2, "not negative"),
+        ("newmtl a\nd nan", 2, "must have a finite number"),
+        ("newmtl a\nTr -halo", 2, "must have a finite number"),
     ] {
-        let obj = format!("mtllib a.mtl\n{SQUARE}f 1 2 3\n");
+        let obj = format!("mtllib a.mtl\n{SQUARE}usemtl a\nf 1 2 3\n");
         let error = load_from("a.obj", &[("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())]).unwrap_err();
         let LoadError::Syntax { path, line: found, .. } = &error else { panic!("{mtl}: {error:?}") };
         assert_eq!((path.ends_with("a.mtl"), *found), (true, line), "{error}");
+        assert!(error.to_string().contains(what), "{error}");
     }
 }
 
@@ -232,9 +239,141 @@ fn files_that_are_no_scenes_are_refused() {
     assert!(chain(&folder).contains("not a regular file"), "{folder}");
 }
 
+/// Statements of materials without a face say nothing and stop nothing; those before the first material belong to none.
+#[test]
+fn materials_without_faces_are_not_read() {
+    let mtl =
+        "Kd 1 2\nnewmtl b\nKd nan\nKe x\nbump b.png\nd\nnewmtl\nKd 7,5\nnewmtl a\nKd 0.25\nnewmtl c\nTr x";
+    let built = read(&format!("mtllib a.mtl\n{SQUARE}usemtl a\nf 1 2 3\nusemtl none\nusemtl b\n"), mtl);
+    assert_eq!(warnings(&built), [""; 0]);
+    let [a] = built.scene.materials() else { panic!("{:?}", built.scene.materials()) };
+    assert_eq!((&*a.name, a.reflectance), ("a", DVec3::splat(0.25)));
+}
+
+#[test]
+fn a_missing_name_is_a_name() {
+    let obj = format!("mtllib a.mtl\n{SQUARE}usemtl \nf 1 2 3\nusemtl a\nf 1 2 4\n");
+    let built = read(&obj, "newmtl\nKd 0.1 0.2 0.3\nnewmtl a\nKd 0.4\n");
+    assert_eq!(warnings(&built), [""; 0]);
+    let reflectance = |t| built.scene.material(t).reflectance;
+    let all: Vec<DVec3> = built.scene.triangle_ids().map(reflectance).collect();
+    assert_eq!(all, [DVec3::new(0.1, 0.2, 0.3), DVec3::splat(0.4)]);
+    let built = read(&obj, "newmtl \nnewmtl a\nKd 0.4\n");
+    assert_eq!(warnings(&built), ["1 materials have no diffuse color, and are made gray: (no name)"]);
+    let built = read(&obj, "newmtl a\nKd 0.4\n");
+    assert_eq!(
+        warnings(&built),
+        [
+            "1 materials are in no library, and are made gray: (no name)",
+            "1 faces have no known material, and are made gray",
+        ]
+    );
+    assert_eq!(built.scene.materials()[1].reflectance, DVec3::splat(0.5));
+}
+
+#[test]
+fn colors_that_are_not_rgb_are_one_warning() {
+    let obj = format!("mtllib a.mtl\n{SQUARE}usemtl a\nf 1 2 3\nusemtl b\nf 1 2 4\n");
+    let mtl = "newmtl a\nKd spectral a.rfl 1\nKe xyz 1 2 3\nnewmtl b\nKd xyz 0.2 0.3 0.4\nKd 0.4\n";
+    let built = read(&obj, mtl);
+    assert_eq!(
+        warnings(&built),
+        [
+            "2 materials have spectral or CIE XYZ colors, which are not read: a, b",
+            "1 materials have no diffuse color, and are made gray: a",
+        ]
+    );
+    let all: Vec<_> = built.scene.materials().iter().map(|m| (m.reflectance.x, m.exitance.x)).collect();
+    assert_eq!(all, [(0.5, 0.0), (0.4, 0.0)]);
+}
+
+#[test]
+fn free_forms_and_included_files_are_warnings() {
+    let free = "v 0 3 0 1\nvp 0 0\ncstype rat bspline\ndeg 1 1\nsurf 0 1 0 1 -4 -3 -2 -1\nparm u 0 0 1 1\nend\n\
+                curv 0 1 1 2\nend\nbzp 1 2 3 4\ncall other.obj\n";
+    let built = read(&format!("{SQUARE}{free}FO 1 2 3\nF 1 2 4\n"), "");
+    assert_eq!(built.scene.triangles().len(), 2);
+    assert_eq!(
+        warnings(&built)[..2],
+        [
+            "3 free-form curves and surfaces were skipped",
+            "1 statements `call`, which include other files, were skipped",
+        ]
+    );
+    let text = chain(&refused(&format!("{SQUARE}{free}")));
+    assert!(text.contains("(3 free-form curves and surfaces were skipped and 1 statements"), "{text}");
+}
+
+/// A lamp that a program has mirrored without turning its faces around, as its normals show.
+#[test]
+fn normals_against_the_winding_of_lamps_are_a_warning() {
+    let mtl = "newmtl lamp\nKe 1\nKd 0\nnewmtl wall\nKd 0.5\n";
+    let scene = |faces: &str| {
+        let built = read(&format!("mtllib a.mtl\n{SQUARE}vn 0 0 -1\nvn 0.6 0 0.8\nvt 0 0\n{faces}"), mtl);
+        warnings(&built)
+    };
+    let reversed = scene(
+        "usemtl lamp\nf 1//1 2//1 3//1\ng ceiling\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -4//-2 -3//-2 -2//-2\n\
+         usemtl wall\nf 1//1 2//1 3//1\n",
+    );
+    assert_eq!(
+        reversed,
+        [
+            "3 emitting faces have normals (`vn`) that point to their backs, but only fronts emit, where corners run \
+          counterclockwise; turn the faces around if their light is on the wrong side: \"lamp\", \"lamp\" in \"ceiling\""
+        ]
+    );
+    for fine in [
+        "f 1//2 2//2 3//2",
+        "f 3//1 2//1 1//1",
+        "f 1//1 2//1 3",
+        "f 1 2 3",
+        "f 1//1 2//1 3//9",
+        "f 1/1 2/1 3/1",
+    ] {
+        assert_eq!(scene(&format!("usemtl lamp\n{fine}\n")), [""; 0], "{fine}");
+    }
+}
+
 #[test]
 fn text_need_not_be_utf8() {
     let obj = [SQUARE.as_bytes(), b"g caf\xe9\n# \xff\nusemtl caf\xe9\nf 1 2 3\n"].concat();
     let built = load_from("a.obj", &[("a.obj", &obj)]).unwrap();
-    assert_eq!(built.scene.triangles().len(), 1);
+    assert_eq!(built.scene.groups(), ["", "caf\\xE9"]);
+}
+
+/// Chinese names in GBK, some of which are the same once unreadable bytes are replaced, and one that ends with a
+/// backslash in Shift JIS.
+#[test]
+fn names_are_bytes() {
+    let names: [&[u8]; 4] = [b"\xc7\xbd", b"\xb5\xd8", b"\xb6\xa5", b"\x83\x5c"];
+    let mut obj = [b"mtllib \xb2\xc4\\\xc7\xbd.mtl\n", SQUARE.as_bytes()].concat();
+    let mut mtl = Vec::new();
+    for (i, name) in names.into_iter().enumerate() {
+        obj.extend([b"usemtl ", name, b"\ng ", name, b"\nf 1 2 3\n"].concat());
+        mtl.extend([b"newmtl ", name, format!("\nKd 0.{}\n", i + 1).as_bytes()].concat());
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.obj"), &obj).unwrap();
+    let built = sir_geom::load(&folder.path().join("a.obj"), &LoadOptions::default()).unwrap();
+    assert_eq!(
+        warnings(&built)[..2],
+        [
+            "1 material libraries cannot be read: \\xB2\\xC4\\\\xC7\\xBD.mtl",
+            "4 materials are in no library, and are made gray: \u{1fd}, \\xB5\\xD8, \\xB6\\xA5, \\x83\\",
+        ]
+    );
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt as _;
+        let sub = folder.path().join(std::ffi::OsStr::from_bytes(b"\xb2\xc4"));
+        std::fs::create_dir(&sub).unwrap();
+        std::fs::write(sub.join(std::ffi::OsStr::from_bytes(b"\xc7\xbd.mtl")), &mtl).unwrap();
+        let built = sir_geom::load(&folder.path().join("a.obj"), &LoadOptions::default()).unwrap();
+        assert_eq!(warnings(&built), [""; 0]);
+        let read = |t| built.scene.material(t).reflectance.x;
+        assert_eq!(built.scene.triangle_ids().map(read).collect::<Vec<_>>(), [0.1, 0.2, 0.3, 0.4]);
+        assert_eq!(order(&built), ["\u{1fd}", "\\xB5\\xD8", "\\xB6\\xA5", "\\x83\\"]);
+        assert_eq!(built.scene.groups()[1..], order(&built));
+    }
 }

@@ -320,6 +320,31 @@ fn obj_colors_of_vertices_are_decoded() {
     let at = |t: u32| built.scene.reflectance_at(TriangleId(t), Barycentric { v: 0.0, w: 1.0 });
     assert!(near(at(0), 0.999 * Rgb::new(1.0, 0.214_041_14, 0.0)), "{}", at(0));
     assert!(near(at(1), Rgb::splat(0.999)));
-    let bytes = obj(&text.replace("0.5", "127.5").replace("0 1 127", "0 255 127"), "");
-    assert!(near(bytes.scene.reflectance_at(TriangleId(0), Barycentric { v: 0.0, w: 1.0 }), at(0)));
+}
+
+/// Colors that rounding or a filter has carried above 1 do not turn a whole scan dark.
+#[test]
+fn obj_colors_range_to_255_only_if_the_whole_file_does() {
+    let second = |color: &str| {
+        let text = format!("v 0 0 0 {color}\nv 1 0 0 0.2 0.2 0.2\nv 1 1 0\nf 1 2 3\n");
+        let built = obj(&text, "");
+        (built.scene.reflectance_at(TriangleId(0), Barycentric { v: 1.0, w: 0.0 }), warnings(&built))
+    };
+    let (fifth, none) = second("1 1 1");
+    assert!(near(fifth, Rgb::splat(0.999 * 0.033_104_766)) && none.is_empty(), "{fifth} {none:?}");
+    for (color, range) in
+        [("1.0039 1 1", "0.2 to 1.0039"), ("1.000001 -0.5 0", "-0.5 to 1.000001"), ("255 0 0", "0 to 255")]
+    {
+        let (same, texts) = second(color);
+        assert_eq!(same, fifth, "{color}");
+        let clamped = "1 vertex colors are outside 0 to 1 and were clamped: values range from";
+        assert!(texts.len() == 1 && texts[0].starts_with(&format!("{clamped} {range};")), "{texts:?}");
+    }
+    let text = "v 0 0 0 255 0 1\nv 1 0 0 51 51 51.0\nv 1 1 0\nf 1 2 3\n";
+    let built = obj(text, "");
+    assert!(near(built.scene.reflectance_at(TriangleId(0), Barycentric { v: 1.0, w: 0.0 }), fifth));
+    assert_eq!(
+        warnings(&built),
+        ["2 vertex colors are taken as 0 to 255, because all values are whole numbers and most exceed 1"]
+    );
 }
