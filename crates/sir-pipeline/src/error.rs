@@ -31,7 +31,7 @@ pub enum Error {
         source: io::Error,
     },
     /// The pipeline file is not text.
-    #[error("{} is not a text file; a pipeline is a text file in RON", path.display())]
+    #[error("{} is not a text file in UTF-8 or UTF-16; a pipeline is a text file in RON, best saved as UTF-8", path.display())]
     NotText {
         /// The file.
         path: PathBuf,

@@ -94,7 +94,36 @@ fn names_and_numbers_without_bound() {
     ] {
         refused(text.as_bytes());
     }
-    assert!(refused(b"\xff\xfe(\0)\0").contains("not a text file"));
+    for text in [&b"(\xe9)"[..], b"\x89PNG\r\n\x1a\n"] {
+        assert!(refused(text).contains("not a text file in UTF-8 or UTF-16"));
+    }
+}
+
+/// Programs on Windows write pipelines and points in UTF-16, with or without a byte order mark.
+#[test]
+fn utf16_is_read_as_utf8_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let stages = "FirstShot(lines: 2), Sensors(name: \"e\", at: File(\"\u{4e2d}.txt\"))";
+    let points = "1 1 0.5 0 0 1 # \u{4e2d}\r\n0.5 1 0.5 0 0 1\n";
+    for mark in ["", "\u{feff}"] {
+        for order in [u16::to_le_bytes, u16::to_be_bytes] {
+            let write = |name: &str, text: &str| {
+                let bytes: Vec<u8> = format!("{mark}{text}").encode_utf16().flat_map(order).collect();
+                fs::write(folder.path().join(name), bytes).unwrap();
+            };
+            write("\u{4e2d}.txt", points);
+            let expected = room(folder.path(), stages);
+            write("room.ron", &expected.text);
+            let read = Pipeline::read(&folder.path().join("room.ron")).unwrap();
+            assert_eq!(
+                (read.text.trim_start_matches('\u{feff}'), &read.stages),
+                (&*expected.text, &expected.stages)
+            );
+        }
+    }
+    fs::write(folder.path().join("room.ron"), b"\xff\xfe(\0)\0").unwrap();
+    let error = Pipeline::read(&folder.path().join("room.ron")).unwrap_err().chain();
+    assert!(error.contains("room.ron:1:"), "{error}");
 }
 
 #[test]

@@ -65,7 +65,8 @@ impl Pipeline {
         if bytes.len() as u64 > MAX_BYTES {
             return Err(Error::LongPipeline { path: path.to_owned(), most: MAX_BYTES });
         }
-        let text = String::from_utf8(bytes).map_err(|_| Error::NotText { path: path.to_owned() })?;
+        let text = String::from_utf8(sir_geom::utf8_text(bytes))
+            .map_err(|_| Error::NotText { path: path.to_owned() })?;
         Ok(Self::parse(&text, path)?)
     }
 

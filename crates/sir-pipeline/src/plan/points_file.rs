@@ -73,8 +73,8 @@ fn read_bounded(path: &Path) -> io::Result<String> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "it has more than 256 MiB"));
     }
-    String::from_utf8(bytes)
-        .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not a UTF-8 text file"))
+    String::from_utf8(sir_geom::utf8_text(bytes))
+        .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text file in UTF-8 or UTF-16"))
 }
 
 /// Parses points, one `x y z dx dy dz` per line. `#` begins a comment.
@@ -82,7 +82,8 @@ fn read_bounded(path: &Path) -> io::Result<String> {
 /// The error has the number of the invalid line, and the reason.
 fn parse(text: &str) -> Result<Vec<Sensor>, (usize, String)> {
     let mut sensors = Vec::new();
-    for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
+    let end = if text.contains('\n') { '\n' } else { '\r' };
+    for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').split(end)) {
         let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();
         if words.is_empty() {
             continue;
@@ -112,10 +113,12 @@ mod tests {
     #[test]
     fn points_are_read() {
         let text = "\u{feff}# a desk\n\n 1 2.5 -3e-1\t0 0 2\r\n4 5 6 0 1 0 # the wall\n";
-        let sensors = parse(text).unwrap();
-        assert_eq!(sensors.len(), 2);
-        assert_eq!(sensors[0].position(), DVec3::new(1.0, 2.5, -0.3));
-        assert_eq!((sensors[0].direction(), sensors[1].direction()), (DVec3::Z, DVec3::Y));
+        for text in [text, &text.replace("\r\n", "\n"), &text.replace("\r\n", "\n").replace('\n', "\r")] {
+            let sensors = parse(text).unwrap();
+            assert_eq!(sensors.len(), 2);
+            assert_eq!(sensors[0].position(), DVec3::new(1.0, 2.5, -0.3));
+            assert_eq!((sensors[0].direction(), sensors[1].direction()), (DVec3::Z, DVec3::Y));
+        }
     }
 
     #[test]

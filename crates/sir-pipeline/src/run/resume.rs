@@ -113,7 +113,7 @@ fn find(directory: &Path, progress: &dyn Progress) -> Result<(DirectoryLock, Sav
 pub(crate) fn pipeline(directory: &Path, head: &Head) -> Result<Pipeline, Error> {
     let text = &head.report.pipeline.text;
     // If the file no longer exists, the text in the checkpoint is used.
-    if fs::read_to_string(&head.pipeline).is_ok_and(|now| now != *text) {
+    if fs::read(&head.pipeline).is_ok_and(|now| sir_geom::utf8_text(now) != text.as_bytes()) {
         let file = head.pipeline.display();
         return Err(refuse(
             directory,
