@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec2, Vec4};
 
 use crate::appearance::{Appearance, Corners};
-use crate::camera::Camera;
+use crate::camera::{Camera, Projection};
 use crate::color::Rgb;
 use crate::error::SceneError;
 use crate::index::{FaceId, GroupId, MaterialId, VertexId};
-use crate::light::Light;
+use crate::light::{Light, LightKind};
 use crate::material::{MAX_REFLECTANCE, Material};
 use crate::polygon;
 use crate::scene::{Scene, Triangle};
@@ -150,6 +150,23 @@ impl SceneBuilder {
             let sets: Vec<[Vec2; 3]> = coordinates.iter().map(|set| [a, b, c].map(|i| set[i])).collect();
             let tint = tint.map(|tint| [a, b, c].map(|i| tint[i]));
             triangle.corners = self.appearance.add(&sets, tint);
+        }
+    }
+
+    /// Multiplies all lengths of what was added so far by a factor, which is finite and above zero: positions of
+    /// vertices, cameras and lights, and heights of parallel projections.
+    pub fn scale(&mut self, factor: f64) {
+        self.vertices.iter_mut().for_each(|vertex| *vertex *= factor);
+        for camera in &mut self.cameras {
+            camera.eye *= factor;
+            if let Projection::Orthographic { height } = &mut camera.projection {
+                *height *= factor;
+            }
+        }
+        for light in &mut self.lights {
+            if let LightKind::Point { position, .. } = &mut light.kind {
+                *position *= factor;
+            }
         }
     }
 
@@ -365,6 +382,31 @@ mod tests {
         let names: Vec<&str> = scene.triangles().iter().map(|t| &*scene.groups()[t.group.index()]).collect();
         assert_eq!(names, ["", "b", "a", "b", ""]);
         assert_eq!(scene.groups(), ["", "b", "a"]);
+    }
+
+    #[test]
+    fn a_scale_changes_lengths_and_nothing_else() {
+        let mut b = SceneBuilder::new();
+        let m = b.add_material(Material::diffuse("lamp", Rgb::ZERO).emitting(Rgb::ONE));
+        corner_triangle(&mut b, 4.0, m);
+        let eye = DVec3::new(0.0, 2.0, 8.0);
+        let mut camera = Camera::looking_at(eye, DVec3::ZERO, DVec3::Y, 1.0).unwrap();
+        b.add_camera(camera.clone());
+        camera.projection = Projection::Orthographic { height: 6.0 };
+        b.add_camera(camera.clone());
+        let kind = |position| LightKind::Point { position, intensity: Rgb::ONE, spread: Spread::Isotropic };
+        b.add_light(Light { name: String::new(), kind: kind(eye) });
+        b.scale(0.25);
+        corner_triangle(&mut b, 9.0, m);
+        let scene = b.build().unwrap().scene;
+        assert_eq!(scene.bounding_box().max, DVec3::new(9.0, 9.0, 0.0));
+        assert_eq!(scene.area(sir_types::TriangleId(0)), 0.5);
+        assert_eq!(scene.lights()[0].kind, kind(0.25 * eye));
+        assert_eq!(scene.materials()[0].exitance, Rgb::ONE);
+        let [perspective, parallel] = [&scene.cameras()[0], &scene.cameras()[1]];
+        assert_eq!((perspective.eye, perspective.forward), (0.25 * eye, camera.forward));
+        assert_eq!(perspective.projection, Projection::Perspective { vertical_fov: 1.0 });
+        assert_eq!(parallel.projection, Projection::Orthographic { height: 1.5 });
     }
 
     #[test]

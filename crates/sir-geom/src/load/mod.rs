@@ -71,7 +71,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Built, LoadError> {
 }
 
 /// Reads a scene file as [`load`] does, and adds to it: `add` gets the builder after the contents of the file were
-/// added.
+/// added and scaled, so its lengths are in meters.
 ///
 /// # Errors
 ///
@@ -109,6 +109,7 @@ fn read(
 ) -> Result<Built, LoadError> {
     let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
     reader(path, *options, &mut builder, &mut notes)?;
+    builder.scale(options.scale);
     let skipped = notes.skipped();
     notes.warn(&mut builder);
     add(&mut builder);

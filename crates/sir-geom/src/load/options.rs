@@ -8,10 +8,20 @@ use crate::material::{Material, Sides};
 pub(super) const DEFAULT_REFLECTANCE: f64 = 0.5;
 
 /// Options for reading a scene file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadOptions {
     /// Sides of surfaces that take part in light transport.
     pub sides: SidesPolicy,
+    /// Length of a unit of the file \[m\], finite and above zero. It multiplies all lengths in the file: positions of
+    /// corners, cameras and lights, and heights of parallel projections. Emission per area and intensities of lights
+    /// stay as they are. Default 1.
+    pub scale: f64,
+}
+
+impl Default for LoadOptions {
+    fn default() -> Self {
+        Self { sides: SidesPolicy::default(), scale: 1.0 }
+    }
 }
 
 /// Rule for which sides of a surface reflect.

@@ -55,7 +55,12 @@ fn sides_are_a_matter_of_policy() {
         (true, SidesPolicy::Front, (Sides::Front, false)),
     ] {
         let file = Gltf::with_material(json!({"doubleSided": double_sided})).embedded();
-        let built = load_with("s.gltf", &[("s.gltf", &file)], &LoadOptions { sides: policy }).unwrap();
+        let built = load_with(
+            "s.gltf",
+            &[("s.gltf", &file)],
+            &LoadOptions { sides: policy, ..LoadOptions::default() },
+        )
+        .unwrap();
         let material = &built.scene.materials()[0];
         assert_eq!((material.sides, material.back_emits), expected, "{double_sided} {policy:?}");
     }

@@ -106,7 +106,12 @@ fn sides_are_a_matter_of_policy() {
         (SidesPolicy::Front, Sides::Front),
     ] {
         let obj = format!("{SQUARE}f 1 2 3\n");
-        let built = load_with("a.obj", &[("a.obj", obj.as_bytes())], &LoadOptions { sides }).unwrap();
+        let built = load_with(
+            "a.obj",
+            &[("a.obj", obj.as_bytes())],
+            &LoadOptions { sides, ..LoadOptions::default() },
+        )
+        .unwrap();
         let material = &built.scene.materials()[0];
         assert_eq!((material.sides, material.back_emits), (expected, false));
     }
