@@ -68,7 +68,8 @@ const OUTSIDE: f64 = 0.25;
 impl Emitter {
     /// Returns a random ray.
     #[inline]
-    pub(crate) fn ray(&self, scene: &Scene, stream: &mut Stream) -> Ray {
+    #[must_use]
+    pub fn ray(&self, scene: &Scene, stream: &mut Stream) -> Ray {
         match self {
             Self::Surface { triangle, corners, normal, .. } => {
                 let origin = point_on_surface(scene, *triangle, *corners, stream);

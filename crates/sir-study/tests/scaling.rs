@@ -62,6 +62,8 @@ fn report(workers: Workers) -> Report {
         sides: 100,
         area: 24.0,
         power: [3.0; 3],
+        up: [0.0, 1.0, 0.0],
+        up_from: String::new(),
         warnings: Vec::new(),
     };
     Report {
@@ -73,6 +75,7 @@ fn report(workers: Workers) -> Report {
         scene,
         time: Time::of(stages.iter().map(|s| s.time.seconds).sum()),
         stages,
+        warnings: Vec::new(),
         outputs: Vec::new(),
     }
 }

@@ -71,6 +71,7 @@ mod png;
 mod render;
 mod table;
 mod tone;
+mod up;
 mod viewpoint;
 
 pub use atomic_file::{is_partial_file, write_atomically};
@@ -86,4 +87,5 @@ pub use render::render;
 pub use sir_geom::luminance;
 pub use table::{BandComparison, COLUMNS, Comparison, Row, Table, WorstRow, compare};
 pub use tone::{srgb, tone_map};
-pub use viewpoint::{default_camera, guess_up};
+pub use up::{UpClue, more_faces_along_z, up_clues};
+pub use viewpoint::default_camera;

@@ -1,4 +1,4 @@
-//! Default camera and up direction, for scenes that specify none.
+//! Default camera, for scenes that specify none.
 
 use std::collections::BTreeMap;
 
@@ -32,7 +32,8 @@ const TURNS: u32 = 8;
 /// A few hundred views are tried, from places inside the bounding box of the scene and from all sides outside of it,
 /// each with a few hundred rays. The best view sees lit surfaces near and far, a large part of the total surface area,
 /// and many materials and triangles. Little of its picture is empty, dark, or covered by backs of surfaces or by
-/// something right before the eye. `up` is the up direction of the scene; see [`guess_up`].
+/// something right before the eye. `up` is the up direction of the scene; see
+/// [`up_clues`](crate::up_clues).
 #[must_use]
 pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3) -> Camera {
     let scorer = ViewScorer::new(display);
@@ -55,22 +56,6 @@ pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3) -> Ca
     let mut camera = best.map_or_else(fallback, |(_, camera)| camera);
     "default".clone_into(&mut camera.name);
     camera
-}
-
-/// Returns the probable up direction of a scene.
-///
-/// This is +z if more surface area faces along z than along y, and the scene is smaller along z than along y; otherwise
-/// it is +y. The reasons are that floors, ceilings and tables outweigh walls, and that few rooms are higher than long.
-#[must_use]
-pub fn guess_up(scene: &Scene) -> DVec3 {
-    let (mut along_y, mut along_z) = (0.0, 0.0);
-    for t in scene.triangle_ids() {
-        let (normal, area) = (scene.normal(t), scene.area(t));
-        along_y += if normal.y.abs() > 0.99 { area } else { 0.0 };
-        along_z += if normal.z.abs() > 0.99 { area } else { 0.0 };
-    }
-    let size = scene.bounding_box().size();
-    if along_z > along_y && size.z < size.y { DVec3::Z } else { DVec3::Y }
 }
 
 fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {

@@ -7,7 +7,7 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Camera, Material, MaterialId, Projection, Rgb, Scene, SceneBuilder, Sides, Sky, SkyModel};
 use sir_mesh::{PatchMesh, Subdivision};
 use sir_radiosity::build_accel;
-use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, default_camera, guess_up, render};
+use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, default_camera, render};
 
 const SIZE: DVec3 = DVec3::new(4.0, 2.5, 3.0);
 
@@ -245,13 +245,4 @@ fn the_default_camera_stands_in_a_lit_closed_room() {
         let picture = render(&display, &accel, &camera, settings(1)).unwrap();
         assert!(picture.radiance.iter().all(|p| p[0] > 0.1), "all that is seen is lit");
     }
-}
-
-#[test]
-fn up_is_where_floors_and_ceilings_face() {
-    assert_eq!(guess_up(&room(Sides::Front)), DVec3::Y);
-    let mut builder = SceneBuilder::new();
-    let m = builder.add_material(Material::diffuse("m", Rgb::splat(0.5)));
-    shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::new(4.0, 3.0, 2.5), [m; 6], Facing::Inward);
-    assert_eq!(guess_up(&builder.build().unwrap().scene), DVec3::Z);
 }

@@ -2,6 +2,7 @@
 
 use sir_pipeline::format::{dimensions, grouped, length, percent};
 use sir_pipeline::info::{Fates, Info, MaterialInfo, Textures};
+use sir_pipeline::prepare::direction_name;
 
 /// Maximum number of materials in the table. Of parts and cameras, a quarter as many are named.
 const MAX_LISTED: usize = 20;
@@ -26,7 +27,7 @@ fn overview(info: &Info) -> String {
     };
     let [min, max] = [info.extent.min, info.extent.max].map(|v| v.map(length).join(", "));
     let names = info.groups.iter().map(|group| group.name.as_str());
-    let up = if info.up[2] > 0.5 { "+z" } else { "+y" };
+    let up = direction_name(info.up.into());
     [
         row("scene", &info.scene),
         row("triangles", &format!("{}{dropped}", count(info.triangles))),
@@ -38,7 +39,7 @@ fn overview(info: &Info) -> String {
             "area",
             &format!("{} m²; the largest triangle has {}", length(info.area), percent(info.largest_triangle)),
         ),
-        row("extent", &format!("{}, up is {up}", dimensions(info.extent.size()))),
+        row("extent", &format!("{}, up is {up} ({})", dimensions(info.extent.size()), info.up_from)),
         row(
             "place",
             &format!(

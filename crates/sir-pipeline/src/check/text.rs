@@ -10,6 +10,7 @@ use crate::format::{bytes, duration, grouped};
 use crate::plan::Until;
 use crate::prepare::prepared::Prepared;
 use crate::prepare::sources::kinds;
+use crate::prepare::up::name;
 
 impl Repeated {
     /// Returns the cost of all repeats, if one takes `once` seconds: whether the time is exact or a bound, the time in
@@ -40,7 +41,7 @@ impl Repeated {
 
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Prepared { model, sources, load_seconds, build_seconds, .. } = &self.prepared;
+        let Prepared { model, up, up_from, sources, load_seconds, build_seconds, .. } = &self.prepared;
         let scene: &Scene = &model.scene;
         let count = |n: usize| grouped(n as u64);
         let size = scene.bounding_box().size();
@@ -49,7 +50,14 @@ impl fmt::Display for Estimate {
         writeln!(f, "patches    {}", count(model.mesh.patch_count()))?;
         writeln!(f, "sides      {}", count(model.mesh.side_count()))?;
         writeln!(f, "area       {:.6} m²", scene.total_area())?;
-        writeln!(f, "extent     {:.4} × {:.4} × {:.4} m", size.x, size.y, size.z)?;
+        writeln!(
+            f,
+            "extent     {:.4} × {:.4} × {:.4} m, up is {} ({up_from})",
+            size.x,
+            size.y,
+            size.z,
+            name(*up)
+        )?;
         writeln!(f, "cameras    {}", scene.cameras().len())?;
         writeln!(
             f,

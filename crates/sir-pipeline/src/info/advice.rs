@@ -3,9 +3,10 @@
 
 use glam::DVec3;
 
-use crate::format::{dimensions, grouped, length, percent};
+use crate::format::{grouped, length, percent};
 use crate::info::facts::{Info, Setting};
 use crate::info::lines::{Fates, Lines};
+use crate::info::survey::Survey;
 
 /// Share of lines above which an effect is significant: more than what cracks between surfaces cause.
 const SIGNIFICANT: f64 = 0.01;
@@ -14,63 +15,18 @@ const SIGNIFICANT: f64 = 0.01;
 /// it.
 const NEGLIGIBLE: f64 = 0.0005;
 
-/// Returns notes about likely mistakes, and about properties that make lighting difficult.
-pub(super) fn findings(info: &Info) -> Vec<String> {
-    [unit(info), far_away(info), dominated(info), twins(info), coincident(info), winding(info), lamps(info)]
-        .into_iter()
-        .flatten()
-        .collect()
-}
-
-fn unit(info: &Info) -> Option<String> {
-    let size = info.extent.size();
-    let height = size.dot(info.up.into());
-    // A room is about as high as it is wide; a landscape is flat.
-    let room = info.dominant.is_none() && height > 0.05 * size.max_element();
-    let lengths = "powers and distances of lights assume meters";
-    match size.max_element() {
-        _ if room && height > 100.0 => {
-            let unit = if height > 1000.0 { "millimeters" } else { "centimeters" };
-            Some(format!("a height of {} m looks like {unit}, if this is a room; {lengths}", length(height)))
-        }
-        most if most > 1000.0 => Some(format!("an extent of {} m; {lengths}", length(most))),
-        most if most < 0.05 => {
-            Some(format!("an extent of {} m looks like kilometers or a wrong scale; {lengths}", length(most)))
-        }
-        _ => None,
-    }
-}
-
-fn far_away(info: &Info) -> Option<String> {
-    let times = info.distance_from_origin / info.extent.size().length();
-    // Most files store single-precision numbers, with a relative step of 2⁻²⁴.
-    let step = info.distance_from_origin / f64::from(1 << 24);
-    (times > 100.0).then(|| {
-        format!(
-            "the scene is far from the origin, {} times its size (single-precision coordinates have steps of {} m there); \
-             move it to the origin",
-            grouped(times as u64),
-            length(step)
-        )
-    })
-}
-
-fn dominated(info: &Info) -> Option<String> {
-    let dominant = info.dominant.as_ref()?;
-    Some(format!(
-        "{} has {} of the area, and everything else fits into {} (most global lines meet nothing else); leave it out of the \
-         file, or set a `Focus` on the rest",
-        dominant.what,
-        percent(dominant.share),
-        dimensions(dominant.rest.size())
-    ))
+/// Returns notes about likely mistakes, and about properties that make lighting difficult: those that every command
+/// mentions, and those that follow from many lines.
+pub(super) fn findings(info: &Info, survey: &Survey) -> Vec<String> {
+    let others = [twins(info), coincident(info), winding(info, survey), lamps(info)];
+    survey.suspicions(false).into_iter().chain(others.into_iter().flatten()).collect()
 }
 
 fn twins(info: &Info) -> Option<String> {
     let twins = info.twins;
     (twins.alike > 0).then(|| {
         format!(
-            "{} triangles lie on another one with the same corners and the same front; only the later one is visible",
+            "{} triangles lie on another one with the same corners and the same front; only one of them is visible",
             grouped(twins.alike as u64)
         )
     })
@@ -80,14 +36,18 @@ fn coincident(info: &Info) -> Option<String> {
     let share = info.lines.global.coincident;
     (share > SIGNIFICANT).then(|| {
         format!(
-            "{} of the crossings coincide with another surface in the same plane; where both show their fronts, the later one in the \
-             file is on top",
+            "{} of the crossings coincide with another surface in the same plane; where both show their fronts, one that emits is \
+             on top, or else the smaller one",
             percent(share)
         )
     })
 }
 
-fn winding(info: &Info) -> Option<String> {
+fn winding(info: &Info, survey: &Survey) -> Option<String> {
+    if survey.are_lamps_covered() {
+        // Their light falls on backs for that reason.
+        return None;
+    }
     let fronts = info.lines.from_fronts;
     let backs = of_light(info, |fates| fates.back + fates.absorbed);
     if looks_outward(info) {
@@ -128,49 +88,51 @@ fn lamps(info: &Info) -> Option<String> {
              materials emit from their fronts",
             percent(fates.escaped)
         ))
-    } else if fates.absorbed > 0.5 {
-        Some(format!(
-            "{} of the light of emitting surfaces falls on backs, which absorb it: are they turned the wrong way?",
-            percent(fates.absorbed)
-        ))
     } else {
         None
     }
 }
 
 /// Returns suggested pipeline settings.
-pub(super) fn settings(info: &Info) -> Vec<Setting> {
-    sides(info).into_iter().chain(light(info)).chain(focus(info)).chain(patches(info)).collect()
+pub(super) fn settings(info: &Info, survey: &Survey) -> Vec<Setting> {
+    load(info, survey).into_iter().chain(light(info)).chain(focus(info)).chain(patches(info)).collect()
 }
 
-fn sides(info: &Info) -> Option<Setting> {
+/// Returns a stage `Load` with the suggested scale and sides.
+fn load(info: &Info, survey: &Survey) -> Option<Setting> {
     let path = serde_json::Value::from(info.scene.as_str());
-    let load = |sides, why| Some(Setting { set: format!("Load(path: {path}, sides: {sides})"), why });
+    let unit = survey.likely_unit();
+    let scale =
+        unit.map(|unit| (format!("scale: {}", unit.scale), format!("the size looks like {}", unit.name)));
+    let sides = sides(info, survey).map(|(sides, why)| (format!("sides: {sides}"), why));
+    let (fields, reasons): (Vec<_>, Vec<_>) = [scale, sides].into_iter().flatten().unzip();
+    (!fields.is_empty()).then(|| Setting {
+        set: format!("Load(path: {path}, {})", fields.join(", ")),
+        why: reasons.join("; "),
+    })
+}
+
+/// Returns the suggested sides, and the reason.
+fn sides(info: &Info, survey: &Survey) -> Option<(&'static str, String)> {
     let fronts = info.lines.from_fronts;
     let [one_sided, two_sided] = [false, true].map(|is| info.materials.iter().any(|m| m.two_sided == is));
     if one_sided && looks_outward(info) {
-        return load(
-            "Both",
-            "the fronts face outward; if this is a room, its inner sides would only absorb".into(),
-        );
+        let why = "the fronts face outward; if this is a room, its inner sides would only absorb";
+        return Some(("Both", why.into()));
     }
     let absorbed = of_light(info, |fates| fates.absorbed);
-    if absorbed > SIGNIFICANT {
+    // The light of covered lamps falls on backs, but reflecting it would not help.
+    if absorbed > SIGNIFICANT && !survey.are_lamps_covered() {
         let why = format!("{} of the light falls on backs that would only absorb it", percent(absorbed));
-        return load("Both", why);
+        return Some(("Both", why));
     }
     let emitters = info.lines.from_emitters;
     // Lights without a surface may shine on backs.
     let only_surfaces = info.sources.len() == usize::from(emitters.is_some());
     let hidden = |fates: Fates| fates.back < NEGLIGIBLE && fates.absorbed < NEGLIGIBLE;
     let seldom = hidden(fronts) && emitters.is_none_or(hidden) && fronts.escaped < 0.5;
-    if two_sided && only_surfaces && seldom {
-        return load(
-            "Front",
-            "no light travels from a front to a back; half as many sides give the same result".into(),
-        );
-    }
-    None
+    let why = "no light travels from a front to a back; half as many sides give the same result";
+    (two_sided && only_surfaces && seldom).then(|| ("Front", why.into()))
 }
 
 fn light(info: &Info) -> Vec<Setting> {
@@ -182,7 +144,9 @@ fn light(info: &Info) -> Vec<Setting> {
     let outward = looks_outward(info);
     let mut lights = Vec::new();
     if escaped > SIGNIFICANT {
-        let up = if DVec3::from(info.up) == DVec3::Z { "up: (0, 0, 1), " } else { "" };
+        let [x, y, z] = info.up.map(length);
+        let up =
+            if DVec3::from(info.up) == DVec3::Y { String::new() } else { format!("up: ({x}, {y}, {z}), ") };
         lights.push(Setting {
             set: format!("Light([Sky({up}model: Overcast, horizontal: 10_000, ground: 500)])"),
             why: match escaped {
@@ -227,20 +191,8 @@ fn panel(info: &Info) -> String {
 /// Returns a focus on the box around everything except the dominant part.
 fn focus(info: &Info) -> Option<Setting> {
     let dominant = info.dominant.as_ref()?;
-    let rest = dominant.rest;
-    // Rounded outward, to about a thousandth of the size.
-    let digits = 3 - rest.size().max_element().log10().floor() as i32;
-    let step = 10f64.powi(-digits);
-    let corner = |corner: [f64; 3], round: fn(f64) -> f64| {
-        let [x, y, z] = corner.map(|x| {
-            let rounded = round(x / step) * step;
-            format!("{:.*}", digits.max(0) as usize, if rounded == 0.0 { 0.0 } else { rounded })
-        });
-        format!("({x}, {y}, {z})")
-    };
-    let (min, max) = (corner(rest.min, f64::floor), corner(rest.max, f64::ceil));
     Some(Setting {
-        set: format!("Focus(min: {min}, max: {max})"),
+        set: dominant.rest.focus(),
         why: format!("concentrates lines and patches on the rest of the scene, and not on {}", dominant.what),
     })
 }

@@ -34,8 +34,10 @@ pub struct Info {
     pub extent: Extent,
     /// Distance of the box's center from the origin \[m\].
     pub distance_from_origin: f64,
-    /// Up direction: +y in glTF, guessed in OBJ.
+    /// Up direction: +y in glTF, and what the scene shows in OBJ.
     pub up: [f64; 3],
+    /// Reason for the up direction.
+    pub up_from: String,
     /// Materials that triangles have, largest area first.
     pub materials: Vec<MaterialInfo>,
     /// Named parts, in file order.

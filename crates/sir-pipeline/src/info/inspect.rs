@@ -14,9 +14,10 @@ use crate::info::advice;
 use crate::info::facts::{Group, Info, Lights, MaterialInfo, Textures};
 use crate::info::lines;
 use crate::info::shape;
-use crate::info::shape::{Extent, sums};
-use crate::prepare::prepared::up;
+use crate::info::shape::sums;
+use crate::info::survey::Survey;
 use crate::prepare::sources::kinds;
+use crate::prepare::up::Up;
 
 /// Version of the JSON layout.
 const VERSION: u32 = 1;
@@ -36,7 +37,9 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         Warning::DroppedTriangles { count } => *count,
         _ => 0,
     });
-    let extent = Extent::from(scene.bounding_box());
+    let Up { direction: up, why: up_from, doubt } = Up::of(path, scene, None);
+    let survey = Survey::new(scene, &accel, &sources, up, lines::LINES);
+    let extent = survey.extent;
     let area = scene.total_area();
     let largest = scene.triangle_ids().map(|id| scene.area(id)).fold(0.0, f64::max);
     let mut info = Info {
@@ -58,19 +61,21 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         largest_triangle: largest / area,
         extent,
         distance_from_origin: extent.center().length(),
-        up: up(path, scene).into(),
+        up: up.into(),
+        up_from,
         materials: materials(scene),
         groups: groups(scene),
         sources: by_kind(&sources),
         cameras: scene.cameras().iter().map(|camera| camera.name.clone()).collect(),
         twins: shape::twins(scene),
-        dominant: shape::dominant(scene),
+        dominant: survey.dominant.clone(),
         lines: lines::trace(scene, &accel, &sources),
         findings: Vec::new(),
         settings: Vec::new(),
     };
-    info.findings = advice::findings(&info);
-    info.settings = advice::settings(&info);
+    info.findings = advice::findings(&info, &survey);
+    info.findings.extend(doubt);
+    info.settings = advice::settings(&info, &survey);
     Ok(info)
 }
 

@@ -3,8 +3,10 @@
 pub(crate) mod advice;
 pub(crate) mod facts;
 pub(crate) mod inspect;
+pub(crate) mod lamps;
 pub(crate) mod lines;
 pub(crate) mod shape;
+pub(crate) mod survey;
 
 pub use facts::{Group, Info, Lights, MaterialInfo, Setting, Textures};
 pub use inspect::inspect;

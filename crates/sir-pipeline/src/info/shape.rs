@@ -2,13 +2,19 @@
 
 use glam::DVec3;
 use serde::Serialize;
-use sir_geom::{BoundingBox, Scene, Triangle, TriangleId};
+use sir_geom::{BoundingBox, Scene, Side, Triangle, TriangleId};
 
 /// Share of the area above which a part may dominate.
 const DOMINANT_AREA: f64 = 0.5;
 
 /// Extent of everything else, relative to the whole scene, below which such a part dominates.
 const SMALL_REST: f64 = 0.2;
+
+/// The same for a part that may be a room around the rest: a sky dome is larger.
+const TINY_REST: f64 = 0.05;
+
+/// Share of the area of a part that is left when opposite directions cancel, above which it is open like a ground.
+const OPEN: f64 = 0.5;
 
 /// Axis-aligned box \[m\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -30,6 +36,22 @@ impl Extent {
     #[must_use]
     pub fn center(&self) -> DVec3 {
         DVec3::from(self.min).midpoint(self.max.into())
+    }
+
+    /// Returns a stage `Focus` on the box, as a pipeline has it. Its corners are rounded outward, to about a thousandth
+    /// of the size.
+    #[must_use]
+    pub fn focus(&self) -> String {
+        let digits = 3 - self.size().max_element().log10().floor() as i32;
+        let step = 10f64.powi(-digits);
+        let corner = |corner: [f64; 3], round: fn(f64) -> f64| {
+            let [x, y, z] = corner.map(|x| {
+                let rounded = round(x / step) * step;
+                format!("{:.*}", digits.max(0) as usize, if rounded == 0.0 { 0.0 } else { rounded })
+            });
+            format!("({x}, {y}, {z})")
+        };
+        format!("Focus(min: {}, max: {})", corner(self.min, f64::floor), corner(self.max, f64::ceil))
     }
 }
 
@@ -105,9 +127,17 @@ fn largest(scene: &Scene, of: impl Fn(&Triangle) -> usize) -> Option<(usize, f64
     if share <= DOMINANT_AREA {
         return None;
     }
-    let others = scene.triangle_ids().filter(|id| of(scene.triangle(*id)) != part);
-    let rest = BoundingBox::of(others.flat_map(|id| scene.corners(id)))?;
-    let small = rest.size().length() < SMALL_REST * scene.bounding_box().size().length();
+    let is_part = |id: &TriangleId| of(scene.triangle(*id)) == part;
+    let others = || scene.triangle_ids().filter(|id| !is_part(id));
+    // A room may be all of one material, and its lamps of another.
+    let emits = |id| [Side::Front, Side::Back].iter().any(|&side| scene.exitance(id, side) != DVec3::ZERO);
+    if others().all(emits) {
+        return None;
+    }
+    let rest = BoundingBox::of(others().flat_map(|id| scene.corners(id)))?;
+    let net: DVec3 = scene.triangle_ids().filter(is_part).map(|id| scene.area(id) * scene.normal(id)).sum();
+    let limit = if net.length() > OPEN * area { SMALL_REST } else { TINY_REST };
+    let small = rest.size().length() < limit * scene.bounding_box().size().length();
     small.then(|| (part, share, rest.into()))
 }
 
@@ -123,4 +153,39 @@ pub(super) fn sums<T: Clone + Default + std::ops::AddAssign>(
         sums[of(scene.triangle(id))] += what(id);
     }
     sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sir_geom::shapes::{self, Facing};
+    use sir_geom::{Material, Rgb, SceneBuilder};
+
+    /// Returns true if something dwarfs the rest in a scene with an outer cuboid of the given size, whose front faces
+    /// inward, and what `add` adds to it with a gray material of its own.
+    fn dwarfs(size: f64, add: impl FnOnce(&mut SceneBuilder, sir_geom::MaterialId)) -> bool {
+        let mut b = SceneBuilder::new();
+        let [outer, inner] =
+            ["outer", "inner"].map(|name| b.add_material(Material::diffuse(name, Rgb::splat(0.5))));
+        shapes::cuboid(&mut b, DVec3::ZERO, DVec3::splat(size), [outer; 6], Facing::Inward);
+        add(&mut b, inner);
+        dominant(&b.build().unwrap().scene).is_some()
+    }
+
+    fn square(b: &mut SceneBuilder, width: f64, y: f64, material: sir_geom::MaterialId) {
+        let corners = [(0.0, 0.0), (0.0, width), (width, width), (width, 0.0)];
+        shapes::quad(b, corners.map(|(x, z)| DVec3::new(x, y, z)), material);
+    }
+
+    #[test]
+    fn a_room_does_not_dwarf_what_is_in_it_but_grounds_and_sky_domes_do() {
+        let table = |b: &mut SceneBuilder, m| square(b, 1.0, 1.0, m);
+        assert!(!dwarfs(10.0, table));
+        assert!(dwarfs(1000.0, table));
+        assert!(!dwarfs(1000.0, |b, _| {
+            let lamp = b.add_material(Material::diffuse("lamp", Rgb::ZERO).emitting(Rgb::ONE));
+            square(b, 1.0, 1.0, lamp);
+        }));
+        assert!(dwarfs(10.0, |b, m| square(b, 1000.0, -1.0, m)));
+    }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
+use sir_geom::Projection;
 use sir_view::Exposure;
 
 use crate::text::field::Format;
@@ -73,6 +74,25 @@ impl Camera {
         sir_geom::Camera::looking_at(self.eye, self.target, self.up, self.fov.to_radians())
     }
 
+    /// Returns a camera of a scene, with numbers rounded to six decimals. Returns `None` if it is not in perspective.
+    #[must_use]
+    pub fn of_scene(camera: &sir_geom::Camera) -> Option<Self> {
+        let Projection::Perspective { vertical_fov } = camera.projection else { return None };
+        let rounded = |v: DVec3| DVec3::from_array(v.to_array().map(round));
+        Some(Self {
+            eye: rounded(camera.eye),
+            target: rounded(camera.eye + camera.forward),
+            up: rounded(camera.up),
+            fov: round(vertical_fov.to_degrees()),
+        })
+    }
+
+    /// Writes the camera as a pipeline states it.
+    #[must_use]
+    pub fn to_ron(&self) -> String {
+        self.write("Camera")
+    }
+
     fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
         if self.to_scene().is_none() {
             let message =
@@ -81,6 +101,12 @@ impl Camera {
             reader.problem(fields.place, message, help);
         }
     }
+}
+
+/// Rounds a number to six decimals, so that it is written with no more.
+fn round(x: f64) -> f64 {
+    // The text has the nearest number to it, unlike the result of a division.
+    format!("{:.6}", x + 0.0).parse().unwrap_or(x)
 }
 
 /// Format of an exposure: `Auto`, or a factor.
@@ -159,5 +185,21 @@ impl Format for CameraFormat {
 
     fn example(&self) -> String {
         "0".into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_of_a_scene_is_written_with_few_digits() {
+        let eye = DVec3::new(1.0, 2.0 / 3.0, -5.0);
+        let camera = sir_geom::Camera::looking_at(eye, DVec3::ZERO, DVec3::Y, 1.13).unwrap();
+        let text = Camera::of_scene(&camera).unwrap().to_ron();
+        assert_eq!(
+            text,
+            "Camera(eye: (1, 0.666667, -5), target: (0.805571, 0.537048, -4.027856), up: (0, 1, 0), fov: 64.744231)"
+        );
     }
 }

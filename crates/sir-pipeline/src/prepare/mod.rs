@@ -4,7 +4,9 @@ pub(crate) mod cameras;
 pub(crate) mod layout;
 pub(crate) mod prepared;
 pub(crate) mod sources;
+pub(crate) mod up;
 
 pub use layout::{Cells, Layout};
 pub use prepared::{Prepared, prepare};
 pub use sources::kinds;
+pub use up::name as direction_name;

@@ -1,17 +1,17 @@
 //! Reads the scene of a pipeline, makes its patches, and checks the pipeline against the scene.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use glam::DVec3;
 use sir_geom::{LoadOptions, Scene};
 use sir_lines::Focus;
 use sir_mesh::Subdivision;
 use sir_radiosity::{FocusSides, Model, ModelError, SolveError, Source, emits, sources};
-use sir_view::guess_up;
 
 use crate::error::Error;
+use crate::info::survey::Survey;
 use crate::prepare::cameras::camera_problems;
+use crate::prepare::up::{Up, sky_doubt};
 use crate::text::diagnostic::Diagnostic;
 
 use crate::plan::{Action, Pipeline, SceneLight, Stage};
@@ -19,15 +19,22 @@ use crate::prepare::layout::Layout;
 use crate::progress::Progress;
 use crate::stopwatch::Stopwatch;
 
+/// Number of lines from lamps that show what is suspicious. They take a few hundredths of a second.
+const SURVEY_LINES: u64 = 10_000;
+
 /// Scene of a pipeline, ready for tracing.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// Scene, patches and acceleration structure.
     pub model: Model,
-    /// Up direction: known for glTF files, guessed for others.
+    /// Up direction, of unit length.
     pub up: DVec3,
+    /// Reason for the up direction.
+    pub up_from: String,
     /// Warnings of the scene reader about what it changed or left out.
     pub warnings: Vec<String>,
+    /// What is suspicious about the scene, such as its size.
+    pub suspicions: Vec<String>,
     /// Light sources, at least one.
     pub sources: Vec<Source>,
     /// Focus, if there is one.
@@ -49,13 +56,16 @@ pub struct Prepared {
 /// If the scene cannot be read, emits no light, lacks a camera that an image refers to, has no room for sensors, or
 /// cannot be divided into patches as specified. The latter three are shown with their position in the pipeline.
 pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared, Error> {
-    let mut options = LoadOptions::default();
+    let (mut options, mut stated_up) = (LoadOptions::default(), None);
     let mut lights: Vec<SceneLight> = Vec::new();
     let mut subdivision = (Subdivision::PerTriangle, 0..0);
     let mut requested_focus = None;
     for stage in &pipeline.stages {
         match &stage.action {
-            Action::Load(load) => options.sides = load.sides,
+            Action::Load(load) => {
+                options = LoadOptions { sides: load.sides, scale: load.scale };
+                stated_up = load.up;
+            }
             Action::Light(light) => {
                 for lamp in &light.lamps {
                     lights.push(
@@ -95,13 +105,31 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
             if sources.is_empty() {
                 return Err(SolveError::NoLight.into());
             }
-            let up = up(pipeline.scene_path(), &model.scene);
+            let Up { direction: up, why: up_from, doubt } =
+                Up::of(pipeline.scene_path(), &model.scene, stated_up);
             let inside = FocusSides::of(&model, focus.as_ref());
             if inside.is_empty() {
                 return Err(pipeline.diagnostics(nothing_inside(pipeline, &model.scene)).into());
             }
             let layouts = layouts(pipeline, &model, up).map_err(|problems| pipeline.diagnostics(problems))?;
-            Ok(Prepared { model, up, warnings, sources, focus, inside, layouts, load_seconds, build_seconds })
+            let survey = Survey::new(&model.scene, &model.accel, &sources, up, SURVEY_LINES);
+            let mut suspicions = survey.suspicions(focus.is_some());
+            suspicions.extend(doubt);
+            suspicions.extend(sky_doubt(&model.scene, up));
+            progress.warn(&suspicions);
+            Ok(Prepared {
+                model,
+                up,
+                up_from,
+                warnings,
+                suspicions,
+                sources,
+                focus,
+                inside,
+                layouts,
+                load_seconds,
+                build_seconds,
+            })
         }
         outcome => {
             problems.extend(outcome.err().map(|error| model_problem(error, span)));
@@ -155,12 +183,6 @@ fn layouts(
         }
     }
     if problems.is_empty() { Ok(layouts) } else { Err(problems) }
-}
-
-pub(crate) fn up(path: &Path, scene: &Scene) -> DVec3 {
-    // The glTF standard defines +y as up; OBJ does not define it.
-    let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
-    if is_obj { guess_up(scene) } else { DVec3::Y }
 }
 
 fn model_problem(error: ModelError, span: std::ops::Range<usize>) -> Diagnostic {

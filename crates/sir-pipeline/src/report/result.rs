@@ -30,6 +30,9 @@ pub struct Report {
     pub scene: SceneReport,
     /// Stages, in order.
     pub stages: Vec<StageReport>,
+    /// Warnings of the run: what is suspicious about the scene, and about the result.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// Written files, in order, without this report.
     pub outputs: Vec<OutputReport>,
     /// Time of the whole run.
@@ -60,6 +63,12 @@ pub struct SceneReport {
     pub area: f64,
     /// Emitted power per band \[W\]. For light from outside, the power that enters the box around the scene.
     pub power: [f64; 3],
+    /// Up direction, of unit length.
+    #[serde(default)]
+    pub up: [f64; 3],
+    /// Reason for the up direction.
+    #[serde(default)]
+    pub up_from: String,
     /// Warnings of the reader about what it changed or left out.
     pub warnings: Vec<String>,
 }
@@ -180,6 +189,9 @@ pub struct OutputReport {
     pub kind: String,
     /// Size \[bytes\].
     pub bytes: u64,
+    /// Camera of an image for which neither the pipeline nor the scene has one, as a pipeline can state it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<String>,
 }
 
 /// Time of a stage or a run.

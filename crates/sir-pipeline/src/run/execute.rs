@@ -141,6 +141,7 @@ pub fn run_together(
         units: pipeline.units,
         scene: scene_report(&prepared, pipeline.scene_path()),
         stages: Vec::new(),
+        warnings: prepared.suspicions.clone(),
         outputs: Vec::new(),
         time: Time::of(0.0),
     };
@@ -241,6 +242,12 @@ impl Run<'_> {
         Ok(RunResult { directory, report: head.report })
     }
 
+    /// Passes on warnings about the result, and records them.
+    pub(crate) fn warn(&mut self, warnings: Vec<String>) {
+        self.progress.warn(&warnings);
+        self.head.report.warnings.extend(warnings);
+    }
+
     /// Returns the time so far \[s\].
     pub(crate) fn seconds(&self) -> f64 {
         self.seconds_before + self.watch.seconds()
@@ -266,6 +273,8 @@ fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {
         sides: mesh.side_count(),
         area: scene.total_area(),
         power: prepared.sources.iter().map(|s| s.power).sum::<Rgb>().to_array(),
+        up: prepared.up.to_array(),
+        up_from: prepared.up_from.clone(),
         warnings: prepared.warnings.clone(),
     }
 }

@@ -1,13 +1,15 @@
 //! Runs a pipeline: its stages in order, checkpoints, files and the report.
 //!
 //! * `execute`: starts or resumes a run; `resume`: contents of a checkpoint; `directory`: run directories, `lock`: their locks.
-//! * `stages`: one stage after the other; `lighting`: the light so far; `repeat`: the stage `Repeat`.
+//! * `stages`: one stage after the other; `lighting`: the light so far; `repeat`: the stage `Repeat`;
+//!   `reach`: the global lines that met what is lit.
 //! * `save`: images, lit scenes and tables; `sensor_files`: files of sensors.
 
 pub(crate) mod directory;
 pub(crate) mod execute;
 mod lighting;
 pub(crate) mod lock;
+mod reach;
 mod repeat;
 pub(crate) mod resume;
 pub(crate) mod save;

@@ -19,6 +19,7 @@ use crate::report::result::{
 };
 use crate::run::execute::Run;
 use crate::run::lighting::{Done, Lighting};
+use crate::run::reach::few_lines_warning;
 use crate::run::stages::unshot_warning;
 
 impl Run<'_> {
@@ -69,11 +70,12 @@ impl Run<'_> {
         let (report, solution) = repeats.finish(model, inside);
         self.progress.note(&format!("Repeat: {} times in {}", repeat + 1, duration(report.time.seconds)));
         for (stage, report) in settings.stages.iter().zip(&report.stages) {
-            self.progress.warn(
-                &report.lines.iter().flat_map(|l| unshot_warning(&stage.action, l)).collect::<Vec<_>>(),
-            );
+            if let Some(lines) = &report.lines {
+                self.warn(unshot_warning(&stage.action, lines));
+                self.warn(few_lines_warning(self.prepared, lines, &solution));
+            }
         }
-        self.progress.warn(&missed_target_warning(settings, &report));
+        self.warn(missed_target_warning(settings, &report));
         Ok((report, solution))
     }
 }

@@ -10,6 +10,7 @@ use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, ViewError
 use sir_view::{default_camera, render, write_exr, write_glb, write_png};
 
 use crate::error::Error;
+use crate::plan;
 use crate::plan::{Image, Output};
 use crate::prepare::cameras::chosen_camera;
 use crate::prepare::prepared::Prepared;
@@ -56,8 +57,12 @@ pub(crate) fn save(
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(Error::directory(parent))?;
         }
+        let mut default_camera = None;
         let kind = match output {
             Output::Image(image) => {
+                if chosen_camera(image, scene).is_none() {
+                    default_camera = plan::Camera::of_scene(&renderer.default_camera()).map(|c| c.to_ron());
+                }
                 let Rendered { camera, settings, picture, .. } =
                     renderer.render(image, is_denoised(output))?;
                 match &errors {
@@ -85,7 +90,7 @@ pub(crate) fn save(
         };
         let bytes = fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len();
         let path = output.path().to_string_lossy().into_owned();
-        if !written(OutputReport { path, kind: kind.into(), bytes }) {
+        if !written(OutputReport { path, kind: kind.into(), bytes, camera: default_camera }) {
             break;
         }
     }
@@ -140,7 +145,12 @@ impl Renderer<'_> {
     /// Returns the camera for a scene without cameras. Keeps it, because finding it takes time.
     fn default_camera(&mut self) -> Camera {
         let Prepared { model, up, .. } = self.prepared;
-        self.default.get_or_insert_with(|| default_camera((self.display)(), &model.accel, *up)).clone()
+        let find = || {
+            let camera = default_camera((self.display)(), &model.accel, *up);
+            // The report states this camera, so its numbers are short.
+            plan::Camera::of_scene(&camera).and_then(|camera| camera.to_scene()).unwrap_or(camera)
+        };
+        self.default.get_or_insert_with(find).clone()
     }
 }
 

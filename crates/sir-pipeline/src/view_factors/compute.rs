@@ -85,7 +85,8 @@ fn prepare(
         check(directory, options.force)?;
     }
     progress.note(&format!("Load: {}", options.scene.display()));
-    let built = sir_geom::load(&options.scene, &LoadOptions { sides: options.sides })?;
+    let built =
+        sir_geom::load(&options.scene, &LoadOptions { sides: options.sides, ..LoadOptions::default() })?;
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
     progress.warn(&warnings);
     let grouping = groups(options, &built.scene)?;

@@ -151,6 +151,8 @@ mod tests {
             sides: 1,
             area: 1.0,
             power: [1.0; 3],
+            up: [0.0, 1.0, 0.0],
+            up_from: String::new(),
             warnings: Vec::new(),
         };
         let mut report = Report {
@@ -161,7 +163,8 @@ mod tests {
             seed: 1,
             scene,
             stages: Vec::new(),
-            outputs: vec![OutputReport { path: TABLE.into(), kind: "table".into(), bytes: 1 }],
+            warnings: Vec::new(),
+            outputs: vec![OutputReport { path: TABLE.into(), kind: "table".into(), bytes: 1, camera: None }],
             time: Time::of(1.0),
         };
         let mut write = |program: &str| {

@@ -1,0 +1,81 @@
+//! Warns if few of the global lines meet what is lit.
+
+use glam::DVec3;
+use sir_geom::{BoundingBox, Side};
+use sir_lines::Domain;
+use sir_mesh::PatchId;
+use sir_radiosity::{Model, Solution};
+
+use crate::format::{dimensions, grouped};
+use crate::info::shape::Extent;
+use crate::prepare::prepared::Prepared;
+use crate::report::result::LinesReport;
+
+/// Share of the received power that lands on what counts as lit.
+const MOST: f64 = 0.9;
+
+/// Share of the global lines below which those that meet what is lit are few.
+const FEW: f64 = 0.01;
+
+/// Returns a warning if global lines were drawn through a scene most of which is dark, so that few of them met what is
+/// lit. A focus makes up for that.
+pub(crate) fn few_lines_warning(
+    prepared: &Prepared,
+    lines: &LinesReport,
+    solution: &Solution,
+) -> Vec<String> {
+    let Some(domain) = lines.domain.as_ref().filter(|_| prepared.focus.is_none()) else { return Vec::new() };
+    let Some(lit) = lit_box(&prepared.model, solution) else { return Vec::new() };
+    // Of uniform lines through a convex body, those that meet another one in it are in proportion to its surface
+    // (Cauchy and Crofton; Santaló 1976, section II.14).
+    let share = Domain::Box(lit).surface() / domain.surface;
+    if share >= FEW {
+        return Vec::new();
+    }
+    let (lit, met) = (Extent::from(lit), share * lines.lines as f64);
+    vec![format!(
+        "{} of {} global lines met the part of the scene that gets {} % of the light, {}; its light has large \
+         errors; set `{}`",
+        if met < 1.0 {
+            "less than one".into()
+        } else {
+            format!("only about {}", grouped(met.round() as u64))
+        },
+        grouped(lines.lines),
+        100.0 * MOST,
+        dimensions(lit.size()),
+        lit.focus()
+    )]
+}
+
+/// Returns the box around the brightest sides that together receive most of the power; `None` if nothing is lit.
+fn lit_box(model: &Model, solution: &Solution) -> Option<BoundingBox> {
+    let Model { scene, mesh, .. } = model;
+    let mut sides: Vec<(f64, f64, [DVec3; 3])> = Vec::new();
+    for id in scene.triangle_ids() {
+        let (patches, corners) = (mesh.patches_of(id), scene.corners(id));
+        let area = scene.area(id) / patches.len() as f64;
+        for patch in patches.map(PatchId) {
+            for side in [Side::Front, Side::Back].into_iter().filter_map(|side| mesh.side_of(id, patch, side))
+            {
+                let irradiance = solution.irradiance[side.index()].element_sum();
+                if irradiance > 0.0 {
+                    sides.push((
+                        irradiance,
+                        irradiance * area,
+                        mesh.patch_corners(id, patch).map(|b| b.point(corners)),
+                    ));
+                }
+            }
+        }
+    }
+    sides.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let wanted = MOST * sides.iter().map(|(_, power, _)| power).sum::<f64>();
+    let mut sum = 0.0;
+    let brightest = sides.iter().take_while(|(_, power, _)| {
+        let is_part = sum < wanted;
+        sum += power;
+        is_part
+    });
+    BoundingBox::of(brightest.flat_map(|(_, _, corners)| *corners))
+}
