@@ -199,7 +199,7 @@ mod tests {
         let text = Camera::of_scene(&camera).unwrap().to_ron();
         assert_eq!(
             text,
-            "Camera(eye: (1, 0.666667, -5), target: (0.805571, 0.537048, -4.027856), up: (0, 1, 0), fov: 64.744231)"
+            "Camera(eye: (1, 0.666667, -5), target: (0.805539, 0.537026, -4.027694), up: (0, 1, 0), fov: 64.744231)"
         );
     }
 }
