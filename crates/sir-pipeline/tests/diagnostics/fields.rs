@@ -34,7 +34,7 @@ fn unknown_names_and_fields() {
     3 | Load(path: "room.obj", side: Front, color: 1),
       |                                     ^^^^^
       |
-      = help: `Load` has the fields `path` and `sides`
+      = help: `Load` has the fields `path`, `sides`, `scale` and `up`
 
     error: unknown stage `Firstshot`
      --> x.ron:4:1
