@@ -16,9 +16,6 @@ const COVERED: f64 = 0.1;
 /// Distance below which a lamp and its cover are said to lie in one plane \[m\].
 const IN_PLANE: f64 = 1e-5;
 
-/// Number of steps of the integer grid from the center of the scene to its bounding sphere; see `sir-accel`.
-const GRID_STEPS: f64 = (1u32 << 30) as f64;
-
 /// Largest step of the grid, as a share of the distance that light travels.
 const COARSE: f64 = 1e-4;
 
@@ -74,7 +71,7 @@ impl Survey {
             (_, Some(dominant)) => Some((dominant.rest.center(), dominant.rest.size().length())),
             _ => None,
         };
-        let remote = lit.and_then(|(center, size)| remote(scene, center, size));
+        let remote = lit.and_then(|(center, size)| remote(scene, accel.grid_step(), center, size));
         Self { extent: scene.bounding_box().into(), up, dominant, lamps, remote }
     }
 
@@ -177,10 +174,9 @@ impl Survey {
     }
 }
 
-/// Returns the triangle farthest from the lit part of a scene, if it makes the grid coarse. `size` is the size of the
-/// lit part.
-fn remote(scene: &Scene, center: DVec3, size: f64) -> Option<Remote> {
-    let step = scene.bounding_sphere().radius / GRID_STEPS;
+/// Returns the triangle farthest from the lit part of a scene, if it makes the grid coarse. `step` is the step of
+/// the grid, and `size` the size of the lit part.
+fn remote(scene: &Scene, step: f64, center: DVec3, size: f64) -> Option<Remote> {
     if step <= COARSE * size {
         return None;
     }
