@@ -94,9 +94,10 @@ impl SceneBuilder {
     }
 
     /// Adds a polygon whose corners run counterclockwise seen from its front; with fewer than three corners it adds no
-    /// triangle. The polygon is cut into the fan of triangles `(0, 1, 2), (0, 2, 3), …` if that is a valid
-    /// triangulation, as for convex polygons, otherwise into the same number of other triangles. A polygon that crosses
-    /// itself, or is not convex and has more than 4,096 corners, is cut into the fan with a warning.
+    /// triangle. A convex quadrilateral is cut into the triangles `(0, 1, 2), (0, 2, 3)`, and a convex polygon of more
+    /// corners is cut in halves until triangles are left. Other polygons are cut into the same number of triangles. A
+    /// polygon that crosses itself, or winds in many turns and has more than 4,096 corners, is cut into the fan
+    /// `(0, 1, 2), (0, 2, 3), …` with a warning.
     pub fn add_polygon(&mut self, corners: &[VertexId], material: MaterialId) -> FaceId {
         // `build` reports vertices that were not added.
         let places: Option<Vec<DVec3>> =

@@ -1,14 +1,20 @@
 //! Triangulation of polygons.
 //!
-//! Most polygons in files are convex, so the fan from their first corner is a valid triangulation. For others it is
-//! not: triangles of the fan would lie outside the outline, or overlap. Those are triangulated by ear clipping
-//! (Meisters 1975). All corners remain corners of triangles, also those in the middle of a straight edge: a neighbor
-//! may have a corner there, and a crack would open if only one of the two had it.
+//! Most polygons in files are convex. Those are cut in halves, and the halves again, so that no corner belongs to more
+//! triangles than the logarithm of their number. (In a fan from one corner, all triangles overlap there, and trees over
+//! them are slow.) Others are triangulated by ear clipping (Meisters 1975), piece by piece if they have many corners:
+//! curves that have been rounded are convex only at a distance. All corners remain corners of triangles, also those in
+//! the middle of a straight edge: a neighbor may have a corner there, and a crack would open if only one of the two had
+//! it.
 
 use glam::{DVec2, DVec3};
 
 /// Maximum number of corners for ear clipping, whose time is quadratic.
 const MAX_CORNERS: usize = 4096;
+
+/// Numbers of edges up to which a piece of a polygon is not halved, in the order in which they are tried. Triangles
+/// have two edges of the outline.
+const PIECES: [usize; 3] = [2, 64, MAX_CORNERS - 1];
 
 /// Maximum number of searches over all remaining corners when none is known to be an ear. Only corners that touch edges
 /// make such searches necessary.
@@ -42,14 +48,49 @@ pub(crate) fn cut(corners: &[DVec3]) -> Cut {
         return Cut { triangles: fan, is_valid };
     }
     let flat: Vec<DVec2> = corners.iter().map(|&p| project(p - corners[0], normal)).collect();
-    if fan.iter().all(|&t| turns_left(t.map(|i| flat[i]))) {
+    let is_valid = |triangles: &[[usize; 3]]| triangles.iter().all(|&t| turns_left(t.map(|i| flat[i])));
+    let is_fan = is_valid(&fan);
+    if corners.len() == 4 && is_fan {
         return Cut { triangles: fan, is_valid: true };
     }
-    let ears = if corners.len() <= MAX_CORNERS { Ring::new(&flat).cut() } else { None };
-    match ears.filter(|ears| covers(ears, &flat)) {
-        Some(triangles) => Cut { triangles, is_valid: true },
-        None => Cut { triangles: fan, is_valid: false },
+    // A quadrilateral has no better triangulation.
+    for &edges in PIECES.iter().skip(usize::from(corners.len() == 4)) {
+        // Ear clipping of the whole outline also finds triangulations in which some triangles have no area.
+        let is_whole = edges >= corners.len() - 1;
+        let tiles = |found: &Vec<[usize; 3]>| (is_whole || is_valid(found)) && covers(found, &flat);
+        if let Some(triangles) = halves(&flat, edges).filter(tiles) {
+            return Cut { triangles, is_valid: true };
+        }
+        if is_whole {
+            break;
+        }
     }
+    Cut { triangles: fan, is_valid: is_fan }
+}
+
+/// Cuts a polygon in halves until each piece has at most `edges` edges of the outline, and clips the ears of the pieces.
+/// Returns `None` if that is impossible.
+fn halves(flat: &[DVec2], edges: usize) -> Option<Vec<[usize; 3]>> {
+    let mut triangles = Vec::with_capacity(flat.len() - 2);
+    // Pieces: the corners from the first to the last one.
+    let mut waiting = vec![(0, flat.len() - 1)];
+    while let Some((first, last)) = waiting.pop() {
+        if last - first == 2 {
+            triangles.push([first, first + 1, last]);
+        } else if last - first <= edges {
+            let ears = Ring::new(&flat[first..=last]).cut()?;
+            triangles.extend(ears.iter().map(|t| t.map(|i| first + i)));
+        } else {
+            let middle = first.midpoint(last);
+            let triangle = [first, middle, last];
+            if !turns_left(triangle.map(|i| flat[i])) {
+                return None;
+            }
+            triangles.push(triangle);
+            waiting.extend([(middle, last), (first, middle)].iter().filter(|(a, b)| b - a > 1));
+        }
+    }
+    Some(triangles)
 }
 
 /// Returns a vector in the direction of the normal: the sum of cross products (Newell).
@@ -249,10 +290,41 @@ mod tests {
         }
     }
 
+    /// Returns the corners of a regular polygon, rounded to a multiple of `step`.
+    fn circle(corners: u32, step: f64) -> Vec<DVec3> {
+        let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(corners);
+        let round = |x: f64| if step > 0.0 { (x / step).round() * step } else { x };
+        (0..corners).map(|i| DVec3::new(round(angle(i).cos()), round(angle(i).sin()), 0.0)).collect()
+    }
+
     #[test]
-    fn convex_polygons_are_fans() {
+    fn convex_polygons_are_cut_in_halves() {
+        let quad = at(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
+        assert_eq!(cut(&quad).triangles, [[0, 1, 2], [0, 2, 3]]);
         let pentagon = at(&[[0.0, 0.0], [2.0, 0.0], [2.5, 1.0], [1.0, 2.0], [-0.5, 1.0]]);
-        assert_eq!(cut(&pentagon).triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
+        assert_eq!(cut(&pentagon).triangles, [[0, 2, 4], [0, 1, 2], [2, 3, 4]]);
+        for corners in [5, 6, 17, 64] {
+            assert_tiles(&circle(corners, 0.0));
+        }
+    }
+
+    /// No corner of a circle belongs to many triangles, also if its coordinates have six digits and it is not convex.
+    #[test]
+    fn circles_of_many_corners_are_balanced() {
+        for (corners, step) in [(720, 0.0), (100_000, 0.0), (5_000, 1e-6), (100_000, 1e-6)] {
+            let circle = circle(corners, step);
+            let Cut { triangles, is_valid } = cut(&circle);
+            assert!(is_valid && triangles.len() == circle.len() - 2, "{corners}, {step}");
+            let mut uses = vec![0; circle.len()];
+            triangles.as_flattened().iter().for_each(|&i| uses[i] += 1);
+            let most = uses.iter().max().copied().unwrap_or(0);
+            assert!(most <= if step > 0.0 { 200 } else { 34 }, "{corners}, {step}: {most}");
+            let flat: Vec<DVec2> = circle.iter().map(|p| p.truncate()).collect();
+            for t in triangles {
+                // Rounded corners may be collinear.
+                assert!(doubled_area(t.map(|i| flat[i])) > if step > 0.0 { -1e-15 } else { 0.0 }, "{t:?}");
+            }
+        }
     }
 
     #[test]

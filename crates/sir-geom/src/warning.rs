@@ -13,7 +13,7 @@ pub enum Warning {
         /// Number of triangles.
         count: u64,
     },
-    /// Polygons whose outlines cross themselves, or that have more than 4,096 corners and are not convex, were cut into
+    /// Polygons whose outlines cross themselves, or that have more than 4,096 corners and are far from convex, were cut into
     /// fans.
     CrossedPolygons {
         /// Number of polygons.
@@ -45,7 +45,7 @@ impl fmt::Display for Warning {
             Self::CrossedPolygons { count } => {
                 write!(
                     f,
-                    "{count} polygons cross themselves, or are not convex and have more than 4,096 corners; they were cut into fans from their first corner"
+                    "{count} polygons cross themselves, or have more than 4,096 corners and are far from convex; they were cut into fans from their first corner"
                 )
             }
             Self::ClampedReflectance { material, asked } => write!(
