@@ -8,6 +8,7 @@ use crate::error::{AccelError, MAX_TRIANGLES};
 use crate::grid::Grid;
 use crate::opacity::OpacityTest;
 use crate::options::Options;
+use crate::tracer::ScratchPool;
 use crate::tree::Tree;
 use crate::triangle::GridTriangle;
 
@@ -19,6 +20,7 @@ pub struct Accel {
     stacks: Stacks,
     /// `None` if all triangles are opaque.
     pub(crate) opacity: Option<OpacityTest>,
+    pub(crate) scratch: ScratchPool,
 }
 
 impl Accel {
@@ -60,7 +62,7 @@ impl Accel {
             check("contact priorities", priorities.len(), ids.len()).map(|()| priorities)
         })?;
         let opacity = opacity.filter(OpacityTest::is_needed);
-        Ok(Self { grid, tree, stacks, opacity })
+        Ok(Self { grid, tree, stacks, opacity, scratch: ScratchPool::default() })
     }
 
     /// Returns true if some triangles are transparent, at least in places.

@@ -1,4 +1,4 @@
-//! Construction of the hierarchy: `obvhs` builds a binary tree, which is collapsed into nodes of sixteen boxes.
+//! Construction of the hierarchy: a binary tree is optimized by `obvhs` and collapsed into nodes of sixteen boxes.
 
 use std::ops::Range;
 
@@ -8,8 +8,8 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::ploc::PlocBuilder;
 
+use crate::cluster;
 use crate::grid::RADIUS;
 use crate::node::{LEAF, MARGIN, Node};
 use crate::simd::backend::{LEAF_WIDTH, NODE_WIDTH};
@@ -43,17 +43,12 @@ pub(crate) fn hierarchy(triangles: &[GridTriangle]) -> Hierarchy {
     Hierarchy { nodes, leaves, order: binary.primitive_indices }
 }
 
-/// Builds a binary tree in the steps of `obvhs::bvh2::builder::build_bvh2`. That function also validates the tree in
-/// debug builds, and panics if the tree is deeper than the traversals of `obvhs` allow; these are not used here.
+/// Builds a binary tree as `obvhs::bvh2::builder::build_bvh2` does, but from a clustering of our own. That function also
+/// validates the tree in debug builds, and panics if the tree is deeper than the traversals of `obvhs` allow; these are
+/// not used here.
 fn binary_tree(boxes: &[Aabb]) -> Bvh2 {
     let parameters = BvhBuildParams::medium_build();
-    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
-        parameters.ploc_search_distance,
-        boxes,
-        (0..boxes.len() as u32).collect(),
-        parameters.sort_precision,
-        parameters.search_depth_threshold,
-    );
+    let mut binary = cluster::binary_tree(boxes);
     let mut optimizer = ReinsertionOptimizer::default();
     let ratio = parameters.reinsertion_batch_ratio;
     optimizer.run(&mut binary, ratio, None);

@@ -56,15 +56,18 @@
 //!
 //! # Speed
 //!
-//! The binary tree comes from `obvhs` and is collapsed into nodes of sixteen boxes and leaves of eight triangles. A
+//! The binary tree is optimized by `obvhs` and collapsed into nodes of sixteen boxes and leaves of eight triangles. A
 //! line visits few of them, but each visit may wait for memory. So the functions for many lines keep dozens of lines
 //! active, advance each by one step at a time, and prefetch the data of the next step. Boxes and triangles are culled
 //! in single precision, with a margin for rounding; the remaining triangles are tested in double precision, eight at a
 //! time. The algorithm is written once, generic over the SIMD backend, and compiled for AVX-512, AVX2 and plain arrays.
 //! The backend is chosen at run time; the hits are the same bit for bit.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod accel;
 mod build;
+mod cluster;
 mod contact;
 mod error;
 mod grid;

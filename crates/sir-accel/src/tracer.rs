@@ -1,5 +1,8 @@
 //! The tracer: searches for the hits of lines and rays.
 
+use std::mem::take;
+use std::sync::Mutex;
+
 use sir_types::Line;
 
 use crate::accel::Accel;
@@ -12,7 +15,7 @@ use crate::search::queue::MAX_LINES;
 use crate::simd::dispatch::Backend;
 
 impl Accel {
-    /// Returns a tracer. Each thread needs its own.
+    /// Returns a tracer. Each thread needs its own. Making one is cheap: it takes over the memory of one that is dropped.
     #[must_use]
     pub fn tracer(&self) -> Tracer<'_> {
         Tracer::new(self, Backend::best())
@@ -31,9 +34,47 @@ pub struct Tracer<'a> {
     all_hits: AllHitsScratch,
 }
 
+/// Scratch memory of a tracer.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    first_hit: FirstHitScratch,
+    all_hits: AllHitsScratch,
+}
+
+/// Scratch memory that no tracer uses. A thread that makes a tracer for each of its tasks gets the same memory again.
+#[derive(Debug, Default)]
+pub(crate) struct ScratchPool(Mutex<Vec<Scratch>>);
+
+impl ScratchPool {
+    fn take(&self) -> Scratch {
+        self.0.lock().ok().and_then(|mut pool| pool.pop()).unwrap_or_default()
+    }
+
+    fn put(&self, scratch: Scratch) {
+        if let Ok(mut pool) = self.0.lock() {
+            pool.push(scratch);
+        }
+    }
+}
+
+/// A copy starts without memory.
+impl Clone for ScratchPool {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Drop for Tracer<'_> {
+    fn drop(&mut self) {
+        let (first_hit, all_hits) = (take(&mut self.first_hit), take(&mut self.all_hits));
+        self.accel.scratch.put(Scratch { first_hit, all_hits });
+    }
+}
+
 impl<'a> Tracer<'a> {
     pub(crate) fn new(accel: &'a Accel, backend: Backend) -> Self {
-        Self { accel, backend, first_hit: FirstHitScratch::default(), all_hits: AllHitsScratch::default() }
+        let Scratch { first_hit, all_hits } = accel.scratch.take();
+        Self { accel, backend, first_hit, all_hits }
     }
 
     /// Returns the acceleration structure.

@@ -40,7 +40,7 @@ impl Tree {
         let of = |range: &Range<u32>| triangles[range.start as usize..range.end as usize].iter();
         let leaves = collect_in_huge_pages(ranges.iter().map(|range| Leaf::new(of(range))));
         let firsts = ranges.iter().map(|range| range.start).collect();
-        let stack_size = stack_size(&nodes, 0);
+        let stack_size = stack_size(&nodes);
         let nodes = collect_in_huge_pages(nodes.into_iter());
         Self { nodes, leaves, firsts, triangles, places, stack_size }
     }
@@ -117,8 +117,13 @@ impl Tree {
     }
 }
 
-fn stack_size(nodes: &[Node], root: usize) -> usize {
-    let children = nodes[root].children.iter().filter(|&&child| child != 0);
-    let below = children.clone().filter(|&child| child & LEAF == 0);
-    children.count() + below.map(|&child| stack_size(nodes, child as usize)).max().unwrap_or(0)
+/// Returns the largest number of entries on the stack of a depth-first search. Nodes come after their parents.
+fn stack_size(nodes: &[Node]) -> usize {
+    let mut sizes = vec![0; nodes.len()];
+    for (i, node) in nodes.iter().enumerate().rev() {
+        let children = node.children.iter().filter(|&&child| child != 0);
+        let below = children.clone().filter(|&child| child & LEAF == 0);
+        sizes[i] = children.count() + below.map(|&child| sizes[child as usize]).max().unwrap_or(0);
+    }
+    sizes.first().copied().unwrap_or(0)
 }

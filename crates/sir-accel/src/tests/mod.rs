@@ -4,6 +4,7 @@
 mod common;
 
 mod backends;
+mod depth;
 mod ranges;
 
 use sir_types::{Side, TriangleId};
