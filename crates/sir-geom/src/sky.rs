@@ -163,6 +163,12 @@ impl Sky {
         if towards.dot(self.up) > 0.0 { self.scale * self.pattern.at(self.up, towards) } else { self.ground }
     }
 
+    /// Returns an upper bound of the radiance over all directions, per band \[W/(m² sr)\].
+    #[must_use]
+    pub fn largest_radiance(&self) -> Rgb {
+        (self.scale * self.integrals.bound).max(self.ground)
+    }
+
     /// Returns the radiance of the ground per band \[W/(m² sr)\].
     #[must_use]
     pub fn ground(&self) -> Rgb {

@@ -365,3 +365,61 @@ fn an_aim_saves_rays() {
     let [rough, fine] = [0.01, 0.0002].map(rays);
     assert!(rough < fine && fine < 1 << 20, "{rough} {fine}");
 }
+
+/// A room whose ceiling has a small bright spot that most sets of rays miss: a sensor on the floor has the irradiance
+/// .255 by it, and nothing else. The stated error is never zero, and rays are added until the target is reached.
+#[test]
+fn a_small_bright_spot_is_not_missed_without_a_word() {
+    let mut b = SceneBuilder::new();
+    let (black, white) = (b.add_material(gray(0.0, 0.0)), b.add_material(gray(0.0, 0.5)));
+    shapes::cuboid(&mut b, v(0., 0., 0.), v(4., 3., 4.), [black; 6], Facing::Inward);
+    let spot = [v(1.99, 2.9, 1.99), v(2.01, 2.9, 1.99), v(2.01, 2.9, 2.01), v(1.99, 2.9, 2.01)];
+    shapes::quad(&mut b, spot, white);
+    let model = model(b);
+    let sensor = at(v(2.5, 0.0, 2.0), DVec3::Y);
+    let (exact, factor) = (0.255, factor(&sensor, &spot));
+    let solution = uniform(&model, exact / (0.5 * factor));
+    let measure = |rays, error, number| {
+        Gatherer::new(&model, &solution, SensorSettings { rays, error }, 1).measure(number, &sensor)
+    };
+    let mut missed = 0;
+    for number in 0..20 {
+        let few = measure(16_384, 0.05, number);
+        let (value, error) = (few.luminance(), few.luminance_error());
+        println!("{value:.4} ± {error:.4} from {} rays", few.rays);
+        missed += u32::from(value == 0.0);
+        assert!(few.rays == 16_384 && few.error().x > 0.0 && (value - exact).abs() < 4.0 * error);
+    }
+    // Some sensors see nothing of the spot, so the test tests something.
+    assert!(missed > 0);
+    let many = measure(1 << 23, 0.1, 0);
+    let (value, error) = (many.luminance(), many.luminance_error());
+    println!("{value:.4} ± {error:.4} from {} rays", many.rays);
+    assert!(error < 0.1 * value && (value - exact).abs() < 4.0 * error, "{value} ± {error}");
+}
+
+/// The same with a lamp of which a sensor sees only a crack beside a screen, and with a sky behind a small window.
+#[test]
+fn hidden_light_is_part_of_the_error() {
+    let closed = |builder: &mut SceneBuilder| {
+        let black = builder.add_material(gray(0.0, 0.0));
+        shapes::cuboid(builder, v(0., 0., 0.), v(4., 3., 4.), [black; 6], Facing::Inward);
+    };
+    let mut lamp = SceneBuilder::new();
+    closed(&mut lamp);
+    let (lit, screen) =
+        (lamp.add_material(gray(100.0, 0.0)), lamp.add_material(gray(0.0, 0.0).with_sides(Sides::Both)));
+    shapes::quad(&mut lamp, [v(1., 2.9, 1.), v(2., 2.9, 1.), v(2., 2.9, 2.), v(1., 2.9, 2.)], lit);
+    shapes::quad(&mut lamp, [v(0., 2., 0.), v(4., 2., 0.), v(4., 2., 4.), v(0., 2., 4.)], screen);
+    let mut sky = SceneBuilder::new();
+    closed(&mut sky);
+    sky.set_sky(Sky::new(DVec3::Y, SkyModel::Uniform, Rgb::splat(1000.0), Rgb::ZERO).unwrap());
+    for (model, largest) in [(model(lamp), 100.0), (model(sky), 1000.0)] {
+        let solution = uniform(&model, 0.0);
+        let gatherer = Gatherer::new(&model, &solution, RAYS, 1);
+        let dark = gatherer.measure(0, &at(v(2., 0., 2.), DVec3::Y));
+        let unmet = largest / RAYS.rays as f64;
+        assert_eq!(dark.irradiance, Rgb::ZERO);
+        assert!(dark.luminance_error() > 0.01 * unmet && dark.luminance_error() < 1.01 * unmet, "{dark:?}");
+    }
+}

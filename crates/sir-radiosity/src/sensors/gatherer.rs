@@ -10,6 +10,7 @@ use crate::sensors::measurement::Measurement;
 use crate::sensors::replication::{PatchHits, Replication};
 use crate::sensors::sensor::{REPLICATIONS, Sensor, SensorSettings};
 use crate::sensors::start::SensorStart;
+use crate::sensors::unmet::Brightness;
 use crate::solution::Solution;
 
 /// Rays of all replications before the first check of the error.
@@ -22,6 +23,7 @@ pub struct Gatherer<'s> {
     solution: &'s Solution,
     settings: SensorSettings,
     emitters: Emitters,
+    brightness: Brightness,
     streams: Streams,
 }
 
@@ -35,6 +37,7 @@ impl<'s> Gatherer<'s> {
             solution,
             settings,
             emitters: Emitters::of(model),
+            brightness: Brightness::of(model, solution),
             streams: Streams::new(seed, Purpose::SENSORS),
         }
     }
@@ -65,7 +68,8 @@ impl<'s> Gatherer<'s> {
                     &mut patch_hits,
                 );
             }
-            let mut measurement = Measurement::of(&replications, lights);
+            let unmet = self.brightness.unmet(&patch_hits.extremes, rays * REPLICATIONS);
+            let mut measurement = Measurement::of(&replications, unmet, lights);
             let enough = measurement.sampling_error() <= self.settings.error * measurement.luminance();
             if rays == most || enough {
                 measurement.inherit(&patch_hits.errors(self.model, self.solution), rays * REPLICATIONS);

@@ -3,6 +3,7 @@
 use sir_geom::{Rgb, luminance};
 
 use crate::sensors::replication::{Gathered, Replication};
+use crate::sensors::unmet::Squares;
 
 /// The irradiance at a sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,7 +13,7 @@ pub struct Measurement {
     /// Part of `irradiance` directly from lights, emitting surfaces and the sky \[W/m²\].
     pub direct: Rgb,
     /// Sampling error: standard error of `irradiance` per band \[W/m²\] due to the choice of rays, from the spread of
-    /// the replications.
+    /// the replications and the light of bright surfaces that no ray has met.
     pub sampling: Rgb,
     /// Inherited error: standard error of `irradiance` per band \[W/m²\] due to the errors of the patches whose light
     /// is gathered. These are assumed to be independent of each other. Sensors that see the same patches have this
@@ -25,8 +26,9 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// Returns the measurement from the replications and the irradiance by lights without a surface.
-    pub(super) fn of(replications: &[Replication], lights: Rgb) -> Self {
+    /// Returns the measurement from the replications, the squared errors by light that no ray has met, and the
+    /// irradiance by lights without a surface.
+    pub(super) fn of(replications: &[Replication], unmet: Squares, lights: Rgb) -> Self {
         let n = replications.len() as f64;
         let mean = |value: &dyn Fn(&Replication) -> Rgb| {
             replications.iter().fold(Rgb::ZERO, |sum, replication| sum + value(replication)) / n
@@ -39,12 +41,12 @@ impl Measurement {
         let total = direct + reflected;
         let squares = mean(&|r| (all(r) - total) * (all(r) - total));
         let square = replications.iter().map(|r| luminance(all(r) - total)).map(|y| y * y).sum::<f64>() / n;
-        let root = |variance: f64| (variance / (n - 1.0)).sqrt();
+        let spread = (squares / (n - 1.0), square / (n - 1.0));
         Self {
             irradiance: total + lights,
             direct: direct + lights,
-            sampling: squares.map(root),
-            luminance_errors: [root(square), 0.0],
+            sampling: (spread.0 + unmet.bands).map(f64::sqrt),
+            luminance_errors: [(spread.1 + unmet.luminance).sqrt(), 0.0],
             ..Self::default()
         }
     }

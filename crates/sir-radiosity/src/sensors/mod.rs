@@ -13,6 +13,7 @@ mod sensor;
 mod stage;
 mod start;
 mod tree;
+mod unmet;
 
 pub use gatherer::Gatherer;
 pub use measurement::Measurement;

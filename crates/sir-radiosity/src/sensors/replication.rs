@@ -11,6 +11,7 @@ use sir_mesh::SideId;
 use crate::model::Model;
 use crate::sensors::emitters::{Aim, Choice};
 use crate::sensors::start::SensorStart;
+use crate::sensors::unmet::Extremes;
 use crate::solution::Solution;
 
 /// Number of rays that are generated at a time.
@@ -27,9 +28,12 @@ pub(super) struct Replication {
     reflected: Rgb,
 }
 
-/// The patches that rays have hit.
+/// The patches that rays have hit, and the brightest light that they met.
 #[derive(Clone, Debug, Default)]
-pub(super) struct PatchHits(Vec<(SideId, TriangleId)>);
+pub(super) struct PatchHits {
+    sides: Vec<(SideId, TriangleId)>,
+    pub(super) extremes: Extremes,
+}
 
 /// Contribution of a patch to the error of a sensor: the number of rays that hit the patch, and the standard error of
 /// the light that it reflects.
@@ -78,6 +82,9 @@ impl Replication {
             for (Aim { triangle, side, contribution, .. }, hit) in aims.iter().zip(&hits[free..]) {
                 if hit.is_some_and(|hit| (hit.triangle, hit.side) == (*triangle, *side)) {
                     self.direct += *contribution;
+                    patch_hits.extremes.arrived.raise(*contribution);
+                } else {
+                    patch_hits.extremes.blocked.raise(*contribution);
                 }
             }
         }
@@ -94,7 +101,9 @@ impl Replication {
     ) {
         let Model { scene, mesh, .. } = model;
         let Some(hit) = hit else {
-            self.direct += scene.sky().map_or(Rgb::ZERO, |sky| PI * sky.radiance(direction));
+            let light = scene.sky().map_or(Rgb::ZERO, |sky| PI * sky.radiance(direction));
+            self.direct += light;
+            patch_hits.extremes.sky.raise(light);
             return;
         };
         let Some(side) = mesh.side_at(hit.triangle, hit.point, hit.side) else { return };
@@ -102,8 +111,10 @@ impl Replication {
         self.direct += choice.hit_contribution(hit.triangle, patch, hit.side, direction, hit.t);
         let reflectance = model.reflectance(hit.triangle, side);
         if reflectance != Rgb::ZERO {
-            self.reflected += reflectance * solution.irradiance[side.index()];
-            patch_hits.0.push((side, hit.triangle));
+            let light = reflectance * solution.irradiance[side.index()];
+            self.reflected += light;
+            patch_hits.sides.push((side, hit.triangle));
+            patch_hits.extremes.reflected.raise(light);
         }
     }
 }
@@ -111,8 +122,8 @@ impl Replication {
 impl PatchHits {
     /// Returns, for each patch hit, the number of rays and the standard error of the light that it reflects.
     pub(super) fn errors(&mut self, model: &Model, solution: &Solution) -> Vec<Gathered> {
-        self.0.sort_unstable_by_key(|(side, _)| *side);
-        let patches = self.0.chunk_by(|a, b| a.0 == b.0);
+        self.sides.sort_unstable_by_key(|(side, _)| *side);
+        let patches = self.sides.chunk_by(|a, b| a.0 == b.0);
         let gathered = |rays: &[(SideId, TriangleId)]| {
             let &(side, triangle) = rays.first()?;
             Some((rays.len() as u64, solution.standard_error(model, triangle, side)))
