@@ -13,8 +13,11 @@ use crate::light::{Paint, scene};
 use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
 
-/// Number of lines per run, from all surfaces together.
-const LINES: u64 = 1_000_000;
+/// Smallest number of lines per run, from all surfaces together.
+const MIN_LINES: u64 = 1_000_000;
+
+/// Number of lines of a run that arrive at the surface with the smallest factor. Small factors need more lines.
+const MIN_ARRIVALS: f64 = 1000.0;
 
 /// Creates the trial for view factors between the surfaces of a case, which local lines estimate.
 pub(crate) fn factors(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
@@ -27,6 +30,8 @@ pub(crate) fn factors(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
         pairs.push(*case.need("surfaces for all factors", pair.as_ref())?);
         quantities.push(Quantity::new(name, exact));
     }
+    let smallest = values.values().copied().filter(|&f| f > 0.0).fold(1.0, f64::min);
+    let lines = (MIN_ARRIVALS * surfaces.len() as f64 / smallest).max(MIN_LINES as f64) as u64;
     let prepare = move |effort: Effort| -> Result<Sample<'_>, ValidateError> {
         let scene = scene(&surfaces, |_| Paint::gray(0.0, 0.0), effort.segments(SEGMENTS))?;
         let model = Model::new(scene, Subdivision::PerTriangle)?;
@@ -40,7 +45,7 @@ pub(crate) fn factors(case: &Case) -> Result<Vec<Trial<'_>>, ValidateError> {
             Ok(pairs.iter().map(|&(from, to)| found.factor(from, to)).collect())
         }))
     };
-    Ok(vec![Trial { quantities, lines: LINES, prepare: Box::new(prepare) }])
+    Ok(vec![Trial { quantities, lines, prepare: Box::new(prepare) }])
 }
 
 /// Returns the names of the two surfaces of a factor: `F12` or `F_base_side`.

@@ -72,6 +72,35 @@ fn wrong_answers_are_found() {
     }
 }
 
+/// Small view factors get as many lines as they need for a verdict: squares of 1 m at a distance of 8 m. The factor is
+/// from the closed form of case VF-01.
+#[test]
+fn small_view_factors_end_with_a_verdict() {
+    let polygon = |name: &str, corners: &str| {
+        format!(r#"{{"name": "{name}", "type": "polygon", "vertices": {corners}}}"#)
+    };
+    let surfaces = [
+        polygon("1", "[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]"),
+        polygon("2", "[[0, 1, 8], [1, 1, 8], [1, 0, 8], [0, 0, 8]]"),
+    ]
+    .join(", ");
+    let (x, root) = (0.125f64, (1.0f64 + 0.125 * 0.125).sqrt());
+    let exact = 2.0 / (std::f64::consts::PI * x * x)
+        * (((1.0 + x * x) / (1.0 + 2.0 * x * x).sqrt()).ln() + 2.0 * x * root * (x / root).atan()
+            - 2.0 * x * x.atan());
+    assert!((exact - 0.0049).abs() < 1e-4, "{exact}");
+    let file = |exact: f64| {
+        let text = format!(
+            r#"{{"cases": [{{"id": "VF-99", "title": "far squares", "geometry": {{"surfaces": [{surfaces}]}},
+                "quantity": "view factor", "values": {{"F12": {exact}}}}}]}}"#
+        );
+        Reference::parse([&text, r#"{"cases": []}"#, r#"{"cases": []}"#]).unwrap()
+    };
+    let right = run(&file(exact), &[], 2);
+    assert!(right.passed(), "{}", right.markdown());
+    assert_eq!(run(&file(1.05 * exact), &[], 2).count(Verdict::Wrong), 1);
+}
+
 #[test]
 fn threads_do_not_matter() {
     let reference = Reference::built_in().unwrap();
