@@ -40,6 +40,8 @@
 //! # Ok::<(), sir_geom::SceneError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod appearance;
 mod builder;
 mod camera;

@@ -119,7 +119,7 @@ impl GlobalLines {
         let odds = f64::from(weight - 1) * (inner / outer);
         let share = odds / (1.0 + odds);
         let surface = 1.0 / (share / inner + (1.0 - share) / outer);
-        let step = (share * 2f64.powi(64)) as u64;
+        let step = (share * (1u128 << 64) as f64) as u64;
         Self { domain, mixture: Some(Mixture { focus, through, share, step, weight, surface }) }
     }
 
@@ -180,7 +180,7 @@ impl GlobalLines {
         let weight = f64::from(mixture.weight);
         let mean = mixture.share + (1.0 - mixture.share) * weight;
         // Either kind may have one line more than expected.
-        ((2f64.powi(31) - 2.0 * weight) / (mean + 1e-6)) as u64
+        ((f64::from(1u32 << 31) - 2.0 * weight) / (mean + 1e-6)) as u64
     }
 }
 

@@ -68,6 +68,8 @@
 //! assert!((meet / lines as f64 - 0.5).abs() < 0.005);
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod alias;
 mod allocation;
 mod domain;

@@ -2,8 +2,10 @@
 
 use thiserror::Error;
 
+use crate::sources::POWERS;
+
 /// An error that prevents a solution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum SolveError {
     /// Nothing in the scene emits light.
     #[error(
@@ -12,6 +14,15 @@ pub enum SolveError {
          the pipeline, for instance `Light([Sky(horizontal: 1000)])`"
     )]
     NoLight,
+    /// The power of the sources is outside [`POWERS`](crate::POWERS).
+    #[error(
+        "the light sources of the scene emit {watts:.3e} W together, but powers must be between {:.0e} and {:.0e} W; \
+         correct the emission of materials and lights, or give all of them in another unit", POWERS.start(), POWERS.end()
+    )]
+    Power {
+        /// Total power of the strongest band \[W\].
+        watts: f64,
+    },
     /// The energy balance does not close, because a tally overflowed.
     #[error(
         "the energy balance of the {stage} does not close (a tally overflowed, because too few lines \

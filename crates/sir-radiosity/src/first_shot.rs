@@ -2,7 +2,6 @@
 //!
 //! Martínez, Forés and Martín (2009), section 2; Castro, Martínez and Sbert (1998).
 
-use sir_geom::Rgb;
 use sir_lines::Purpose;
 use sir_mesh::SideId;
 
@@ -12,7 +11,7 @@ use crate::model::Model;
 use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
 use crate::shot::ShotSettings;
-use crate::sources::FocusedSources;
+use crate::sources::{FocusedSources, total_power};
 use crate::visitor::Visitor;
 
 /// The first shot: lines from all light sources, in proportion to their power.
@@ -26,10 +25,7 @@ impl ShotInput for () {
     fn sources(&self, settings: &ShotSettings<'_>) -> Result<ShotSources, SolveError> {
         let ShotSettings { model, lines, .. } = settings;
         let sources = FocusedSources::new(model, lines.focus.as_ref(), lines.count);
-        let total = sources.sources.iter().fold(Rgb::ZERO, |sum, s| sum + s.power);
-        if total.max_element() <= 0.0 {
-            return Err(SolveError::NoLight);
-        }
+        let total = total_power(&sources.sources)?;
         let reflectance = model.mesh.largest_reflectance(&model.scene);
         let unit = PowerUnit::for_total(total.max_element(), reflectance);
         Ok(ShotSources { sources, sides: Vec::new(), unit })

@@ -52,6 +52,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod batches;
 mod build_accel;
 mod emitter;
@@ -99,7 +101,7 @@ pub use sensors::{
 };
 pub use shot::{Shot, ShotSettings};
 pub use solution::Solution;
-pub use sources::{Source, emits, sources};
+pub use sources::{POWERS, Source, emits, sources, total_power};
 pub use stage::{AnyOrder, Chain, Job, OneWorker, Stage, Workers, chain_units, run_stage, share};
 pub use totals::{Balance, Counts, StageTotals};
 pub use transported::Transported;

@@ -91,7 +91,7 @@ impl PowerUnit {
         let ceiling = 4.0 * total / (1.0 - largest_reflectance);
         // The next power of two from the exponent bits, which is exact, unlike `log2`.
         let exponent = ((ceiling.max(f64::MIN_POSITIVE).to_bits() >> 52) as i32) - 1023 + 1;
-        Self { quantum: 2f64.powi((exponent - 62).max(-1000)) }
+        Self { quantum: libm::scalbn(1.0, (exponent - 62).max(-1000)) }
     }
 
     /// Restores the unit that [`visit`](Self::visit) passed to the visitor that saved it.

@@ -1,10 +1,13 @@
 //! Light sources and their power.
 
+use std::ops::RangeInclusive;
+
 use sir_geom::{LightKind, Rgb, Scene, Side};
 use sir_lines::{Focus, MAX_FOCUS_DENSITY, ParallelLines};
 use sir_mesh::{PatchId, PatchMesh};
 
 use crate::emitter::{Emitter, SkyAperture};
+use crate::error::SolveError;
 use crate::model::Model;
 
 /// A light source.
@@ -45,6 +48,24 @@ pub fn sources(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
     }
     sources.retain(|source| source.power != Rgb::ZERO);
     sources
+}
+
+/// Range of the total power of the strongest band \[W\]. Its ends leave room for squares of irradiances, and for images
+/// in single precision.
+pub const POWERS: RangeInclusive<f64> = 1e-30..=1e30;
+
+/// Returns the total power of sources per band \[W\].
+///
+/// # Errors
+///
+/// If it is zero, or the strongest band is outside [`POWERS`].
+pub fn total_power(sources: &[Source]) -> Result<Rgb, SolveError> {
+    let total = sources.iter().fold(Rgb::ZERO, |sum, source| sum + source.power);
+    match total.max_element() {
+        0.0 => Err(SolveError::NoLight),
+        watts if total.is_finite() && POWERS.contains(&watts) => Ok(total),
+        watts => Err(SolveError::Power { watts }),
+    }
 }
 
 /// True if anything in the scene emits.

@@ -345,7 +345,7 @@ impl SquareUnit {
     /// Returns a unit for contributions of at most about `largest` quanta, of which a side gets at most about
     /// `count`.
     pub(crate) fn new(largest: [f64; 3], count: f64) -> Self {
-        let max_count = 2f64.powi(60) / (count.max(1.0) + 16.0);
+        let max_count = (1u64 << 60) as f64 / (count.max(1.0) + 16.0);
         Self::of(largest.map(|l| (l * l * HEADROOM / max_count).max(1.0)), max_count)
     }
 

@@ -17,6 +17,8 @@
 //! assert!(unit.meets(&Line { origin: DVec3::splat(-1.0), direction: DVec3::ONE.normalize() }));
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod bounds;
 mod disjoint_sets;
 mod index;

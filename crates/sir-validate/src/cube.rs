@@ -56,7 +56,7 @@ fn graded(case: &Case, reflectance: Rgb, cells: u32) -> Result<Scene, ValidateEr
     let material = builder.add_material(Material::diffuse("", reflectance));
     let at = |i: u32| {
         let u = f64::from(i) / f64::from(cells);
-        0.5 * u + 0.25 * (1.0 - (PI * u).cos())
+        0.5 * u + 0.25 * (1.0 - libm::cos(PI * u))
     };
     for surface in &case.geometry.surfaces {
         let corners = match &surface.shape {

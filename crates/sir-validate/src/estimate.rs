@@ -35,7 +35,7 @@ impl Estimate {
         }
         let t = off / self.sigma.max(0.25 * EXACT_PRECISION * exact.abs());
         let freedom = self.runs as f64 - 1.0;
-        let z = (freedom * (t * t / freedom).ln_1p()).sqrt();
+        let z = (freedom * libm::log1p(t * t / freedom)).sqrt();
         z.copysign(t) * (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0)
     }
 }

@@ -37,6 +37,8 @@
 //! # Ok::<(), sir_validate::ValidateError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod catalog;
 mod check;
 mod cube;

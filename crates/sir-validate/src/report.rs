@@ -167,7 +167,7 @@ fn table(checks: &[Check]) -> String {
 
 /// Formats a number with six digits, which is more than noise leaves significant.
 fn number(x: f64) -> String {
-    let before = if x == 0.0 { 1 } else { x.abs().log10().floor() as i32 + 1 };
+    let before = if x == 0.0 { 1 } else { libm::log10(x.abs()).floor() as i32 + 1 };
     let text = format!("{:.*}", (6 - before).clamp(0, 9) as usize, x);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

@@ -57,7 +57,7 @@ fn arc(radius: f64, [from, to]: [f64; 2], segments: u32) -> Vec<ProfilePoint> {
     let parts = ((to - from) / 360.0 * f64::from(segments)).ceil().max(1.0) as u32;
     let at = |i: u32| {
         let degrees = from + (to - from) * f64::from(i) / f64::from(parts);
-        let (sin, cos) = degrees.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(degrees.to_radians());
         // Exactly 0 at a pole, not the rounded sine of π, so that a pole is one point.
         let at_pole = degrees <= 0.0 || degrees >= 180.0;
         (radius * cos, if at_pole { 0.0 } else { radius * sin })
@@ -87,9 +87,9 @@ fn revolve(
     let (x, y) = axis.any_orthonormal_pair();
     let step = 2.0 * PI / f64::from(segments);
     // A regular polygon of circumradius ρ has the area ½ n ρ² sin(2π/n).
-    let outside = (step / step.sin()).sqrt();
+    let outside = (step / libm::sin(step)).sqrt();
     let at = |(height, radius): ProfilePoint, segment: u32| {
-        let (sin, cos) = (step * f64::from(segment % segments)).sin_cos();
+        let (sin, cos) = libm::sincos(step * f64::from(segment % segments));
         center + axis * height + (x * cos + y * sin) * (radius * outside)
     };
     for ends in profile.windows(2) {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use sir_geom::{LoadOptions, Scene};
 use sir_lines::Focus;
 use sir_mesh::Subdivision;
-use sir_radiosity::{FocusSides, Model, ModelError, SolveError, Source, emits, sources};
+use sir_radiosity::{FocusSides, Model, ModelError, SolveError, Source, emits, sources, total_power};
 
 use crate::error::Error;
 use crate::info::survey::Survey;
@@ -102,9 +102,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
         Ok(model) if problems.is_empty() => {
             let build_seconds = watch.seconds();
             let sources = sources(&model.scene, &model.mesh);
-            if sources.is_empty() {
-                return Err(SolveError::NoLight.into());
-            }
+            total_power(&sources)?;
             let Up { direction: up, why: up_from, doubt } =
                 Up::of(pipeline.scene_path(), &model.scene, stated_up);
             let inside = FocusSides::of(&model, focus.as_ref());

@@ -20,7 +20,8 @@ impl SideState {
     /// Returns the ratio-estimator factor `λ/((1 − e^−λ) C)` for `λ` expected and `C` actual crossings; 1 if no line
     /// crossed.
     pub(super) fn factor(&self, expected: f64) -> f64 {
-        if self.crossings == 0 { 1.0 } else { expected / -(-expected).exp_m1() / self.crossings as f64 }
+        // `f64::exp_m1` differs between platforms.
+        if self.crossings == 0 { 1.0 } else { expected / -libm::expm1(-expected) / self.crossings as f64 }
     }
 
     /// Returns the power that lines have brought, the part of it in the tail, and all of it with the tail extrapolated.

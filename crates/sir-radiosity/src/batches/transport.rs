@@ -105,7 +105,7 @@ impl<'m> Batches<'m> {
         let schedule = Schedule::new(lines, lines_per_crossing, &domain, source, reflected_share);
         let purpose = Purpose::GLOBAL;
         let offset = Streams::new(seed, Purpose::ALLOCATION).line(purpose.0 - Purpose::FIRST_SHOT.0).unit();
-        let offset = (offset * 2f64.powi(64)) as u64;
+        let offset = (offset * (1u128 << 64) as f64) as u64;
         let streams = Streams::new(seed, purpose);
         let states = vec![SideState::default(); model.mesh.side_count()];
         Self { model, domain, offset, focus_sides, streams, tallies, direct, states, unit, schedule }
