@@ -18,7 +18,13 @@ use sir_radiosity::{
 fn room(exitance: f64) -> Model {
     let mut b = SceneBuilder::new();
     let (walls, lamp) = (b.add_material(gray(0.0, 0.5)), b.add_material(gray(exitance, 0.5)));
-    shapes::cuboid(&mut b, DVec3::ZERO, DVec3::ONE, [walls, walls, walls, walls, walls, lamp], Facing::Inward);
+    shapes::cuboid(
+        &mut b,
+        DVec3::ZERO,
+        DVec3::ONE,
+        [walls, walls, walls, walls, walls, lamp],
+        Facing::Inward,
+    );
     Model::new(scene(b), Subdivision::PerTriangle).unwrap()
 }
 
