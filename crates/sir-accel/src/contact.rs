@@ -6,7 +6,7 @@ use sir_types::{Side, TriangleId};
 use crate::grid::{Grid, GridLine};
 use crate::hit::Hit;
 use crate::tree::Tree;
-use crate::triangle::{Crossing, GridTriangle, NOT_STACKED};
+use crate::triangle::{Crossing, GridTriangle};
 
 /// Contact distance of a triangle over its largest coordinate: four times the rounding of numbers in single precision,
 /// so that corners of two surfaces in one plane may differ by it.
@@ -81,8 +81,10 @@ impl ContactOrder<'_> {
             return other.t > 0.0;
         };
         let distance = other.t.abs();
+        let gap = |triangle| self.gap(triangle, line.direction);
+        // No gap is smaller than the first number.
         if self.stacks.are_together(left, crossed)
-            && distance <= self.gap(left, line.direction).min(self.gap(crossed, line.direction))
+            && (distance <= MAX_GAP * STEPS || distance <= gap(left).min(gap(crossed)))
         {
             // The side opposite to the one that the ray leaves: it faces an origin far behind.
             let along = left.scaled_normal().dot(line.direction) > 0.0;
@@ -113,40 +115,36 @@ impl ContactOrder<'_> {
     /// Sorts the hits of a line by distance, and those of a stack by their key.
     #[cold]
     pub(crate) fn sort(&self, hits: &mut [Hit], grid: &Grid, direction: DVec3) {
-        let rank = |hit: &Hit| self.tree.triangle(hit.triangle).map_or(NOT_STACKED, |triangle| triangle.rank);
         // At equal distances, the order must be reversed in the opposite direction.
         hits.sort_unstable_by(|a, b| {
             a.t.total_cmp(&b.t).then_with(|| key(a.side, a.triangle.0).cmp(&key(b.side, b.triangle.0)))
         });
-        // Place of each hit in a stack, by stack and distance.
-        let mut stacked: Vec<(u32, usize)> = hits
-            .iter()
-            .enumerate()
-            .filter_map(|(place, hit)| Some((*self.stacks.of_rank.get(rank(hit) as usize)?, place)))
-            .collect();
-        stacked.sort_unstable();
-        let gap = |place: usize| {
-            let triangle = self.tree.triangle(hits[place].triangle);
-            triangle.map_or(0.0, |triangle| grid.length(self.gap(triangle, direction)))
+        // Hits in stacks: the stack, the place among all hits, the largest distance of neighbors, and the key.
+        let member = |(place, hit): (usize, &Hit)| {
+            let triangle = self.tree.triangle(hit.triangle)?;
+            let stack = *self.stacks.of_rank.get(triangle.rank as usize)?;
+            Some((stack, place, grid.length(self.gap(triangle, direction)), key(hit.side, triangle.rank)))
         };
-        let is_together = |a: &(u32, usize), b: &(u32, usize)| {
-            a.0 == b.0 && hits[b.1].t - hits[a.1].t <= gap(a.1).min(gap(b.1))
+        let mut stacked: Vec<_> = hits.iter().enumerate().filter_map(member).collect();
+        stacked.sort_by_key(|&(stack, ..)| stack);
+        let is_together = |a: &(u32, usize, f64, _), b: &(u32, usize, f64, _)| {
+            a.0 == b.0 && hits[b.1].t - hits[a.1].t <= a.2.min(b.2)
         };
-        let ends: Vec<usize> = stacked.chunk_by(is_together).map(<[_]>::len).collect();
+        let lengths: Vec<usize> = stacked.chunk_by(is_together).map(<[_]>::len).collect();
         let mut rest = stacked.as_slice();
-        for length in ends {
+        for length in lengths {
             let (stack, after) = rest.split_at(length);
             rest = after;
-            let mut members: Vec<Hit> = stack.iter().map(|&(_, place)| hits[place]).collect();
-            members.sort_unstable_by_key(|hit| key(hit.side, rank(hit)));
-            stack.iter().zip(members).for_each(|(&(_, place), hit)| hits[place] = hit);
+            let mut members: Vec<_> = stack.iter().map(|&(_, place, _, key)| (key, hits[place])).collect();
+            members.sort_unstable_by_key(|&(key, _)| key);
+            stack.iter().zip(members).for_each(|(&(_, place, ..), (_, hit))| hits[place] = hit);
         }
     }
 }
 
-/// Returns the sort key of a hit among those of a stack: fronts first, those of high rank before those of low rank, then
-/// backs in the opposite order.
-fn key(side: Side, rank: u32) -> (Side, u32) {
+/// Returns the sort key of a hit at the same place as others: fronts first, those of high rank before those of low rank,
+/// then backs in the opposite order.
+pub(crate) fn key(side: Side, rank: u32) -> (Side, u32) {
     match side {
         Side::Front => (side, !rank),
         Side::Back => (side, rank),

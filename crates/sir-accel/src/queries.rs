@@ -3,6 +3,7 @@
 use sir_types::Line;
 
 use crate::accel::Accel;
+use crate::contact::key;
 use crate::grid::{GridLine, RADIUS};
 use crate::hit::Hit;
 use crate::line_f32::{SLACK, Span};
@@ -107,14 +108,28 @@ impl<'a, F> ClosestHits<'a, F> {
     }
 }
 
-/// Returns true if a hit lies on a ray and stops it.
-pub(crate) fn is_on_ray(accel: &Accel, ray: &Ray, hit: &Hit) -> bool {
-    accel.grid.line(&ray.line).is_some_and(|line| {
-        let triangle = accel.tree.triangle(hit.triangle);
-        let crossing = triangle.and_then(|triangle| triangle.cross(&line));
-        let feed = Feed { accel, rays: std::slice::from_ref(ray), next: 0 };
-        ray.leaving != Some(hit.triangle) && crossing.is_some_and(|crossing| feed.is_hit(0, &line, &crossing))
-    })
+/// Returns the first of some hits that stops a ray. The hits are those of a part of its line, in order.
+pub(crate) fn first_on_ray(accel: &Accel, ray: &Ray, hits: &[Hit]) -> Option<Hit> {
+    let Ray { line, range, leaving } = ray;
+    let own = leaving.and_then(|id| hits.iter().position(|hit| hit.triangle == id));
+    let stops = |hit: &Hit| {
+        let opacity = accel.opacity.as_ref();
+        let is_ahead = match leaving {
+            None => range.start <= hit.t,
+            Some(_) if own.is_some() => range.start <= hit.t.max(0.0),
+            // The line starts on the edge of the triangle that it leaves, and does not cross it.
+            Some(id) => {
+                hit.t >= range.start
+                    && accel.grid.line(line).is_some_and(|grid_line| {
+                        let triangle = accel.tree.triangle(hit.triangle);
+                        let crossing = triangle.and_then(|triangle| triangle.cross(&grid_line));
+                        crossing.is_some_and(|crossing| accel.contacts().is_ahead(*id, &crossing, &grid_line))
+                    })
+            }
+        };
+        is_ahead && hit.t < range.end && opacity.is_none_or(|test| test.stops(line, hit.triangle, hit.point))
+    };
+    hits[own.map_or(0, |own| own + 1)..].iter().find(|hit| stops(hit)).copied()
 }
 
 impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
@@ -131,7 +146,8 @@ impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {
     fn cross(&mut self, ray: &mut Closest, line: &GridLine, crossing: Crossing) -> f32 {
         if self.feed.is_hit(ray.index, line, &crossing) {
             ray.stacked += u32::from(crossing.is_stacked());
-            if ray.best.is_none_or(|best| (crossing.t, crossing.id) < (best.t, best.id)) {
+            let order = |crossing: &Crossing| (crossing.t, key(crossing.side, crossing.id.0));
+            if ray.best.is_none_or(|best| order(&crossing) < order(&best)) {
                 ray.best = Some(crossing);
                 ray.reach = self.feed.accel.contacts().reach(&crossing, line);
             }

@@ -18,6 +18,13 @@ use crate::triangle::GridTriangle;
 /// not lie on each other.
 const MIN_OVERLAP: f64 = 4.0;
 
+/// Number of comparisons of a triangle with others that are not in contact with it, after which it is postponed.
+const MAX_TESTS: u64 = 256;
+
+/// Number of such comparisons of all postponed triangles, which takes a second or two. Only around points at which
+/// thousands of triangles meet are there more; contacts there may be missed.
+const POOL: u64 = 30_000_000;
+
 /// A triangle as it is compared with others \[steps of the grid\].
 struct Sheet {
     corners: [DVec3; 3],
@@ -97,11 +104,14 @@ pub(crate) fn find(
         let triangle = &triangles[place as usize];
         if is_copy[place as usize] { None } else { Sheet::new(triangle, distance(triangle)) }
     };
+    // Triangles that fit with few of those near them, such as those around a point, come last, as long as it takes.
+    let (mut last, mut left) = (Vec::new(), POOL);
     let mut waiting = Vec::new();
-    for place in 0..count {
-        let Some(one) = sheet(place) else { continue };
+    let mut compare = |place: u32, tests: &mut u64, sets: &mut DisjointSets| {
+        let Some(one) = sheet(place) else { return };
         let radii = |p: DVec3| (p / RADIUS).as_vec3().to_array();
         let (low, high) = (radii(one.low - one.distance), radii(one.high + one.distance));
+        waiting.clear();
         waiting.push(0);
         while let Some(child) = waiting.pop() {
             if child & LEAF == 0 {
@@ -118,13 +128,26 @@ pub(crate) fn find(
             for other in start.max(place + 1)..end {
                 if sets.first(place) != sets.first(other)
                     && let Some(two) = sheet(other)
-                    && one.touches(&two)
                 {
-                    sets.merge(place, other);
+                    if one.touches(&two) {
+                        sets.merge(place, other);
+                    } else if let Some(fewer) = tests.checked_sub(1) {
+                        *tests = fewer;
+                    } else {
+                        return;
+                    }
                 }
             }
         }
+    };
+    for place in 0..count {
+        let mut tests = MAX_TESTS;
+        compare(place, &mut tests, &mut sets);
+        if tests == 0 {
+            last.push(place);
+        }
     }
+    last.into_iter().for_each(|place| compare(place, &mut left, &mut sets));
     let firsts: Vec<u32> = (0..count).map(|place| sets.first(place)).collect();
     let mut sizes = vec![0u32; triangles.len()];
     firsts.iter().for_each(|&first| sizes[first as usize] += 1);

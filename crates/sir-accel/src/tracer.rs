@@ -7,7 +7,7 @@ use sir_types::Line;
 
 use crate::accel::Accel;
 use crate::hit::{Hit, LineHits};
-use crate::queries::{ClosestHits, Occlusions, is_on_ray};
+use crate::queries::{ClosestHits, Occlusions, first_on_ray};
 use crate::ray::{Ray, TRange};
 use crate::search::all_hits::{AllHits, AllHitsScratch, Part};
 use crate::search::first_hit::{FirstHitScratch, FirstHits};
@@ -102,8 +102,7 @@ impl<'a> Tracer<'a> {
         let mut rays = stacked.iter().map(|&(index, _)| (index, &rays[index]));
         self.each(&parts, Self::find_crossings, |found| {
             for (range, (index, ray)) in found.lines().zip(&mut rays) {
-                let mut hits = found.hits()[range].iter();
-                visit(index, hits.find(|hit| is_on_ray(accel, ray, hit)).copied());
+                visit(index, first_on_ray(accel, ray, &found.hits()[range]));
             }
         });
     }
@@ -178,7 +177,7 @@ impl<'a> Tracer<'a> {
         let Self { accel: Accel { grid, tree, .. }, backend, all_hits, .. } = self;
         backend.run(AllHits { grid, tree, lines, scratch: all_hits });
         for (number, part) in lines.iter().enumerate() {
-            if all_hits.stacked[number] > 1 {
+            if all_hits.stacked[number] > 1 || all_hits.tied[number] {
                 let range = all_hits.starts[number] as usize..all_hits.starts[number + 1] as usize;
                 self.accel.contacts().sort(&mut all_hits.hits[range], grid, part.line().direction);
             }

@@ -67,6 +67,8 @@ pub(crate) struct AllHitsScratch {
     pub(crate) hits: Vec<Hit>,
     /// Number of hits of each line on triangles in stacks.
     pub(crate) stacked: [u32; MAX_LINES],
+    /// True for lines with hits at equal distances.
+    pub(crate) tied: [bool; MAX_LINES],
 }
 
 impl Default for AllHitsScratch {
@@ -82,6 +84,7 @@ impl Default for AllHitsScratch {
             starts: [0; MAX_LINES + 3],
             hits: Vec::new(),
             stacked: [0; MAX_LINES],
+            tied: [false; MAX_LINES],
         }
     }
 }
@@ -180,7 +183,7 @@ impl<P: Part> Kernel for AllHits<'_, P> {
 /// Converts crossings to hits, sorted by line and distance.
 #[inline(always)]
 fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scratch: &mut AllHitsScratch) {
-    let AllHitsScratch { lines, candidates, distances, places, starts, hits, stacked, .. } = scratch;
+    let AllHitsScratch { lines, candidates, distances, places, starts, hits, stacked, tied, .. } = scratch;
     // Counting sort by line: while hits are added, each start moves to the start of the next line. Candidates that are
     // not crossed come after all lines.
     starts.fill(0);
@@ -189,6 +192,7 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
         starts[line] += starts[line - 1];
     }
     stacked.fill(0);
+    tied.fill(false);
     let nothing =
         Hit { t: 0.0, triangle: TriangleId(0), point: Barycentric { v: 0.0, w: 0.0 }, side: Side::Back };
     if hits.len() < count {
@@ -221,6 +225,7 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
             let earlier = if place < first { 0 } else { this.wrapping_sub(1) };
             // Among equal distances, the crossing found first comes first.
             let (before, not_after) = (others.mask_lt(mine), others.mask_le(mine));
+            tied[line] |= not_after & !before & of_line & !this != 0;
             rank += ((before | (not_after & earlier)) & of_line).count_ones() as usize;
             first += LEAF_WIDTH;
         }

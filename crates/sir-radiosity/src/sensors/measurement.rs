@@ -13,7 +13,7 @@ pub struct Measurement {
     /// Part of `irradiance` directly from lights, emitting surfaces and the sky \[W/m²\].
     pub direct: Rgb,
     /// Sampling error: standard error of `irradiance` per band \[W/m²\] due to the choice of rays, from the spread of
-    /// the replications and the light of bright surfaces that no ray has met.
+    /// the replications. Without a spread, it is the light of bright surfaces that no ray may have met.
     pub sampling: Rgb,
     /// Inherited error: standard error of `irradiance` per band \[W/m²\] due to the errors of the patches whose light
     /// is gathered. These are assumed to be independent of each other. Sensors that see the same patches have this
@@ -26,8 +26,8 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// Returns the measurement from the replications, the squared errors by light that no ray has met, and the
-    /// irradiance by lights without a surface.
+    /// Returns the measurement from the replications, the squared errors by light that no ray has met, which count if the
+    /// replications are equal, and the irradiance by lights without a surface.
     pub(super) fn of(replications: &[Replication], unmet: Squares, lights: Rgb) -> Self {
         let n = replications.len() as f64;
         let mean = |value: &dyn Fn(&Replication) -> Rgb| {
@@ -41,12 +41,16 @@ impl Measurement {
         let total = direct + reflected;
         let squares = mean(&|r| (all(r) - total) * (all(r) - total));
         let square = replications.iter().map(|r| luminance(all(r) - total)).map(|y| y * y).sum::<f64>() / n;
-        let spread = (squares / (n - 1.0), square / (n - 1.0));
+        // Without a spread, nothing is known but what the rays have missed.
+        let Squares { bands, luminance } = match square > 0.0 {
+            true => Squares { bands: squares / (n - 1.0), luminance: square / (n - 1.0) },
+            false => unmet,
+        };
         Self {
             irradiance: total + lights,
             direct: direct + lights,
-            sampling: (spread.0 + unmet.bands).map(f64::sqrt),
-            luminance_errors: [(spread.1 + unmet.luminance).sqrt(), 0.0],
+            sampling: bands.map(f64::sqrt),
+            luminance_errors: [luminance.sqrt(), 0.0],
             ..Self::default()
         }
     }

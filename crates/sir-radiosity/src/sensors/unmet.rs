@@ -2,9 +2,10 @@
 //!
 //! The spread of the rays tells nothing about a small and bright surface that all of them miss. If none of `n` rays has
 //! met it, its share of the view is probably at most about `1/(n + 2)` (Laplace's rule of succession), as for view
-//! factors to which no line arrived. So the standard error of a sensor includes the light of the brightest surfaces
-//! with this share of the area, as far as it exceeds the brightest light that rays have met: a ray has the variance
-//! `∫ (B − B_met)² dA/A`.
+//! factors to which no line arrived. So a sensor may be wrong by the light of the brightest surfaces with this share of the
+//! area, as far as it exceeds the brightest light that rays have met: a ray has the variance `∫ (B − B_met)² dA/A`. A
+//! sensor is finished only if this error, too, is as small as requested; it is the error of a sensor whose rays do not
+//! differ.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
