@@ -67,8 +67,8 @@ pub(crate) struct AllHitsScratch {
     pub(crate) hits: Vec<Hit>,
     /// Number of hits of each line on triangles in stacks.
     pub(crate) stacked: [u32; MAX_LINES],
-    /// True for lines with hits at equal distances.
-    pub(crate) tied: [bool; MAX_LINES],
+    /// True for lines whose hits remain to be sorted: they have equal distances, or are many.
+    pub(crate) unsorted: [bool; MAX_LINES],
 }
 
 impl Default for AllHitsScratch {
@@ -84,7 +84,7 @@ impl Default for AllHitsScratch {
             starts: [0; MAX_LINES + 3],
             hits: Vec::new(),
             stacked: [0; MAX_LINES],
-            tied: [false; MAX_LINES],
+            unsorted: [false; MAX_LINES],
         }
     }
 }
@@ -180,10 +180,15 @@ impl<P: Part> Kernel for AllHits<'_, P> {
     }
 }
 
+/// Number of hits of a line up to which each is compared with all others. This is faster than sorting, but takes the
+/// square of the number.
+const MAX_RANKED: usize = 96;
+
 /// Converts crossings to hits, sorted by line and distance.
 #[inline(always)]
 fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scratch: &mut AllHitsScratch) {
-    let AllHitsScratch { lines, candidates, distances, places, starts, hits, stacked, tied, .. } = scratch;
+    let AllHitsScratch { lines, candidates, distances, places, starts, hits, stacked, unsorted, .. } =
+        scratch;
     // Counting sort by line: while hits are added, each start moves to the start of the next line. Candidates that are
     // not crossed come after all lines.
     starts.fill(0);
@@ -192,7 +197,7 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
         starts[line] += starts[line - 1];
     }
     stacked.fill(0);
-    tied.fill(false);
+    unsorted.fill(false);
     let nothing =
         Hit { t: 0.0, triangle: TriangleId(0), point: Barycentric { v: 0.0, w: 0.0 }, side: Side::Back };
     if hits.len() < count {
@@ -215,6 +220,12 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
         let line = usize::from(of_lines[i]);
         let Some((grid_line, _)) = lines.get(line) else { continue };
         let (start, end, place) = (starts[line] as usize, starts[line + 1] as usize, places[i] as usize);
+        let crossing = candidates.crossing(i, tree);
+        stacked[line] += u32::from(crossing.is_stacked());
+        if end - start > MAX_RANKED {
+            (unsorted[line], hits[place]) = (true, crossing.hit(grid, grid_line));
+            continue;
+        }
         let mine = backend.splat_f64(t[i]);
         let (mut rank, mut first) = (0, start);
         while first < end {
@@ -225,12 +236,10 @@ fn sort<B: SimdBackend>(backend: B, grid: &Grid, tree: &Tree, count: usize, scra
             let earlier = if place < first { 0 } else { this.wrapping_sub(1) };
             // Among equal distances, the crossing found first comes first.
             let (before, not_after) = (others.mask_lt(mine), others.mask_le(mine));
-            tied[line] |= not_after & !before & of_line & !this != 0;
+            unsorted[line] |= not_after & !before & of_line & !this != 0;
             rank += ((before | (not_after & earlier)) & of_line).count_ones() as usize;
             first += LEAF_WIDTH;
         }
-        let crossing = candidates.crossing(i, tree);
-        stacked[line] += u32::from(crossing.is_stacked());
         hits[start + rank] = crossing.hit(grid, grid_line);
     }
 }
