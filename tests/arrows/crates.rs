@@ -13,7 +13,7 @@ const LAYERS: [(&str, &[&str]); 14] = [
     ("sir-scenes", &["sir-geom"]),
     // The ray tracer does not depend on scenes.
     ("sir-accel", &["sir-types"]),
-    ("sir-radiosity", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel"]),
+    ("sir-radiosity", &["sir-types", "sir-geom", "sir-mesh", "sir-lines", "sir-accel"]),
     ("sir-parallel", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
     // Validation depends on the solver, but not on pipelines or files.
     ("sir-validate", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel"]),

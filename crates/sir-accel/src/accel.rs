@@ -8,7 +8,7 @@ use crate::error::{AccelError, MAX_TRIANGLES};
 use crate::grid::Grid;
 use crate::opacity::OpacityTest;
 use crate::options::Options;
-use crate::tracer::ScratchPool;
+use crate::scratch::ScratchPool;
 use crate::tree::Tree;
 use crate::triangle::GridTriangle;
 
@@ -57,7 +57,7 @@ impl Accel {
             })
             .collect();
         let mut tree = Tree::new(&triangles);
-        let stacks = tree.find_stacks(grid.origin(), |ids| {
+        let stacks = Stacks::find(&mut tree, grid.origin(), |ids| {
             let priorities = contact_priorities.map_or_else(|| vec![0; ids.len()], |of| of(ids));
             check("contact priorities", priorities.len(), ids.len()).map(|()| priorities)
         })?;

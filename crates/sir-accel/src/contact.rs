@@ -3,8 +3,10 @@
 use glam::DVec3;
 use sir_types::{Side, TriangleId};
 
+use crate::error::AccelError;
 use crate::grid::{Grid, GridLine};
 use crate::hit::Hit;
+use crate::stacks;
 use crate::tree::Tree;
 use crate::triangle::{Crossing, GridTriangle};
 
@@ -38,6 +40,29 @@ pub(crate) struct Stacks {
 }
 
 impl Stacks {
+    /// Finds the triangles of a tree that are in contact, and sets their ranks. `origin` is the origin of the coordinates of
+    /// the scene \[steps of the grid\], and `priorities` returns the priorities of triangles.
+    pub(crate) fn find(
+        tree: &mut Tree,
+        origin: DVec3,
+        priorities: impl FnOnce(&[TriangleId]) -> Result<Vec<u32>, AccelError>,
+    ) -> Result<Self, AccelError> {
+        let mut stacks = Self { of_rank: Vec::new(), origin };
+        let distance = |triangle: &GridTriangle| stacks.distance(triangle);
+        let mut found = stacks::find(&tree.triangles, &tree.nodes, &tree.leaf_ranges(), distance);
+        let id = |place: u32| tree.triangles[place as usize].id;
+        found.sort_unstable_by_key(|&(place, _)| id(place));
+        let ids: Vec<TriangleId> = found.iter().map(|&(place, _)| id(place)).collect();
+        let priorities = priorities(&ids)?;
+        let mut order: Vec<_> = found.iter().zip(priorities).zip(ids).collect();
+        order.sort_unstable_by_key(|&((&(_, stack), priority), id)| (stack, priority, id));
+        for (&((&(place, stack), _), _), rank) in order.iter().zip(0..) {
+            tree.triangles[place as usize].rank = rank;
+            stacks.of_rank.push(stack);
+        }
+        Ok(stacks)
+    }
+
     /// Returns the contact distance of a triangle \[steps of the grid\].
     pub(crate) fn distance(&self, triangle: &GridTriangle) -> f64 {
         let corners = triangle.corners.map(|corner| DVec3::from_array(corner.map(f64::from)));

@@ -80,6 +80,7 @@ mod opacity;
 mod options;
 mod queries;
 mod ray;
+mod scratch;
 mod search;
 mod simd;
 mod stacks;

@@ -1,7 +1,6 @@
 //! The tracer: searches for the hits of lines and rays.
 
 use std::mem::take;
-use std::sync::Mutex;
 
 use sir_types::Line;
 
@@ -9,6 +8,7 @@ use crate::accel::Accel;
 use crate::hit::{Hit, LineHits};
 use crate::queries::{ClosestHits, Occlusions, first_on_ray};
 use crate::ray::{Ray, TRange};
+use crate::scratch::Scratch;
 use crate::search::all_hits::{AllHits, AllHitsScratch, Part};
 use crate::search::first_hit::{FirstHitScratch, FirstHits};
 use crate::search::queue::MAX_LINES;
@@ -32,36 +32,6 @@ pub struct Tracer<'a> {
     backend: Backend,
     first_hit: FirstHitScratch,
     all_hits: AllHitsScratch,
-}
-
-/// Scratch memory of a tracer.
-#[derive(Debug, Default)]
-pub(crate) struct Scratch {
-    first_hit: FirstHitScratch,
-    all_hits: AllHitsScratch,
-}
-
-/// Scratch memory that no tracer uses. A thread that makes a tracer for each of its tasks gets the same memory again.
-#[derive(Debug, Default)]
-pub(crate) struct ScratchPool(Mutex<Vec<Scratch>>);
-
-impl ScratchPool {
-    fn take(&self) -> Scratch {
-        self.0.lock().ok().and_then(|mut pool| pool.pop()).unwrap_or_default()
-    }
-
-    fn put(&self, scratch: Scratch) {
-        if let Ok(mut pool) = self.0.lock() {
-            pool.push(scratch);
-        }
-    }
-}
-
-/// A copy starts without memory.
-impl Clone for ScratchPool {
-    fn clone(&self) -> Self {
-        Self::default()
-    }
 }
 
 impl Drop for Tracer<'_> {

@@ -2,17 +2,13 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
 use sir_types::TriangleId;
 
 use crate::build::{Hierarchy, hierarchy};
-use crate::contact::Stacks;
-use crate::error::AccelError;
 use crate::leaf::Leaf;
 use crate::memory::{collect_in_huge_pages, prefetch};
 use crate::node::{LEAF, Node};
 use crate::simd::prefetch::prefetch as prefetch_bytes;
-use crate::stacks;
 use crate::triangle::GridTriangle;
 
 /// Bounding volume hierarchy. Node 0 is the root.
@@ -70,32 +66,13 @@ impl Tree {
         prefetch_bytes(triangle.cast(), size_of::<GridTriangle>());
     }
 
-    /// Finds the triangles in contact and sets their ranks. `origin` is the origin of the coordinates of the scene
-    /// \[steps of the grid\], and `priorities` returns the priorities of triangles.
-    pub(crate) fn find_stacks(
-        &mut self,
-        origin: DVec3,
-        priorities: impl FnOnce(&[TriangleId]) -> Result<Vec<u32>, AccelError>,
-    ) -> Result<Stacks, AccelError> {
-        let mut stacks = Stacks { of_rank: Vec::new(), origin };
+    /// Returns the places of the triangles of each leaf.
+    pub(crate) fn leaf_ranges(&self) -> Vec<Range<u32>> {
         let mut starts = self.firsts.clone();
         starts.sort_unstable();
         starts.push(self.triangles.len() as u32);
         let end = |first: u32| starts[starts.partition_point(|&start| start <= first)];
-        let leaves: Vec<Range<u32>> = self.firsts.iter().map(|&first| first..end(first)).collect();
-        let distance = |triangle: &GridTriangle| stacks.distance(triangle);
-        let mut found = stacks::find(&self.triangles, &self.nodes, &leaves, distance);
-        let id = |place: u32| self.triangles[place as usize].id;
-        found.sort_unstable_by_key(|&(place, _)| id(place));
-        let ids: Vec<TriangleId> = found.iter().map(|&(place, _)| id(place)).collect();
-        let priorities = priorities(&ids)?;
-        let mut order: Vec<_> = found.iter().zip(priorities).zip(ids).collect();
-        order.sort_unstable_by_key(|&((&(_, stack), priority), id)| (stack, priority, id));
-        for (&((&(place, stack), _), _), rank) in order.iter().zip(0..) {
-            self.triangles[place as usize].rank = rank;
-            stacks.of_rank.push(stack);
-        }
-        Ok(stacks)
+        self.firsts.iter().map(|&first| first..end(first)).collect()
     }
 
     /// Returns the triangle with the given number.

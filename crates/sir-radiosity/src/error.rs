@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::sources::POWERS;
+use crate::power::POWERS;
 
 /// An error that prevents a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]

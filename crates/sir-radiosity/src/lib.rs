@@ -90,7 +90,7 @@ pub use focus_sides::FocusSides;
 pub use grouping::Grouping;
 pub use local_shot::LocalShot;
 pub use model::{Model, ModelError};
-pub use power::{PowerUnit, Quanta};
+pub use power::{POWERS, PowerUnit, Quanta};
 pub use received::Received;
 pub use repeats::{MIN_REPEATS, RepeatedTotals, Repeats};
 pub use replicas::{Replica, ReplicaSettings, Replicas};
@@ -101,7 +101,7 @@ pub use sensors::{
 };
 pub use shot::{Shot, ShotSettings};
 pub use solution::Solution;
-pub use sources::{POWERS, Source, emits, sources, total_power};
+pub use sources::{Source, emits, sources, total_power};
 pub use stage::{AnyOrder, Chain, Job, OneWorker, Stage, Workers, chain_units, run_stage, share};
 pub use totals::{Balance, Counts, StageTotals};
 pub use transported::Transported;

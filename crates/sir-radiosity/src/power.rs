@@ -1,6 +1,6 @@
 //! Power in integers.
 
-use std::ops::{Add, AddAssign, Sub};
+use std::ops::{Add, AddAssign, RangeInclusive, Sub};
 
 use sir_geom::Rgb;
 
@@ -73,6 +73,10 @@ impl Sub for Quanta {
 pub(crate) fn visit_quanta(quanta: &mut [Quanta], visitor: &mut dyn Visitor) {
     visit_slice(quanta, visitor, |quanta| quanta.0, Quanta);
 }
+
+/// Range of the total power of the strongest band \[W\]. Its ends leave room for squares of irradiances, and for images
+/// in single precision.
+pub const POWERS: RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Size of a quantum in watts: a power of two, so that a conversion costs at most one rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]

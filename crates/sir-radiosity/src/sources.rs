@@ -1,7 +1,5 @@
 //! Light sources and their power.
 
-use std::ops::RangeInclusive;
-
 use sir_geom::{LightKind, Rgb, Scene, Side};
 use sir_lines::{Focus, MAX_FOCUS_DENSITY, ParallelLines};
 use sir_mesh::{PatchId, PatchMesh};
@@ -9,6 +7,7 @@ use sir_mesh::{PatchId, PatchMesh};
 use crate::emitter::{Emitter, SkyAperture};
 use crate::error::SolveError;
 use crate::model::Model;
+use crate::power::POWERS;
 
 /// A light source.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,10 +48,6 @@ pub fn sources(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
     sources.retain(|source| source.power != Rgb::ZERO);
     sources
 }
-
-/// Range of the total power of the strongest band \[W\]. Its ends leave room for squares of irradiances, and for images
-/// in single precision.
-pub const POWERS: RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Returns the total power of sources per band \[W\].
 ///
