@@ -4,7 +4,7 @@ use glam::DVec3;
 use sir_types::{Side, TriangleId};
 
 use crate::error::AccelError;
-use crate::grid::{Grid, GridLine};
+use crate::grid::GridLine;
 use crate::hit::Hit;
 use crate::stacks;
 use crate::tree::Tree;
@@ -21,7 +21,7 @@ const MAX_COORDINATE: f64 = 64.0;
 /// Part of the contact distance that covers the rounding of corners to the grid \[steps of the grid\].
 const STEPS: f64 = 4.0;
 
-/// Largest gap between neighbors in a stack that a line crosses, in contact distances.
+/// Largest distance of neighbors in a stack along their normal, in contact distances.
 const MAX_GAP: f64 = 4.0;
 
 /// Smallest cosine between a line and a normal with which lengths along the line are computed.
@@ -105,64 +105,49 @@ impl ContactOrder<'_> {
         let (Some(left), Some(crossed)) = (self.tree.triangle(leaving), self.tree.triangle(other.id)) else {
             return other.t > 0.0;
         };
-        let distance = other.t.abs();
-        let gap = |triangle| self.gap(triangle, line.direction);
-        // No gap is smaller than the first number.
-        if self.stacks.are_together(left, crossed)
-            && (distance <= MAX_GAP * STEPS || distance <= gap(left).min(gap(crossed)))
-        {
+        if self.stacks.are_together(left, crossed) {
             // The side opposite to the one that the ray leaves: it faces an origin far behind.
             let along = left.scaled_normal().dot(line.direction) > 0.0;
             let side = if along { Side::Back } else { Side::Front };
             return key(side, left.rank) < key(other.side, crossed.rank);
         }
-        let touches = distance <= self.stacks.distance(left).min(self.stacks.distance(crossed))
+        let touches = other.t.abs() <= self.stacks.distance(left).min(self.stacks.distance(crossed))
             && are_parallel(left, crossed);
         // A line that does not cross the triangle that it leaves starts on its edge, and `other` is the neighbor there.
         other.t > 0.0 && !(touches && left.cross(line).is_none())
     }
 
-    /// Returns the largest distance along a line between a triangle and its neighbor in a stack \[steps of the grid\].
-    pub(crate) fn gap(&self, triangle: &GridTriangle, direction: DVec3) -> f64 {
-        let normal = triangle.scaled_normal();
-        let cosine = (normal.dot(direction).abs() / normal.length()).max(GRAZING);
-        MAX_GAP * self.stacks.distance(triangle) / cosine
-    }
-
-    /// Returns the largest distance along a line between a crossing and its neighbor in a stack \[steps of the grid\];
-    /// zero if the triangle is in none.
+    /// Returns the distance along a line beyond a crossing within which other triangles of its stack are looked for
+    /// \[steps of the grid\]; zero if the triangle is in none.
     #[inline]
     pub(crate) fn reach(&self, crossing: &Crossing, line: &GridLine) -> f64 {
         let triangle = if crossing.is_stacked() { self.tree.triangle(crossing.id) } else { None };
-        triangle.map_or(0.0, |triangle| self.gap(triangle, line.direction))
+        triangle.map_or(0.0, |triangle| {
+            let normal = triangle.scaled_normal();
+            let cosine = (normal.dot(line.direction).abs() / normal.length()).max(GRAZING);
+            MAX_GAP * self.stacks.distance(triangle) / cosine
+        })
     }
 
     /// Sorts the hits of a line by distance, and those of a stack by their key.
     #[cold]
-    pub(crate) fn sort(&self, hits: &mut [Hit], grid: &Grid, direction: DVec3) {
+    pub(crate) fn sort(&self, hits: &mut [Hit]) {
         // At equal distances, the order must be reversed in the opposite direction.
         hits.sort_unstable_by(|a, b| {
             a.t.total_cmp(&b.t).then_with(|| key(a.side, a.triangle.0).cmp(&key(b.side, b.triangle.0)))
         });
-        // Hits in stacks: the stack, the place among all hits, the largest distance of neighbors, and the key.
+        // Hits in stacks: the stack, the place among all hits, and the key.
         let member = |(place, hit): (usize, &Hit)| {
             let triangle = self.tree.triangle(hit.triangle)?;
             let stack = *self.stacks.of_rank.get(triangle.rank as usize)?;
-            Some((stack, place, grid.length(self.gap(triangle, direction)), key(hit.side, triangle.rank)))
+            Some((stack, place, key(hit.side, triangle.rank)))
         };
         let mut stacked: Vec<_> = hits.iter().enumerate().filter_map(member).collect();
         stacked.sort_by_key(|&(stack, ..)| stack);
-        let is_together = |a: &(u32, usize, f64, _), b: &(u32, usize, f64, _)| {
-            a.0 == b.0 && hits[b.1].t - hits[a.1].t <= a.2.min(b.2)
-        };
-        let lengths: Vec<usize> = stacked.chunk_by(is_together).map(<[_]>::len).collect();
-        let mut rest = stacked.as_slice();
-        for length in lengths {
-            let (stack, after) = rest.split_at(length);
-            rest = after;
-            let mut members: Vec<_> = stack.iter().map(|&(_, place, _, key)| (key, hits[place])).collect();
+        for stack in stacked.chunk_by(|a, b| a.0 == b.0) {
+            let mut members: Vec<_> = stack.iter().map(|&(_, place, key)| (key, hits[place])).collect();
             members.sort_unstable_by_key(|&(key, _)| key);
-            stack.iter().zip(members).for_each(|(&(_, place, ..), (_, hit))| hits[place] = hit);
+            stack.iter().zip(members).for_each(|(&(_, place, _), (_, hit))| hits[place] = hit);
         }
     }
 }

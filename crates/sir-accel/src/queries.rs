@@ -111,25 +111,24 @@ impl<'a, F> ClosestHits<'a, F> {
 /// Returns the first of some hits that stops a ray. The hits are those of a part of its line, in order.
 pub(crate) fn first_on_ray(accel: &Accel, ray: &Ray, hits: &[Hit]) -> Option<Hit> {
     let Ray { line, range, leaving } = ray;
+    let (contacts, opacity) = (accel.contacts(), accel.opacity.as_ref());
     let own = leaving.and_then(|id| hits.iter().position(|hit| hit.triangle == id));
-    let stops = |hit: &Hit| {
-        let opacity = accel.opacity.as_ref();
-        let is_ahead = match leaving {
-            None => range.start <= hit.t,
-            Some(_) if own.is_some() => range.start <= hit.t.max(0.0),
-            // The line starts on the edge of the triangle that it leaves, and does not cross it.
-            Some(id) => {
-                hit.t >= range.start
-                    && accel.grid.line(line).is_some_and(|grid_line| {
-                        let triangle = accel.tree.triangle(hit.triangle);
-                        let crossing = triangle.and_then(|triangle| triangle.cross(&grid_line));
-                        crossing.is_some_and(|crossing| accel.contacts().is_ahead(*id, &crossing, &grid_line))
-                    })
-            }
-        };
-        is_ahead && hit.t < range.end && opacity.is_none_or(|test| test.stops(line, hit.triangle, hit.point))
+    // As `Feed::is_hit`, without computing the crossings again.
+    let is_ahead = |place: usize, hit: &Hit| match (leaving, own) {
+        (None, _) => range.start <= hit.t,
+        (Some(id), _) if hit.triangle == *id || (range.start > 0.0 && hit.t < range.start) => false,
+        (Some(id), Some(own)) if contacts.are_together(*id, hit.triangle) => own < place,
+        (Some(_), Some(_)) => hit.t > 0.0,
+        // The line starts on the edge of the triangle that it leaves, and does not cross it.
+        (Some(id), None) => accel.grid.line(line).is_some_and(|grid_line| {
+            let crossing = accel.tree.triangle(hit.triangle).and_then(|triangle| triangle.cross(&grid_line));
+            crossing.is_some_and(|crossing| contacts.is_ahead(*id, &crossing, &grid_line))
+        }),
     };
-    hits[own.map_or(0, |own| own + 1)..].iter().find(|hit| stops(hit)).copied()
+    let stops = |hit: &Hit| opacity.is_none_or(|test| test.stops(line, hit.triangle, hit.point));
+    let mut numbered = hits.iter().enumerate();
+    let first = numbered.find(|(place, hit)| is_ahead(*place, hit) && hit.t < range.end && stops(hit));
+    first.map(|(_, hit)| *hit)
 }
 
 impl<F: FnMut(usize, Option<Hit>)> Rays for ClosestHits<'_, F> {

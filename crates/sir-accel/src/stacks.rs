@@ -18,6 +18,12 @@ use crate::triangle::GridTriangle;
 /// not lie on each other.
 const MIN_OVERLAP: f64 = 4.0;
 
+/// Largest distance of a corner from the plane of the largest triangle of its stack, in contact distances.
+const MAX_HEIGHT: f64 = 16.0;
+
+/// The same in distances from a corner of that triangle, whose plane is uncertain far away.
+const MAX_SLOPE: f64 = 1e-3;
+
 /// Number of comparisons of a triangle with others that are not in contact with it, after which it is postponed.
 const MAX_TESTS: u64 = 256;
 
@@ -151,7 +157,31 @@ pub(crate) fn find(
     let firsts: Vec<u32> = (0..count).map(|place| sets.first(place)).collect();
     let mut sizes = vec![0u32; triangles.len()];
     firsts.iter().for_each(|&first| sizes[first as usize] += 1);
-    (0..count).zip(firsts).filter(|&(_, first)| sizes[first as usize] > 1).collect()
+    let mut found: Vec<_> = (0..count).zip(firsts).filter(|&(_, first)| sizes[first as usize] > 1).collect();
+    found.sort_unstable_by_key(|&(place, first)| (first, place));
+    let is_flat = |stack: &&[(u32, u32)]| {
+        is_flat(stack.iter().map(|&(place, _)| &triangles[place as usize]), &distance)
+    };
+    found.chunk_by(|a, b| a.1 == b.1).filter(is_flat).flatten().copied().collect()
+}
+
+/// Returns true if triangles lie in one plane. Double shells of thousands of facets do not: each facet may be in contact
+/// with the next one of the other shell, all around, but a line crosses them in several places.
+fn is_flat<'t>(
+    stack: impl Iterator<Item = &'t GridTriangle> + Clone,
+    distance: impl Fn(&GridTriangle) -> f64,
+) -> bool {
+    let sheets = stack.filter_map(|triangle| Sheet::new(triangle, distance(triangle)));
+    let size = |sheet: &Sheet| (sheet.high - sheet.low).length_squared();
+    let Some(base) = sheets.clone().max_by(|a, b| size(a).total_cmp(&size(b))) else { return true };
+    sheets.into_iter().all(|sheet| {
+        let slack = MAX_HEIGHT * sheet.distance.max(base.distance);
+        let is_near = |corner: DVec3| {
+            let from_base = corner - base.corners[0];
+            from_base.dot(base.normal).abs() <= slack + MAX_SLOPE * from_base.length()
+        };
+        sheet.corners.into_iter().all(is_near)
+    })
 }
 
 /// Merges triangles that have the same corners, and returns true for all but one of each set. Without this, many copies

@@ -146,10 +146,10 @@ impl<'a> Tracer<'a> {
     fn find_crossings<P: Part>(&mut self, lines: &[P]) {
         let Self { accel: Accel { grid, tree, .. }, backend, all_hits, .. } = self;
         backend.run(AllHits { grid, tree, lines, scratch: all_hits });
-        for (number, part) in lines.iter().enumerate() {
+        for number in 0..lines.len() {
             if all_hits.stacked[number] > 1 || all_hits.unsorted[number] {
                 let range = all_hits.starts[number] as usize..all_hits.starts[number + 1] as usize;
-                self.accel.contacts().sort(&mut all_hits.hits[range], grid, part.line().direction);
+                self.accel.contacts().sort(&mut all_hits.hits[range]);
             }
         }
         if P::HAS_ENDS {
