@@ -31,16 +31,23 @@ enum Outside {
     Triangle(f64),
 }
 
-/// Returns a closed room with walls of this material and a lamp, moved by `offset`. The lamp is before or behind all else
-/// in the file.
-fn room(wall: Material, outside: Outside, offset: DVec3, lamp_first: bool) -> Model {
+/// Where the lamp is in the file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Lamp {
+    First,
+    Last,
+    Absent,
+}
+
+/// Returns a closed room with walls of this material and a lamp, moved by `offset`.
+fn room(wall: Material, outside: Outside, offset: DVec3, lamp_place: Lamp) -> Model {
     let mut b = SceneBuilder::new();
     let lamp_material = Material { exitance: Rgb::splat(10.0), ..wall.clone() };
     let [wall, bright, dark] = [wall, lamp_material, gray(0.0, 0.5)].map(|material| b.add_material(material));
     let quad = |b: &mut SceneBuilder, corners: [DVec3; 4], material| {
         shapes::quad(b, corners.map(|p| p + offset), material);
     };
-    if lamp_first {
+    if lamp_place == Lamp::First {
         quad(&mut b, lamp(), bright);
     }
     shapes::cuboid(&mut b, offset, offset + SIZE, [wall; 6], Facing::Inward);
@@ -56,7 +63,7 @@ fn room(wall: Material, outside: Outside, offset: DVec3, lamp_first: bool) -> Mo
             b.add_polygon(&corners, dark);
         }
     }
-    if !lamp_first {
+    if lamp_place == Lamp::Last {
         quad(&mut b, lamp(), bright);
     }
     Model::new(scene(b), Subdivision::PerTriangle).unwrap()
@@ -76,14 +83,14 @@ fn direct_light_does_not_depend_on_the_size_of_the_scene_or_its_place() {
         (Nothing, moved),
         (Terrain(5e3), moved),
     ] {
-        for lamp_first in [true, false] {
-            let model = room(gray(0.0, 0.0), outside, offset, lamp_first);
+        for place in [Lamp::First, Lamp::Last] {
+            let model = room(gray(0.0, 0.0), outside, offset, place);
             let settings = SensorSettings { rays: 16_384, error: 0.0 };
             let solution = Solution::dark(model.mesh.side_count());
             let sensor = Sensor::new(offset + DVec3::new(2.0, 0.0, 2.0), DVec3::Y).unwrap();
             let measured = Gatherer::new(&model, &solution, settings, 1).measure(0, &sensor);
             let (value, sigma) = (measured.irradiance.x, measured.error().x);
-            println!("{outside:?} {offset} {lamp_first}: {value:.6} ± {sigma:.6}, exact {exact:.6}");
+            println!("{outside:?} {offset} {place:?}: {value:.6} ± {sigma:.6}, exact {exact:.6}");
             assert!((value - exact).abs() <= 4.0 * sigma && sigma < 1e-3 * exact);
             // All the light of the lamp arrives in the room.
             let shot = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, 100_000, 1), ()).unwrap();
@@ -97,7 +104,7 @@ fn direct_light_does_not_depend_on_the_size_of_the_scene_or_its_place() {
 fn reflected_light_in_a_focus_does_not_depend_on_the_size_of_the_scene() {
     const RHO: f64 = 0.6;
     for outside in [Outside::Nothing, Outside::Triangle(1e3), Outside::Triangle(1e5), Outside::Terrain(5e3)] {
-        let model = room(gray(10.0, RHO), outside, DVec3::ZERO, true);
+        let model = room(gray(10.0, RHO), outside, DVec3::ZERO, Lamp::Absent);
         let bounds = BoundingBox { min: DVec3::ZERO, max: SIZE };
         let focus = Focus::new(bounds, 0.75, model.scene.bounding_box()).unwrap();
         let domain = GlobalLines::focused(Domain::hull(model.scene.vertices()), focus);
