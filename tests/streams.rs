@@ -42,8 +42,11 @@ fn full() -> Stdio {
     fs::OpenOptions::new().write(true).open("/dev/full").unwrap().into()
 }
 
+/// Name of an output, and a function that opens it.
+type Output = (&'static str, fn() -> Stdio);
+
 /// Returns ways to lose what is written.
-fn broken() -> Vec<(&'static str, fn() -> Stdio)> {
+fn broken() -> Vec<Output> {
     vec![
         ("closed", closed),
         #[cfg(target_os = "linux")]

@@ -175,7 +175,7 @@ impl FocusedSources {
 /// Returns the largest ratio of the density of lines in a focus to that elsewhere for which the squares of the power of
 /// both fit the same counter of 60 bits, up to `lines` times.
 fn max_density(lines: u64) -> f64 {
-    (2f64.powi(28) / (lines.max(1) as f64).sqrt()).clamp(1.0, f64::from(MAX_FOCUS_DENSITY))
+    (f64::from(1u32 << 28) / (lines.max(1) as f64).sqrt()).clamp(1.0, f64::from(MAX_FOCUS_DENSITY))
 }
 
 /// Splits a source into the part that is in a focus, marked true, and the part that is not.

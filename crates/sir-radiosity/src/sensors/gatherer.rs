@@ -72,7 +72,7 @@ impl<'s> Gatherer<'s> {
             let mut measurement = Measurement::of(&replications, unmet, lights);
             // Rays may all have missed something small and bright. It makes no part of the error, which would be far too
             // large where there is nothing of this kind in view, but it takes more rays to exclude it.
-            let error = measurement.sampling_error().hypot(unmet.luminance.sqrt());
+            let error = libm::hypot(measurement.sampling_error(), unmet.luminance.sqrt());
             let enough = error <= self.settings.error * measurement.luminance();
             if rays == most || enough {
                 measurement.inherit(&patch_hits.errors(self.model, self.solution), rays * REPLICATIONS);
