@@ -43,10 +43,10 @@ fn full() -> Stdio {
 }
 
 /// Name of an output, and a function that opens it.
-type Output = (&'static str, fn() -> Stdio);
+type Opener = (&'static str, fn() -> Stdio);
 
 /// Returns ways to lose what is written.
-fn broken() -> Vec<Output> {
+fn broken() -> Vec<Opener> {
     vec![
         ("closed", closed),
         #[cfg(target_os = "linux")]
