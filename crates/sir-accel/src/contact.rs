@@ -65,9 +65,8 @@ impl Stacks {
 
     /// Returns the contact distance of a triangle \[steps of the grid\].
     pub(crate) fn distance(&self, triangle: &GridTriangle) -> f64 {
-        let corners = triangle.corners.map(|corner| DVec3::from_array(corner.map(f64::from)));
-        let [low, high] =
-            [corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2])];
+        let [a, b, c] = triangle.positions();
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let largest = (low - self.origin).abs().max((high - self.origin).abs()).max_element();
         STEPS + ROUNDING * largest.min(MAX_COORDINATE * (high - low).max_element())
     }

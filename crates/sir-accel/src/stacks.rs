@@ -45,7 +45,7 @@ struct Sheet {
 impl Sheet {
     /// Returns `None` if the triangle has no area.
     fn new(triangle: &GridTriangle, distance: f64) -> Option<Self> {
-        let corners = triangle.corners.map(|corner| DVec3::from_array(corner.map(f64::from)));
+        let corners = triangle.positions();
         let [a, b, c] = corners;
         let normal = triangle.scaled_normal().try_normalize()?;
         Some(Self { corners, low: a.min(b).min(c), high: a.max(b).max(c), normal, distance })

@@ -160,15 +160,20 @@ impl GridTriangle {
         Self { corners, id, certain, rank: NOT_STACKED }
     }
 
+    /// Returns the corners \[steps of the grid\].
+    pub(crate) fn positions(&self) -> [DVec3; 3] {
+        self.corners.map(position)
+    }
+
     /// Returns the normal of the front; its length is twice the area.
     pub(crate) fn scaled_normal(&self) -> DVec3 {
-        let [a, b, c] = self.corners.map(position);
+        let [a, b, c] = self.positions();
         (b - a).cross(c - a)
     }
 
     /// Returns the first corner, and the edges from it to the second and the third, in radii of the scene.
     pub(crate) fn in_radii(&self) -> [DVec3; 3] {
-        let [a, b, c] = self.corners.map(position);
+        let [a, b, c] = self.positions();
         [a / RADIUS, (b - a) / RADIUS, (c - a) / RADIUS]
     }
 
