@@ -32,8 +32,8 @@ pub struct SceneBuilder {
     /// Group numbers by name, from 1; group 0 has no name.
     groups: HashMap<String, GroupId>,
     group: u32,
-    /// Number of polygons without a valid triangulation, such as those that cross themselves.
-    crossed: u64,
+    /// First corners of polygons without a valid triangulation, such as those that cross themselves.
+    crossed: Vec<VertexId>,
     appearance: Appearance,
     warnings: Vec<Warning>,
 }
@@ -103,7 +103,7 @@ impl SceneBuilder {
         let places: Option<Vec<DVec3>> =
             corners.iter().map(|v| self.vertices.get(v.index()).copied()).collect();
         let cut = polygon::cut(&places.unwrap_or_else(|| vec![DVec3::ZERO; corners.len()]));
-        self.crossed += u64::from(!cut.is_valid);
+        self.crossed.extend(corners.first().filter(|_| !cut.is_valid));
         let triangles: Vec<_> = cut.triangles.iter().map(|t| t.map(|i| corners[i])).collect();
         self.add_face(&triangles, material)
     }
@@ -213,8 +213,10 @@ impl SceneBuilder {
         self.check_indices()?;
         self.check_materials()?;
         self.check_lights()?;
-        if self.crossed > 0 {
-            self.warnings.push(Warning::CrossedPolygons { count: self.crossed });
+        if let Some(first) = self.crossed.first() {
+            let (count, place) =
+                (self.crossed.len() as u64, self.vertices.get(first.index()).copied().unwrap_or_default());
+            self.warnings.push(Warning::CrossedPolygons { count, place });
         }
         self.drop_degenerate_triangles();
         if self.triangles.is_empty() {

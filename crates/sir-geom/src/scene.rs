@@ -156,6 +156,12 @@ impl Scene {
         }
     }
 
+    /// Returns true if a side of a triangle emits.
+    #[must_use]
+    pub fn emits(&self, id: TriangleId) -> bool {
+        [Side::Front, Side::Back].iter().any(|&side| self.exitance(id, side) != crate::color::Rgb::ZERO)
+    }
+
     /// Returns the sum of the areas of all triangles (one side each).
     #[must_use]
     pub fn total_area(&self) -> f64 {

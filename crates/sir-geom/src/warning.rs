@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use glam::DVec3;
+
 use crate::material::MAX_REFLECTANCE;
 use crate::scene::Scene;
 
@@ -18,6 +20,8 @@ pub enum Warning {
     CrossedPolygons {
         /// Number of polygons.
         count: u64,
+        /// First corner of the first of them \[m\].
+        place: DVec3,
     },
     /// A material reflects as much light as it receives, or more. Its reflectance was set to [`MAX_REFLECTANCE`].
     ClampedReflectance {
@@ -42,10 +46,12 @@ impl fmt::Display for Warning {
                     "{count} triangles without an area or with infinite or undefined coordinates were left out"
                 )
             }
-            Self::CrossedPolygons { count } => {
+            Self::CrossedPolygons { count, place } => {
+                let [x, y, z] = place.to_array();
                 write!(
                     f,
-                    "{count} polygons cross themselves, or have more than 4,096 corners and are far from convex; they were cut into fans from their first corner"
+                    "{count} polygons cross themselves, or have more than 4,096 corners and are far from convex; they \
+                     were cut into fans from their first corners, of which the first is ({x}, {y}, {z})"
                 )
             }
             Self::ClampedReflectance { material, asked } => write!(

@@ -1,7 +1,7 @@
 //! Hashes that identify scenes, pipelines and programs.
 
 use sha2::{Digest, Sha256};
-use sir_geom::Triangle;
+use sir_geom::{Scene, Triangle};
 use sir_radiosity::{Grouping, Model, ViewFactorSettings};
 
 use crate::plan::{Action, Pipeline};
@@ -35,13 +35,20 @@ pub(crate) fn of_run(pipeline: &Pipeline, seed: u64, prepared: &Prepared) -> Fin
     }
     // `{:?}` writes all digits of a number.
     hash.update(format!("{:?}", prepared.up));
-    hash.update(of_scene(&prepared.model));
+    hash.update(of_model(&prepared.model));
     hash.finalize().into()
 }
 
 /// Returns the hash of a scene and its patches: of all that reaches an output file, which includes names and cameras.
-pub(crate) fn of_scene(model: &Model) -> Fingerprint {
-    let Model { scene, mesh, .. } = model;
+pub(crate) fn of_model(model: &Model) -> Fingerprint {
+    let mut hash = Sha256::new();
+    hash.update(of_scene(&model.scene));
+    hash.update((model.mesh.patch_count() as u64).to_le_bytes());
+    hash.finalize().into()
+}
+
+/// Returns the hash of a scene: of its geometry, textures, materials, lights, names and cameras.
+pub fn of_scene(scene: &Scene) -> Fingerprint {
     let mut hash = Sha256::new();
     let mut number = |n: u64| hash.update(n.to_le_bytes());
     number(scene.vertices().len() as u64);
@@ -55,7 +62,6 @@ pub(crate) fn of_scene(model: &Model) -> Fingerprint {
         [material.0, face.0, group.0, source].iter().for_each(|&n| number(n.into()));
     }
     scene.hash_appearance(&mut number);
-    number(mesh.patch_count() as u64);
     // `{:?}` writes all fields, and all digits of a number.
     hash.update(format!("{:?} {:?} {:?}", scene.materials(), scene.groups(), scene.cameras()));
     hash.update(format!("{:?} {:?}", scene.lights(), scene.sky()));
@@ -72,7 +78,7 @@ pub(crate) fn of_view_factors(
     hash.update(PROGRAM);
     hash.update(format!("{settings:?}{:?}", grouping.names()));
     model.scene.triangle_ids().for_each(|t| hash.update((grouping.group_of(t) as u64).to_le_bytes()));
-    hash.update(of_scene(model));
+    hash.update(of_model(model));
     hash.finalize().into()
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use sir_accel::{Accel, AccelError, Barycentric, Opacity, Options, TriangleId};
-use sir_geom::{Opacities, Rgb, Scene, Side, VertexId};
+use sir_geom::{Opacities, Scene, VertexId};
 use sir_types::DisjointSets;
 
 /// Builds the acceleration structure over the triangles of a scene, with their opacities.
@@ -45,12 +45,11 @@ impl Opacity for SceneOpacity {
 ///
 /// A polygon is what a viewer takes for one: connected triangles of the same material and group.
 fn contact_priorities(scene: &Scene, triangles: &[TriangleId]) -> Vec<u32> {
-    let emits =
-        |t: TriangleId| [Side::Front, Side::Back].iter().any(|&side| scene.exitance(t, side) != Rgb::ZERO);
     let areas = polygon_areas(scene, triangles);
     // Areas that are equal up to rounding must be equal here: four digits are kept, rounded to the nearest.
     let rounded = |area: f64| (area.to_bits() + (1 << 38)) >> 39;
-    let ranks = triangles.iter().zip(areas).map(|(&t, area)| (emits(t), std::cmp::Reverse(rounded(area))));
+    let ranks =
+        triangles.iter().zip(areas).map(|(&t, area)| (scene.emits(t), std::cmp::Reverse(rounded(area))));
     let ranks: Vec<_> = ranks.collect();
     let mut sorted = ranks.clone();
     sorted.sort_unstable();

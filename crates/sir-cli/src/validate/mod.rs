@@ -46,17 +46,21 @@ pub fn command(args: &ValidateArgs) -> Result<String, CliError> {
     let report = validate(&reference, &settings, &mut watch);
     drop(watch);
     let report = report.map_err(ValidationError::Cases)?;
-    if let Some(folder) = &args.out {
+    let written = args.out.as_deref().map_or(Ok(()), |folder| {
         write_file(&folder.join("validation.md"), &report.markdown())?;
-        write_file(&folder.join("validation.json"), &report.json())?;
-    }
+        write_file(&folder.join("validation.json"), &report.json())
+    });
     let text = if args.json { report.json() } else { report.markdown() };
-    if report.passed() {
-        return Ok(text);
+    let failed = || CliError::from(ValidationError::Failed { summary: report.summary() });
+    match written.and_then(|()| if report.passed() { Ok(()) } else { Err(failed()) }) {
+        Ok(()) => Ok(text),
+        Err(error) => {
+            // The report took minutes, and says more than the error. The exit code is that of the error, even if the
+            // report cannot be printed.
+            let _ = output::print_text(&text);
+            Err(error)
+        }
     }
-    // The report says more than the error. The exit code is that of the error, even if the report cannot be printed.
-    let _ = output::print_text(&text);
-    Err(ValidationError::Failed { summary: report.summary() }.into())
 }
 
 fn read(folder: &Path) -> Result<Result<Reference, sir_validate::ValidateError>, CliError> {

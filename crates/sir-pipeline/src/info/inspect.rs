@@ -38,7 +38,8 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         _ => 0,
     });
     let Up { direction: up, why: up_from, doubt } = Up::of(path, scene, None);
-    let survey = Survey::new(scene, &accel, &sources, up, lines::LINES);
+    let lines = lines::affordable(scene, &accel);
+    let survey = Survey::new(scene, &accel, &sources, up, lines);
     let extent = survey.extent;
     let area = scene.total_area();
     let largest = scene.triangle_ids().map(|id| scene.area(id)).fold(0.0, f64::max);
@@ -69,7 +70,7 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         cameras: scene.cameras().iter().map(|camera| camera.name.clone()).collect(),
         twins: shape::twins(scene),
         dominant: survey.dominant.clone(),
-        lines: lines::trace(scene, &accel, &sources),
+        lines: lines::trace(scene, &accel, &sources, lines),
         findings: Vec::new(),
         settings: Vec::new(),
     };

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use sir_accel::{Accel, Ray};
-use sir_geom::{Scene, Side, TriangleId};
+use sir_geom::{Scene, TriangleId};
 use sir_lines::{Allocation, Purpose, Streams};
 use sir_radiosity::{Emitter, Source};
 
@@ -99,8 +99,7 @@ fn gap(scene: &Scene, lamp: &Source, hit: TriangleId, t: f64, direction: DVec3) 
     // Light passes through the gaps of a cover that is not opaque.
     let is_cover = !scene.is_transparent(hit) && scene.normal(hit).dot(normal).abs() > 0.999;
     // What emits itself is part of the lamp.
-    let emits = [Side::Front, Side::Back].iter().any(|&side| scene.exitance(hit, side) != DVec3::ZERO);
-    (is_near && is_cover && !emits).then_some((triangle, gap))
+    (is_near && is_cover && !scene.emits(hit)).then_some((triangle, gap))
 }
 
 /// Returns the part and the material of a triangle, in words.

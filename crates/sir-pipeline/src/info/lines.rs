@@ -9,8 +9,11 @@ use sir_geom::{Barycentric, Line, Scene, Side, TriangleId};
 use sir_lines::{Allocation, Domain, Purpose, Streams, cosine_direction, point_on_triangle};
 use sir_radiosity::{Emitter, Source};
 
-/// Number of lines of each kind.
-pub(super) const LINES: u64 = 100_000;
+/// Number of lines of each kind, unless each of them crosses very many triangles.
+const LINES: u64 = 100_000;
+
+/// Number of crossings by global lines above which fewer lines of each kind are traced.
+const CROSSINGS: u64 = 4_000_000;
 
 /// Number of lines that are traced together.
 const BLOCK: u64 = 1 << 12;
@@ -60,24 +63,36 @@ pub struct Fates {
     pub escaped: f64,
 }
 
-/// Traces lines of all kinds.
-pub(super) fn trace(scene: &Scene, accel: &Accel, sources: &[Source]) -> Lines {
+/// Returns the number of lines of each kind that a scene allows: fewer if they cross very many triangles, as the time
+/// of a line is in proportion to its crossings.
+pub(super) fn affordable(scene: &Scene, accel: &Accel) -> u64 {
+    let crossings: u64 = {
+        let mut crossings = 0;
+        let lines = global_lines(&Domain::hull(scene.vertices()), 0..BLOCK);
+        accel.tracer().all_hits_each(&lines, |found| crossings += found.hits().len() as u64);
+        crossings
+    };
+    (CROSSINGS * BLOCK / crossings.max(1)).clamp(BLOCK, LINES)
+}
+
+/// Traces a number of lines of each kind.
+pub(super) fn trace(scene: &Scene, accel: &Accel, sources: &[Source], lines: u64) -> Lines {
     let from = |side: Side, kind| {
         let sides: Vec<_> = scene.triangle_ids().map(|id| (id, side, scene.area(id))).collect();
-        local(scene, accel, &starts(&sides, kind), kind)
+        local(scene, accel, &starts(&sides, lines, kind), kind)
     };
     let (from_fronts, mut arrived) = from(Side::Front, 1);
     let (from_backs, _) = from(Side::Back, 2);
     let emitters: Vec<_> = sources.iter().filter_map(emitting_side).collect();
     let from_emitters = (!emitters.is_empty()).then(|| {
-        let (fates, lit) = local(scene, accel, &starts(&emitters, 3), 3);
+        let (fates, lit) = local(scene, accel, &starts(&emitters, lines, 3), 3);
         arrived = lit;
         fates
     });
     let reflected = (!arrived.is_empty()).then(|| local(scene, accel, &arrived, 4).0);
     Lines {
-        lines_of_each_kind: LINES,
-        global: global(scene, accel),
+        lines_of_each_kind: lines,
+        global: global(scene, accel, lines),
         from_fronts,
         from_backs,
         from_emitters,
@@ -92,14 +107,18 @@ fn emitting_side(source: &Source) -> Option<(TriangleId, Side, f64)> {
     }
 }
 
-fn global(scene: &Scene, accel: &Accel) -> Global {
-    let (domain, streams) = (Domain::hull(scene.vertices()), Streams::new(0, Purpose::PROBE));
+fn global_lines(domain: &Domain, numbers: std::ops::Range<u64>) -> Vec<Line> {
+    let streams = Streams::new(0, Purpose::PROBE);
+    numbers.map(|i| domain.line(streams.line(i).point())).collect()
+}
+
+fn global(scene: &Scene, accel: &Accel, lines: u64) -> Global {
+    let domain = Domain::hull(scene.vertices());
     let (mut met, mut odd, mut segments, mut mixed, mut crossings, mut coincident) = (0, 0, 0, 0, 0, 0);
     let mut tracer = accel.tracer();
-    for first in (0..LINES).step_by(BLOCK as usize) {
-        let block = first..LINES.min(first + BLOCK);
-        let lines: Vec<Line> = block.map(|i| domain.line(streams.line(i).point())).collect();
-        tracer.all_hits_each(&lines, |found| {
+    for first in (0..lines).step_by(BLOCK as usize) {
+        let block = global_lines(&domain, first..lines.min(first + BLOCK));
+        tracer.all_hits_each(&block, |found| {
             for range in found.lines() {
                 let hits = &found.hits()[range];
                 met += u64::from(!hits.is_empty());
@@ -143,12 +162,12 @@ struct Start {
 }
 
 /// Returns random points on sides, distributed in proportion to the weights. `kind` is the number of the kind of lines.
-fn starts(sides: &[(TriangleId, Side, f64)], kind: u64) -> Vec<Start> {
+fn starts(sides: &[(TriangleId, Side, f64)], lines: u64, kind: u64) -> Vec<Start> {
     let weights: Vec<f64> = sides.iter().map(|side| side.2).collect();
-    let allocation = Allocation::new(&weights, LINES, 0.5);
+    let allocation = Allocation::new(&weights, lines, 0.5);
     // A stream different from that of the directions.
     let streams = Streams::new(kind + 10, Purpose::PROBE);
-    let owners = allocation.owners(0).zip(0..LINES);
+    let owners = allocation.owners(0).zip(0..lines);
     owners
         .map(|(owner, i)| {
             let (triangle, side, _) = sides[owner];

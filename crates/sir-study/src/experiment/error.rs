@@ -32,14 +32,6 @@ pub enum ExperimentError {
         /// Name of both pipelines.
         name: String,
     },
-    /// The scene file cannot be read.
-    #[error("cannot read the scene {}", path.display())]
-    Scene {
-        /// The file.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: std::io::Error,
-    },
     /// A picture of the report cannot be written.
     #[error("cannot write the picture {}", path.display())]
     Picture {
@@ -62,7 +54,7 @@ impl ExperimentError {
     pub fn kind(&self) -> ErrorKind {
         match self {
             Self::NoScenes { .. } | Self::NoMultipath { .. } | Self::SameName { .. } => ErrorKind::Usage,
-            Self::Scene { .. } | Self::Picture { .. } => ErrorKind::Failed,
+            Self::Picture { .. } => ErrorKind::Failed,
             Self::Interrupted { .. } => ErrorKind::Interrupted,
         }
     }

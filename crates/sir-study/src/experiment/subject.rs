@@ -1,14 +1,13 @@
 //! The subject of the experiment: a pipeline, and the pipelines derived from it.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use sha2::{Digest, Sha256};
+use sir_geom::LoadOptions;
 
 use crate::error::StudyError;
 use crate::experiment::error::ExperimentError;
 use crate::experiment::lines::{Lines, fitted};
-use sir_pipeline::fingerprint::hex;
+use sir_pipeline::fingerprint::{self, hex};
 use sir_pipeline::plan::{
     Action, DomainKind, FirstShot, Load, Multipath, Output, Pipeline, Save, SecondShot, Stage, Table,
     Transport,
@@ -32,7 +31,7 @@ pub(crate) struct Subject {
     pub(crate) lines: Lines,
     pub(crate) transport: Transport,
     pub(crate) domain: DomainKind,
-    /// SHA-256 of the scene file, so that runs with a changed scene file are distinct.
+    /// SHA-256 of the scene with its materials and textures, so that runs of a changed scene are distinct.
     digest: String,
 }
 
@@ -63,12 +62,11 @@ impl Subject {
             return Err(ExperimentError::NoMultipath { path: path.to_owned() }.into());
         };
         let scene = pipeline.scene_path();
-        let bytes =
-            fs::read(scene).map_err(|source| ExperimentError::Scene { path: scene.to_owned(), source })?;
+        let built = sir_geom::load(scene, &LoadOptions::default()).map_err(sir_pipeline::Error::from)?;
         let asked = Lines { local, global };
         Ok(Self {
             name: run_name(path),
-            digest: hex(Sha256::digest(&bytes).into()),
+            digest: hex(fingerprint::of_scene(&built.scene)),
             lines: asked.times(scale),
             pipeline,
             asked,
@@ -135,7 +133,7 @@ impl Subject {
         let derived = Pipeline { path: PathBuf::new(), text: String::new(), seed, units, stages };
         let Self { name, digest, .. } = self;
         format!(
-            "// Derived from the pipeline of {name} by `sir experiment`. SHA-256 of the scene file:\n// \
+            "// Derived from the pipeline of {name} by `sir experiment`. SHA-256 of the scene:\n// \
              {digest}\n{}",
             derived.to_ron()
         )
