@@ -12,7 +12,10 @@ use sir_radiosity::{Emitter, Source};
 /// Number of lines of each kind, unless each of them crosses very many triangles.
 const LINES: u64 = 100_000;
 
-/// Number of crossings by global lines above which fewer lines of each kind are traced.
+/// Number of lines whose crossings are counted first.
+const PILOT: u64 = 1 << 10;
+
+/// Number of crossings by lines from surfaces above which fewer lines of each kind are traced.
 const CROSSINGS: u64 = 4_000_000;
 
 /// Number of lines that are traced together.
@@ -63,16 +66,16 @@ pub struct Fates {
     pub escaped: f64,
 }
 
-/// Returns the number of lines of each kind that a scene allows: fewer if they cross very many triangles, as the time
-/// of a line is in proportion to its crossings.
+/// Returns the number of lines of each kind that a scene allows: fewer if lines from surfaces cross very many triangles,
+/// as the time of a line is in proportion to its crossings.
 pub(super) fn affordable(scene: &Scene, accel: &Accel) -> u64 {
-    let crossings: u64 = {
-        let mut crossings = 0;
-        let lines = global_lines(&Domain::hull(scene.vertices()), 0..BLOCK);
-        accel.tracer().all_hits_each(&lines, |found| crossings += found.hits().len() as u64);
-        crossings
-    };
-    (CROSSINGS * BLOCK / crossings.max(1)).clamp(BLOCK, LINES)
+    let sides: Vec<_> = scene.triangle_ids().map(|id| (id, Side::Front, scene.area(id))).collect();
+    let streams = Streams::new(1, Purpose::PROBE);
+    let rays = starts(&sides, PILOT, 1).into_iter().zip(0..);
+    let lines: Vec<Line> = rays.map(|(start, i)| start.ray(scene, streams.line(i).point()).line).collect();
+    let mut crossings = 0;
+    accel.tracer().all_hits_each(&lines, |found| crossings += found.hits().len() as u64);
+    (CROSSINGS * PILOT / crossings.max(1)).clamp(BLOCK, LINES)
 }
 
 /// Traces a number of lines of each kind.
@@ -107,18 +110,14 @@ fn emitting_side(source: &Source) -> Option<(TriangleId, Side, f64)> {
     }
 }
 
-fn global_lines(domain: &Domain, numbers: std::ops::Range<u64>) -> Vec<Line> {
-    let streams = Streams::new(0, Purpose::PROBE);
-    numbers.map(|i| domain.line(streams.line(i).point())).collect()
-}
-
 fn global(scene: &Scene, accel: &Accel, lines: u64) -> Global {
-    let domain = Domain::hull(scene.vertices());
+    let (domain, streams) = (Domain::hull(scene.vertices()), Streams::new(0, Purpose::PROBE));
     let (mut met, mut odd, mut segments, mut mixed, mut crossings, mut coincident) = (0, 0, 0, 0, 0, 0);
     let mut tracer = accel.tracer();
     for first in (0..lines).step_by(BLOCK as usize) {
-        let block = global_lines(&domain, first..lines.min(first + BLOCK));
-        tracer.all_hits_each(&block, |found| {
+        let block = first..lines.min(first + BLOCK);
+        let drawn: Vec<Line> = block.map(|i| domain.line(streams.line(i).point())).collect();
+        tracer.all_hits_each(&drawn, |found| {
             for range in found.lines() {
                 let hits = &found.hits()[range];
                 met += u64::from(!hits.is_empty());
@@ -161,6 +160,18 @@ struct Start {
     point: Barycentric,
 }
 
+impl Start {
+    /// Returns a diffuse ray. `point` is uniform in the unit square.
+    fn ray(&self, scene: &Scene, point: [f64; 2]) -> Ray {
+        let normal = match self.side {
+            Side::Front => scene.normal(self.triangle),
+            Side::Back => -scene.normal(self.triangle),
+        };
+        let origin = self.point.point(scene.corners(self.triangle));
+        Ray::leaving(Line { origin, direction: cosine_direction(normal, point) }, self.triangle)
+    }
+}
+
 /// Returns random points on sides, distributed in proportion to the weights. `kind` is the number of the kind of lines.
 fn starts(sides: &[(TriangleId, Side, f64)], lines: u64, kind: u64) -> Vec<Start> {
     let weights: Vec<f64> = sides.iter().map(|side| side.2).collect();
@@ -184,15 +195,7 @@ fn local(scene: &Scene, accel: &Accel, starts: &[Start], kind: u64) -> (Fates, V
     let mut tracer = accel.tracer();
     let mut numbers = 0..;
     for block in starts.chunks(BLOCK as usize) {
-        let rays = block.iter().zip(&mut numbers).map(|(start, i)| {
-            let normal = match start.side {
-                Side::Front => scene.normal(start.triangle),
-                Side::Back => -scene.normal(start.triangle),
-            };
-            let origin = start.point.point(scene.corners(start.triangle));
-            let line = Line { origin, direction: cosine_direction(normal, streams.line(i).point()) };
-            Ray::leaving(line, start.triangle)
-        });
+        let rays = block.iter().zip(&mut numbers).map(|(start, i)| start.ray(scene, streams.line(i).point()));
         let rays: Vec<Ray> = rays.collect();
         // Hits arrive in any order, but the lines that start at them must be the same every time.
         let mut hits = vec![None; rays.len()];
