@@ -58,9 +58,13 @@ pub fn summary(result: &RunResult) -> String {
     text + &error(report)
 }
 
-/// Returns the energy balance of a stage, as shares of the power summed over all bands.
+/// Returns the energy balance of a stage, as shares of the power of all bands: their sum in watts, their mean weighted for
+/// luminance in lumens, as lumens of different colors do not add up.
 fn balance(lines: &LinesReport, units: Units) -> String {
-    let sum = |bands: [f64; 3]| bands.iter().sum::<f64>();
+    let sum = |bands: [f64; 3]| match units {
+        Units::Radiometric => bands.iter().sum::<f64>(),
+        Units::Photometric => sir_geom::luminance(bands.into()),
+    };
     let b = &lines.balance;
     let emitted = sum(b.emitted);
     let share = |bands| if emitted > 0.0 { 100.0 * sum(bands) / emitted } else { 0.0 };

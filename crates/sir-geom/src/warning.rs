@@ -51,7 +51,8 @@ impl fmt::Display for Warning {
                 write!(
                     f,
                     "{count} polygons cross themselves, or have more than 4,096 corners and are far from convex; they \
-                     were cut into fans from their first corners, of which the first is ({x}, {y}, {z})"
+                     were cut into fans from their first corners, of which the first is ({x}, {y}, {z}), and may have a wrong area; \
+                     split them into simple polygons"
                 )
             }
             Self::ClampedReflectance { material, asked } => write!(

@@ -62,6 +62,18 @@ pub enum Error {
         /// The directory.
         directory: PathBuf,
     },
+    /// An output would replace a file that no run has written.
+    #[error("{} exists, and no run has written it; choose another run directory, or allow it to be replaced", path.display())]
+    OutputExists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// An output would replace an input.
+    #[error("the output {} would replace a file that the pipeline reads; choose another run directory or file name", path.display())]
+    OutputIsInput {
+        /// The file.
+        path: PathBuf,
+    },
     /// The requested run directory holds an interrupted run.
     #[error(
         "{} holds an interrupted run; resume it, choose another run directory, or allow it to be replaced",
@@ -209,6 +221,8 @@ impl Error {
             | Self::LongPipeline { .. }
             | Self::Exists { .. }
             | Self::ExistsInterrupted { .. }
+            | Self::OutputExists { .. }
+            | Self::OutputIsInput { .. }
             | Self::InUse { .. }
             | Self::CannotResume { .. } => ErrorKind::Usage,
             Self::Interrupted { .. }

@@ -167,7 +167,7 @@ fn a_file_that_cannot_be_written_leaves_a_run_that_can_go_on() {
     let out = folder.path().join("out");
     // A folder has the name of the file, so that even the superuser cannot write to it.
     fs::create_dir_all(out.join("a.csv/x")).unwrap();
-    let options = RunOptions { out: Some(out.clone()), ..RunOptions::default() };
+    let options = RunOptions { out: Some(out.clone()), force: true, ..RunOptions::default() };
     let error = run(&pipeline, &options).unwrap_err();
     assert!(matches!(error, Error::NotWritten { .. }), "{}", error.chain());
     assert!(

@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use glam::DVec3;
 use sir_pipeline::NoProgress;
 use sir_pipeline::check::estimate;
-use sir_pipeline::plan::Pipeline;
+use sir_pipeline::plan::{CameraChoice, Output, Pipeline};
 use sir_pipeline::report::compare;
 use sir_pipeline::report::{ErrorsFrom, ErrorsReport, Report, Time};
 use sir_pipeline::run::{RunOptions, read_report, run_pipeline as run};
@@ -274,4 +275,44 @@ fn a_check_counts_and_estimates() {
         assert!(text.contains(part), "{text}");
     }
     assert!(!folder.path().join("results").exists());
+}
+
+#[test]
+fn outputs_replace_no_file_that_no_run_has_written() {
+    let folder = folder();
+    let path = folder.path();
+    let text = r#"(stages: [Load(path: "room.obj"), FirstShot(lines: 100), Save([Table(path: "table.csv"), Gltf(path: "own.glb")])])"#;
+    let pipeline = pipeline(path, text);
+    let in_place = |force| RunOptions { out: Some(path.to_owned()), force, ..RunOptions::default() };
+    fs::write(path.join("own.glb"), "mine").unwrap();
+    let error = run(&pipeline, &in_place(false)).unwrap_err();
+    assert!(matches!(error, Error::OutputExists { .. }) && error.kind() == ErrorKind::Usage, "{error}");
+    assert_eq!(fs::read(path.join("own.glb")).unwrap(), b"mine");
+    run(&pipeline, &in_place(true)).unwrap();
+    assert_ne!(fs::read(path.join("own.glb")).unwrap(), b"mine");
+
+    // A scene that a run has written is the input of another.
+    let again = Pipeline::parse(&text.replace("room.obj", "own.glb"), &path.join("again.ron")).unwrap();
+    let error = run(&again, &in_place(true)).unwrap_err();
+    assert!(matches!(error, Error::OutputIsInput { .. }), "{error}");
+}
+
+#[test]
+fn cameras_have_the_up_direction_of_the_scene() {
+    let camera = |text: &str| {
+        let text = format!(
+            "(stages: [Load(path: \"room.obj\"), FirstShot(lines: 1), Save([Image(path: \"a.png\", camera: Camera({text}))])])"
+        );
+        let folder = folder();
+        let pipeline = pipeline(folder.path(), &text);
+        let Some(Output::Image(image)) = pipeline.outputs().next() else { panic!() };
+        let Some(CameraChoice::Own(camera)) = image.camera.as_ref().map(|c| c.value.clone()) else {
+            panic!()
+        };
+        camera.to_scene(DVec3::Z).unwrap()
+    };
+    assert_eq!(camera("eye: (0, -4, 1), target: (0, 0, 1)").up, DVec3::Z);
+    assert_eq!(camera("eye: (0, -4, 1), target: (0, 0, 1), up: (1, 0, 0)").up, DVec3::X);
+    // Straight down.
+    assert_eq!(camera("eye: (0, 0, 4), target: (0, 0, 1)").forward, -DVec3::Z);
 }

@@ -177,3 +177,40 @@ fn the_up_direction_is_recorded_and_can_be_stated() {
     assert_eq!(sky("Sky(horizontal: 100, up: (0, 0, 1))"), [""; 0]);
     assert_eq!(sky("Environment(radiance: 100)"), [""; 0]);
 }
+
+#[test]
+fn light_that_meets_nothing_is_pointed_out() {
+    let folder = tempfile::tempdir().unwrap();
+    room(folder.path(), 1.0, None, 0.0);
+    let light = |lamp: &str| format!("Light([{lamp}]), {STAGES}");
+    let outside = run(folder.path(), ", sides: Front", &light("Point(position: (2, 5, 2), power: 10)"));
+    assert!(outside.warnings[0].contains("are the lamps outside of the room"), "{:?}", outside.warnings);
+    let sun = "Distant(direction: (0.1, -1, 0.2), irradiance: 1000)";
+    let sun = run(folder.path(), ", sides: Front", &light(sun));
+    assert!(sun.warnings[0].starts_with("next to nothing of the power"), "{:?}", sun.warnings);
+    let inside = run(folder.path(), ", sides: Front", &light("Point(position: (2, 3, 2), power: 10)"));
+    assert_eq!(inside.warnings, [""; 0], "half of a lamp in the ceiling lights the room");
+}
+
+#[test]
+fn a_grid_that_is_coarser_than_the_room_is_pointed_out() {
+    for width in [1e8, 1e10, 1e12] {
+        let folder = tempfile::tempdir().unwrap();
+        room(folder.path(), 1.0, Some(2.9), width);
+        let warnings = run(folder.path(), "", STAGES).warnings;
+        assert!(
+            warnings.iter().any(|warning| warning.contains("\"ground\"") && warning.contains("steps of")),
+            "{warnings:?}"
+        );
+    }
+}
+
+#[test]
+fn a_copy_of_a_lamp_is_pointed_out() {
+    let folder = tempfile::tempdir().unwrap();
+    room(folder.path(), 1.0, Some(2.9), 0.0);
+    let text = fs::read_to_string(folder.path().join("room.obj")).unwrap();
+    fs::write(folder.path().join("room.obj"), text + "usemtl lamp\nf 1 2 3 4\n").unwrap();
+    let warnings = run(folder.path(), "", STAGES).warnings;
+    assert!(warnings[0].starts_with("50.0 % of the light of lamps ends where it begins"), "{warnings:?}");
+}

@@ -65,6 +65,10 @@ pub struct SkyAperture {
 /// the box is hit.
 const OUTSIDE: f64 = 0.25;
 
+/// Distance from a point light within which its rays meet nothing, in its largest coordinate: positions may be given to
+/// five digits.
+const ROUNDING: f64 = 1.0 / (1u64 << 17) as f64;
+
 impl Emitter {
     /// Returns a random ray.
     #[inline]
@@ -82,7 +86,9 @@ impl Emitter {
                     Spread::Lambertian { axis } => cosine_direction(axis, stream.point()),
                     Spread::Spot { axis, inner, outer } => spot_direction(axis, inner, outer, stream.point()),
                 };
-                Line { origin: *position, direction }.into()
+                // A lamp in a surface, or just below it for rounding, sends light to both sides.
+                let start = ROUNDING * position.abs().max_element();
+                Ray::new(Line { origin: *position, direction }).within(start..f64::INFINITY)
             }
             Self::Distant { lines, around } => loop {
                 let line = lines.line(stream.point());

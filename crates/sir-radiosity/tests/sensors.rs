@@ -285,6 +285,45 @@ fn backs_are_black() {
     }
 }
 
+/// In a room that is equally bright everywhere, sensors measure the same in any direction, on walls and in corners, too.
+#[test]
+fn sensors_on_surfaces_may_look_elsewhere() {
+    for shift in [DVec3::ZERO, v(1000.0, -700.0, 30.0)] {
+        let mut b = SceneBuilder::new();
+        let m = b.add_material(gray(0.0, 0.5));
+        shapes::cuboid(&mut b, shift, shift + v(4.0, 3.0, 5.0), [m; 6], Facing::Inward);
+        let model = model(b);
+        let solution = uniform(&model, 10.0);
+        let sensors = Gatherer::new(&model, &solution, RAYS, 1);
+        let corner = [v(1.0, 1.0, 1.0), v(0.3, 1.0, 0.2), v(1.0, 0.0, 0.0), v(0.0, 1.0, 1e-4)];
+        let on_floor = [v(1.0, 0.0, 0.0), v(0.0, 0.001, -1.0), v(1.0, 1.0, 0.0), v(0.0, 1.0, 0.0)];
+        let on_wall = [DVec3::Y, v(-0.1, 0.0, 1.0), v(-1.0, -1.0, 0.0)];
+        let places =
+            [(DVec3::ZERO, &corner[..]), (v(1.3, 0.0, 1.1), &on_floor[..]), (v(4.0, 1.0, 2.0), &on_wall[..])];
+        for (place, directions) in places {
+            for direction in directions {
+                let measured = sensors.measure(0, &at(shift + place, *direction)).irradiance.x;
+                assert!((measured - 5.0).abs() < 1e-9, "{place} towards {direction}: {measured}");
+            }
+        }
+    }
+}
+
+/// A lamp in the plane of a ceiling lights the room below.
+#[test]
+fn a_point_lamp_may_lie_in_a_surface() {
+    let mut b = SceneBuilder::new();
+    let m = b.add_material(gray(0.0, 0.5));
+    shapes::cuboid(&mut b, DVec3::ZERO, v(4.0, 3.0, 5.0), [m; 6], Facing::Inward);
+    let spread = Spread::Lambertian { axis: -DVec3::Y };
+    let kind = LightKind::Point { position: v(1.9, 3.0, 2.2), intensity: Rgb::splat(1.0), spread };
+    b.add_light(Light { name: String::new(), kind });
+    let model = model(b);
+    let shot = shoot(&model, 20_000, 1);
+    let lost = (shot.balance.blocked + shot.balance.escaped).total() / shot.balance.emitted.total();
+    assert!(lost < 1e-3, "{lost}");
+}
+
 /// Over many seeds, the deviations agree with the standard errors, in a room with a lamp, a sky and patches.
 #[test]
 fn standard_errors_are_honest() {

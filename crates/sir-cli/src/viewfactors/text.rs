@@ -45,11 +45,12 @@ fn row_error(report: &Report, matrix: &Matrix, i: usize) -> f64 {
 }
 
 fn names(report: &Report) -> Vec<String> {
-    let cut = |name: &str| match name.char_indices().nth(MAX_NAME) {
+    let cut = |name: String| match name.char_indices().nth(MAX_NAME) {
         Some((end, _)) => format!("{}…", &name[..end]),
-        None => name.to_owned(),
+        None => name,
     };
-    report.groups.iter().map(|group| cut(&group.name)).collect()
+    // Control characters could manipulate a terminal.
+    report.groups.iter().map(|group| cut(group.name.escape_debug().to_string())).collect()
 }
 
 fn table(report: &Report, matrix: &Matrix) -> String {

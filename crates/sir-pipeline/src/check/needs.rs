@@ -1,5 +1,6 @@
 //! Estimates the memory that a run needs.
 
+use glam::DVec3;
 use sir_geom::Rgb;
 use sir_radiosity::{Model, Quanta, Repeats};
 
@@ -49,7 +50,8 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     let displays = usize::from(shown) + usize::from(measured) + usize::from(denoise);
     let pixels = pipeline.outputs().filter_map(|o| match o {
         Output::Image(image) => {
-            let camera = chosen_camera(image, scene);
+            // Only its shape matters.
+            let camera = chosen_camera(image, scene, DVec3::Y);
             let size = settings(image, camera.as_ref(), 1);
             Some(size.width as usize * size.height as usize)
         }

@@ -24,6 +24,8 @@ pub(crate) struct LampLight {
     pub cover: Option<Cover>,
     /// Share of the light that ends on the back of a one-sided surface elsewhere, which absorbs it.
     pub absorbed: f64,
+    /// Share of the light that hits nothing.
+    pub escaped: f64,
     /// Median distance to the first hit that is not on a cover \[m\]; `None` if there is none.
     pub reach: Option<f64>,
     /// Mean position of the lamps, weighted by power \[m\].
@@ -61,10 +63,13 @@ pub(crate) fn lamp_light(scene: &Scene, accel: &Accel, sources: &[Source], lines
     let center = rays.iter().map(|ray| ray.line.origin).sum::<DVec3>() / rays.len().max(1) as f64;
     let mut hits = vec![None; rays.len()];
     accel.tracer().closest_each(&rays, |i, hit| hits[i] = hit);
-    let (mut covers, mut absorbed, mut distances) = (BTreeMap::new(), 0, Vec::new());
+    let (mut covers, mut absorbed, mut escaped, mut distances) = (BTreeMap::new(), 0, 0, Vec::new());
     for ((&owner, ray), hit) in owners.iter().zip(&rays).zip(hits) {
-        let Some(hit) = hit else { continue };
-        match gap(scene, lamps[owner], hit.triangle, hit.t, ray.line.direction) {
+        let Some(hit) = hit else {
+            escaped += 1;
+            continue;
+        };
+        match gap(scene, accel, lamps[owner], hit.triangle, hit.t, ray.line.direction) {
             Some((lamp, gap)) => {
                 let pair = (scene.triangle(lamp).material.0, scene.triangle(hit.triangle).material.0);
                 let (count, widest) = covers.entry(pair).or_insert((0u64, (gap, lamp, hit.triangle)));
@@ -88,18 +93,33 @@ pub(crate) fn lamp_light(scene: &Scene, accel: &Accel, sources: &[Source], lines
     });
     let middle = distances.len() / 2;
     let reach = (!distances.is_empty()).then(|| *distances.select_nth_unstable_by(middle, f64::total_cmp).1);
-    Some(LampLight { covered: share(covered), cover, absorbed: share(absorbed), reach, center })
+    Some(LampLight {
+        covered: share(covered),
+        cover,
+        absorbed: share(absorbed),
+        escaped: share(escaped),
+        reach,
+        center,
+    })
 }
 
 /// Returns the triangle of a lamp and its distance from the surface that a line hits, if that surface covers the lamp.
-fn gap(scene: &Scene, lamp: &Source, hit: TriangleId, t: f64, direction: DVec3) -> Option<(TriangleId, f64)> {
+fn gap(
+    scene: &Scene,
+    accel: &Accel,
+    lamp: &Source,
+    hit: TriangleId,
+    t: f64,
+    direction: DVec3,
+) -> Option<(TriangleId, f64)> {
     let Emitter::Surface { triangle, normal, .. } = lamp.emitter else { return None };
-    let gap = t * direction.dot(normal).abs();
+    let gap = (t * direction.dot(normal)).abs();
     let is_near = gap <= COVER * scene.area(triangle).sqrt();
     // Light passes through the gaps of a cover that is not opaque.
     let is_cover = !scene.is_transparent(hit) && scene.normal(hit).dot(normal).abs() > 0.999;
-    // What emits itself is part of the lamp.
-    (is_near && is_cover && !scene.emits(hit)).then_some((triangle, gap))
+    // What emits itself is part of the lamp, unless it is a copy.
+    let is_other = !scene.emits(hit) || accel.are_in_contact(triangle, hit);
+    (is_near && is_cover && is_other).then_some((triangle, gap))
 }
 
 /// Returns the part and the material of a triangle, in words.

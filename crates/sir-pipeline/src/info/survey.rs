@@ -13,6 +13,12 @@ use crate::info::shape::{Dominant, Extent};
 /// Share of the light of lamps above which a cover is mentioned.
 const COVERED: f64 = 0.1;
 
+/// Share of the light of lamps above which light that backs absorb is mentioned.
+const ABSORBED: f64 = 0.5;
+
+/// Share of the light of lamps above which the loss of light is mentioned.
+const LOST: f64 = 0.95;
+
 /// Distance below which a lamp and its cover are said to lie in one plane \[m\].
 const IN_PLANE: f64 = 1e-5;
 
@@ -66,11 +72,10 @@ impl Survey {
     pub(crate) fn new(scene: &Scene, accel: &Accel, sources: &[Source], up: DVec3, lines: u64) -> Self {
         let dominant = shape::dominant(scene);
         let lamps = lamp_light(scene, accel, sources, lines);
-        let lit = match (&lamps, &dominant) {
-            (Some(LampLight { reach: Some(reach), center, .. }), _) => Some((*center, *reach)),
-            (_, Some(dominant)) => Some((dominant.rest.center(), dominant.rest.size().length())),
-            _ => None,
-        };
+        let by_lamps = lamps.as_ref().and_then(|lamps| Some((lamps.center, lamps.reach?)));
+        let rest = dominant.as_ref().map(|part| (part.rest.center(), part.rest.size().length()));
+        // Where the grid is so coarse that light passes through walls, light travels too far.
+        let lit = by_lamps.into_iter().chain(rest).min_by(|a, b| a.1.total_cmp(&b.1));
         let remote = lit.and_then(|(center, size)| remote(scene, accel.grid_step(), center, size));
         Self { extent: scene.bounding_box().into(), up, dominant, lamps, remote }
     }
@@ -86,6 +91,7 @@ impl Survey {
             dominated,
             self.covered(),
             self.absorbed(),
+            self.lost(),
         ]
         .into_iter()
         .flatten()
@@ -162,9 +168,24 @@ impl Survey {
         ))
     }
 
+    /// Returns a warning if almost all light of lamps meets nothing that reflects, for reasons that are not mentioned
+    /// elsewhere.
+    fn lost(&self) -> Option<String> {
+        let LampLight { covered, absorbed, escaped, .. } = *self.lamps.as_ref()?;
+        let is_mentioned = covered > COVERED || absorbed > ABSORBED;
+        (!is_mentioned && covered + absorbed + escaped > LOST).then(|| {
+            format!(
+                "{} of the light of lamps leaves the scene, and {} falls on backs, which absorb it: are the lamps outside of \
+                 the room, or turned the wrong way?",
+                percent(escaped),
+                percent(absorbed)
+            )
+        })
+    }
+
     fn absorbed(&self) -> Option<String> {
         let absorbed = self.lamps.as_ref()?.absorbed;
-        (absorbed > 0.5).then(|| {
+        (absorbed > ABSORBED).then(|| {
             format!(
                 "{} of the light of lamps falls on backs, which absorb it: are the lamps turned the wrong way, or the surfaces? \
                  `Load(sides: Both)` makes backs reflect",

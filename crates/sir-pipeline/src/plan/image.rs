@@ -60,7 +60,7 @@ record! {
         /// Point in the center of the image.
         pub target: DVec3 = Vector([1.0, 1.0, 0.0]).required().unit("m");
         /// Direction that is up in the image.
-        pub up: DVec3 = Direction([0.0, 1.0, 0.0]).or(DVec3::Y);
+        pub up: Option<DVec3> = Direction([0.0, 1.0, 0.0]).optional("the up direction of the scene");
         /// Full vertical field of view.
         pub fov: f64 =
             positive(45.0).with_range(|x| 0.0 < x && x < 180.0, "above 0 and below 180").or(45.0).unit("degrees");
@@ -68,10 +68,15 @@ record! {
 }
 
 impl Camera {
-    /// Returns the camera, or `None` if `eye` and `target` coincide, or `up` points along the view.
+    /// Returns the camera in a scene with this up direction, or `None` if `eye` and `target` coincide, or `up` points
+    /// along the view. A camera without `up` may look straight up or down.
     #[must_use]
-    pub fn to_scene(&self) -> Option<sir_geom::Camera> {
-        sir_geom::Camera::looking_at(self.eye, self.target, self.up, self.fov.to_radians())
+    pub fn to_scene(&self, up_of_scene: DVec3) -> Option<sir_geom::Camera> {
+        let with = |up| sir_geom::Camera::looking_at(self.eye, self.target, up, self.fov.to_radians());
+        match self.up {
+            Some(up) => with(up),
+            None => with(up_of_scene).or_else(|| with(up_of_scene.any_orthogonal_vector())),
+        }
     }
 
     /// Returns a camera of a scene, with numbers rounded to six decimals. Returns `None` if it is not in perspective.
@@ -82,7 +87,7 @@ impl Camera {
         Some(Self {
             eye: rounded(camera.eye),
             target: rounded(camera.eye + camera.forward),
-            up: rounded(camera.up),
+            up: Some(rounded(camera.up)),
             fov: round(vertical_fov.to_degrees()),
         })
     }
@@ -94,7 +99,7 @@ impl Camera {
     }
 
     fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
-        if self.to_scene().is_none() {
+        if self.to_scene(DVec3::Y).is_none() {
             let message =
                 "this camera has no direction: `eye` and `target` coincide, or `up` points along the view";
             let help = "move `target` away from `eye`, and choose an `up` that is not parallel to the view";

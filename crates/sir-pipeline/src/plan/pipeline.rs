@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 use crate::plan::save::{Output, Save};
+use crate::plan::sensors::Place;
 use crate::plan::stage::{Action, Stage, StageList};
 use crate::text::diagnostic::{Diagnostic, Diagnostics};
 use crate::text::field::Format as _;
@@ -146,6 +147,18 @@ impl Pipeline {
         });
         let measured = sensors.flat_map(|sensors| [Some(sensors.table()), sensors.map()]).flatten();
         self.outputs().map(|output| output.path().to_owned()).chain(measured).collect()
+    }
+
+    /// Returns the paths of the pipeline file and of all files that it names.
+    pub(crate) fn inputs(&self) -> impl Iterator<Item = &Path> {
+        let points = self.stages.iter().filter_map(|stage| match &stage.action {
+            Action::Sensors(sensors) => match &sensors.at.value {
+                Place::File(file) => Some(file.path.as_path()),
+                _ => None,
+            },
+            _ => None,
+        });
+        [self.path.as_path(), self.scene_path()].into_iter().chain(points)
     }
 
     /// Returns the path of the scene file.

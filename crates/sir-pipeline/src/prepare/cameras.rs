@@ -1,5 +1,6 @@
 //! Cameras of images.
 
+use glam::DVec3;
 use sir_geom::{Camera, Scene};
 
 use crate::plan::{CameraChoice, Image, Output, Pipeline};
@@ -36,14 +37,14 @@ pub(crate) fn camera_problems(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnos
 }
 
 /// Returns the camera of an image, from the scene or the pipeline. Returns `None` if the image specifies none and the
-/// scene has none.
+/// scene has none. `up` is the up direction of the scene.
 #[must_use]
-pub(crate) fn chosen_camera(image: &Image, scene: &Scene) -> Option<Camera> {
+pub(crate) fn chosen_camera(image: &Image, scene: &Scene, up: DVec3) -> Option<Camera> {
     let cameras = scene.cameras();
     match image.camera.as_ref().map(|camera| &camera.value) {
         None => cameras.first().cloned(),
         Some(CameraChoice::Number(number)) => cameras.get(*number as usize).cloned(),
         Some(CameraChoice::Name(name)) => cameras.iter().find(|c| c.name == *name).cloned(),
-        Some(CameraChoice::Own(camera)) => camera.to_scene(),
+        Some(CameraChoice::Own(camera)) => camera.to_scene(up),
     }
 }

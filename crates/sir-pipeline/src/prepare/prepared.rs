@@ -35,6 +35,8 @@ pub struct Prepared {
     pub warnings: Vec<String>,
     /// What is suspicious about the scene, such as its size.
     pub suspicions: Vec<String>,
+    /// True if most of the light of lamps ends on surfaces that cover them.
+    pub lamps_are_covered: bool,
     /// Light sources, at least one.
     pub sources: Vec<Source>,
     /// Focus, if there is one.
@@ -121,6 +123,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 up_from,
                 warnings,
                 suspicions,
+                lamps_are_covered: survey.are_lamps_covered(),
                 sources,
                 focus,
                 inside,
@@ -157,7 +160,7 @@ fn nothing_inside(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
             span: stage.span.0.clone(),
             message: "no patch of the scene lies in the box of `Focus`".into(),
             help: format!(
-                "choose a box in the scene, which extends from {:.4} to {:.4} in its own units",
+                "choose a box in the scene, which extends from {:.4} to {:.4} in meters",
                 around.min, around.max
             ),
         })

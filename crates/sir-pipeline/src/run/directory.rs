@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
+use crate::plan::Pipeline;
 use crate::progress::Progress;
 use crate::run::lock::{DirectoryLock, check_unused};
 use crate::run_files::{CHECKPOINT, REPORT};
@@ -48,11 +49,22 @@ pub(crate) fn make_given(
     Ok(lock)
 }
 
-/// Returns an error if another run uses the directory, or if it holds a result or the checkpoint of an interrupted run,
-/// unless `force` is true. Writes nothing.
-pub(crate) fn check_given(directory: &Path, force: bool) -> Result<(), Error> {
+/// Returns an error if another run uses the directory; if it holds a result, the checkpoint of an interrupted run or an
+/// output, unless `force` is true; or if an output would replace an input. Writes nothing.
+pub(crate) fn check_given(directory: &Path, force: bool, pipeline: &Pipeline) -> Result<(), Error> {
     check_unused(directory)?;
-    check_empty(directory, force)
+    check_empty(directory, force)?;
+    let is_input =
+        |path: &Path| pipeline.inputs().any(|input| same_file::is_same_file(input, path).unwrap_or(false));
+    for path in pipeline.files().iter().map(|file| directory.join(file)).filter(|path| path.exists()) {
+        if is_input(&path) {
+            return Err(Error::OutputIsInput { path });
+        }
+        if !force {
+            return Err(Error::OutputExists { path });
+        }
+    }
+    Ok(())
 }
 
 /// Returns an error if the directory holds a result, or the checkpoint of an interrupted run, unless `force` is true.
@@ -121,8 +133,11 @@ mod tests {
         let base = tempfile::tempdir().unwrap();
         let _lock = make_given(base.path(), false, &NoProgress).unwrap();
         fs::write(base.path().join(CHECKPOINT), "").unwrap();
+        fs::write(base.path().join("x.obj"), "").unwrap();
+        let text = "(stages: [Load(path: \"x.obj\"), FirstShot(lines: 1)])";
+        let pipeline = Pipeline::parse(text, &base.path().join("x.ron")).unwrap();
         for force in [false, true] {
-            assert!(matches!(check_given(base.path(), force), Err(Error::InUse { .. })));
+            assert!(matches!(check_given(base.path(), force, &pipeline), Err(Error::InUse { .. })));
             assert!(matches!(make_given(base.path(), force, &NoProgress), Err(Error::InUse { .. })));
         }
         assert!(base.path().join(CHECKPOINT).exists());

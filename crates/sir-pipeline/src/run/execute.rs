@@ -111,7 +111,9 @@ pub fn run_together(
     let pipeline = agree(
         comm,
         pipeline.and_then(|pipeline| {
-            given.map_or(Ok(()), |directory| check_given(directory, options.force)).map(|()| pipeline)
+            given
+                .map_or(Ok(()), |directory| check_given(directory, options.force, &pipeline))
+                .map(|()| pipeline)
         }),
     )?;
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));

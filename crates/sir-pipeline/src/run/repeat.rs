@@ -19,7 +19,7 @@ use crate::report::result::{
 };
 use crate::run::execute::Run;
 use crate::run::lighting::{Done, Lighting};
-use crate::run::reach::few_lines_warning;
+use crate::run::reach::{dark_warning, few_lines_warning};
 use crate::run::stages::unshot_warning;
 
 impl Run<'_> {
@@ -72,6 +72,7 @@ impl Run<'_> {
         for (stage, report) in settings.stages.iter().zip(&report.stages) {
             if let Some(lines) = &report.lines {
                 self.warn(unshot_warning(&stage.action, lines));
+                self.warn(dark_warning(&stage.action, lines));
                 self.warn(few_lines_warning(self.prepared, lines, &solution));
             }
         }

@@ -60,7 +60,7 @@ pub(crate) fn save(
         let mut default_camera = None;
         let kind = match output {
             Output::Image(image) => {
-                if chosen_camera(image, scene).is_none() {
+                if chosen_camera(image, scene, prepared.up).is_none() {
                     default_camera = plan::Camera::of_scene(&renderer.default_camera()).map(|c| c.to_ron());
                 }
                 let Rendered { camera, settings, picture, .. } =
@@ -120,7 +120,7 @@ struct Rendered {
 impl Renderer<'_> {
     fn render(&mut self, image: &Image, is_denoised: bool) -> Result<&Rendered, Error> {
         let Model { scene, accel, .. } = &self.prepared.model;
-        let chosen = chosen_camera(image, scene);
+        let chosen = chosen_camera(image, scene, self.prepared.up);
         let settings = settings(image, chosen.as_ref(), self.threads);
         let camera = chosen.unwrap_or_else(|| self.default_camera());
         let rendered = match self.last.take() {
@@ -148,7 +148,7 @@ impl Renderer<'_> {
         let find = || {
             let camera = default_camera((self.display)(), &model.accel, *up);
             // The report states this camera, so its numbers are short.
-            plan::Camera::of_scene(&camera).and_then(|camera| camera.to_scene()).unwrap_or(camera)
+            plan::Camera::of_scene(&camera).and_then(|camera| camera.to_scene(*up)).unwrap_or(camera)
         };
         self.default.get_or_insert_with(find).clone()
     }

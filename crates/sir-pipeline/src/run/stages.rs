@@ -12,7 +12,7 @@ use crate::report::result::{ErrorsFrom, ErrorsReport, LinesReport, OutputReport,
 use crate::report::sensors::SensorsReport;
 use crate::run::execute::Run;
 use crate::run::lighting::Lighting;
-use crate::run::reach::few_lines_warning;
+use crate::run::reach::{dark_warning, few_lines_warning};
 use crate::run::save::save;
 use crate::run::sensor_files;
 use crate::stopwatch::Stopwatch;
@@ -79,6 +79,7 @@ impl Run<'_> {
         let Some(done) = agree(self.comm, done.map_err(Error::from))? else { return Ok((report, None)) };
         let lines = LinesReport::new(done.facts, done.unit);
         self.warn(unshot_warning(action, &lines));
+        self.warn(dark_warning(action, &lines));
         let before = self.head.report.stages.iter().filter_map(|stage| stage.lines.as_ref());
         let samples = before.chain([&lines]).map(|lines| lines.lines).sum();
         let result = lighting.result(ErrorsReport { from: ErrorsFrom::Lines, samples });

@@ -332,7 +332,7 @@ fn numbers_out_of_range() {
         r#"Multipath(lines: -5),"#,
         r#"Save([Image(path: "a.png", width: 0, height: 100_000, samples: 1.5, exposure: -1)]),"#,
         r#"Save([Image(path: "b.png", exposure: NaN, camera: Camera(eye: (0, 0, 0), target: (0, 0, inf), fov: 200))]),"#,
-        r#"Save([Image(path: "c.png", camera: Camera(eye: (0, 0, 0), target: (0, 1, 0)))]),"#,
+        r#"Save([Image(path: "c.png", camera: Camera(eye: (0, 0, 0), target: (0, 1, 0), up: (0, 1, 0)))]),"#,
     ]), @r#"
     error: `patches` must be a whole number from 1 to 4_294_967_295, but it is the number 1e15
      --> x.ron:3:20
@@ -417,7 +417,7 @@ fn numbers_out_of_range() {
     error: this camera has no direction: `eye` and `target` coincide, or `up` points along the view
      --> x.ron:8:36
       |
-    8 | Save([Image(path: "c.png", camera: Camera(eye: (0, 0, 0), target: (0, 1, 0)))]),
+    8 | Save([Image(path: "c.png", camera: Camera(eye: (0, 0, 0), target: (0, 1, 0), up: (0, 1, 0)))]),
       |                                    ^^^^^^
       |
       = help: move `target` away from `eye`, and choose an `up` that is not parallel to the view
