@@ -50,7 +50,8 @@ fn names(report: &Report) -> Vec<String> {
         None => name,
     };
     // Control characters could manipulate a terminal.
-    report.groups.iter().map(|group| cut(group.name.escape_debug().to_string())).collect()
+    let plain = |name: &str| name.chars().map(|c| if c.is_control() { '�' } else { c }).collect::<String>();
+    report.groups.iter().map(|group| cut(plain(&group.name))).collect()
 }
 
 fn table(report: &Report, matrix: &Matrix) -> String {
