@@ -96,8 +96,10 @@ fn files(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 /// Clears the times of a report and, recursively, of its stages.
 fn forget_times(report: &mut serde_json::Value) {
     report["time"] = 0.into();
-    if let Some(stages) = report.get_mut("stages").and_then(|stages| stages.as_array_mut()) {
-        stages.iter_mut().for_each(forget_times);
+    for parts in ["stages", "convergence"] {
+        if let Some(parts) = report.get_mut(parts).and_then(|parts| parts.as_array_mut()) {
+            parts.iter_mut().for_each(forget_times);
+        }
     }
 }
 

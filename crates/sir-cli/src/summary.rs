@@ -25,7 +25,7 @@ pub fn summary(result: &RunResult) -> String {
         duration(report.time.seconds)
     );
     for stage in report.stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.stages)) {
-        if let Some(repeats) = stage.repeats {
+        if let (Some(repeats), false) = (stage.repeats, stage.stages.is_empty()) {
             text += &format!(
                 "{:<10} {} times in {}; lines of its stages are totals, balances are means\n",
                 stage.name,
@@ -38,8 +38,9 @@ pub fn summary(result: &RunResult) -> String {
             let through = lines.domain.as_ref().map_or(String::new(), |domain| {
                 format!(" through the {} ({:.6} m²)", domain.kind.to_lowercase(), domain.surface)
             });
+            let shared = stage.repeats.map_or(String::new(), |repeats| format!(", {repeats} repeats"));
             text += &format!(
-                "{:<10} {} lines{through} in {}, {} lines/s, {:.1} % empty, {:.1} % odd\n",
+                "{:<10} {} lines{through}{shared} in {}, {} lines/s, {:.1} % empty, {:.1} % odd\n",
                 stage.name,
                 grouped(lines.lines),
                 duration(stage.time.seconds),

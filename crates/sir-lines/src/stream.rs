@@ -28,6 +28,8 @@ impl Purpose {
     pub const PROBE: Self = Self(5);
     /// Local lines of view factors.
     pub const VIEW_FACTORS: Self = Self(12);
+    /// Random walks that send on what global lines have left unshot.
+    pub const WALKS: Self = Self(17);
     /// Seeds of repeats.
     const REPEAT: Self = Self(16);
 }

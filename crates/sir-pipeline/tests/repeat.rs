@@ -75,6 +75,7 @@ fn timeless(mut report: Report) -> Report {
     report.time = Time::of(0.0);
     for stage in &mut report.stages {
         stage.time = Time::of(0.0);
+        stage.convergence.iter_mut().for_each(|point| point.time = Time::of(0.0));
         stage.stages.iter_mut().for_each(|part| part.time = Time::of(0.0));
     }
     report
@@ -116,6 +117,57 @@ fn any_number_of_workers_gets_the_same_bits() {
             assert!(case.files(&out) == (files.clone(), report.clone()), "{ranks} ranks, {threads} threads");
             assert!(reports.into_iter().all(|other| timeless(other).stages == report.stages));
         }
+    }
+}
+
+/// Pipelines without a `Repeat` share their lines among repeats. Sensors and intermediate results are means, too.
+const SHARED: &str =
+    "FirstShot(lines: 20_000), Save([Table(path: \"direct.npy\")]), Multipath(lines: 60_000),
+    Sensors(name: \"s\", at: Points([(position: (0.5, 0.5, 0.5), direction: (0, 1, 0))]), rays: 2_000)";
+
+#[test]
+fn lines_are_shared_among_repeats_if_they_suffice() {
+    let (_, report) = Case::new(SHARED).run();
+    let lit: Vec<&StageReport> = report.stages.iter().filter(|stage| stage.light.is_some()).collect();
+    let [direct, all] = lit[..] else { panic!("direct light and all light") };
+    for (stage, lines) in [(direct, 20_000), (all, 60_000)] {
+        let repeats = stage.repeats.unwrap();
+        assert!((MIN_REPEATS..=16).contains(&repeats), "{repeats}");
+        let errors = stage.light.as_ref().unwrap().errors;
+        assert_eq!(errors, ErrorsReport { from: ErrorsFrom::Spread, samples: repeats });
+        assert_eq!(stage.lines.as_ref().unwrap().lines, lines);
+    }
+    let convergence = &all.convergence;
+    assert_eq!(convergence.first().unwrap().repeats, MIN_REPEATS);
+    let last = convergence.last().unwrap();
+    assert_eq!((Some(last.repeats), last.lines), (all.repeats, 80_000));
+    let stated = all.light.as_ref().unwrap().relative_error;
+    let off = std::iter::zip(last.relative_error, stated).map(|(a, b)| (a / b - 1.0).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-3, "{last:?} {stated:?}");
+    let sensors = report.stages.iter().find_map(|stage| stage.sensors.as_ref()).unwrap();
+    // The radiosity is 2, 5 and 10 W/m² everywhere.
+    let exact = 0.2126 * 2.0 + 0.7152 * 5.0 + 0.0722 * 10.0;
+    assert!((sensors.mean - exact).abs() < 5.0 * sensors.mean_error, "{sensors:?}");
+    assert!(sensors.mean_error < 0.01 * exact, "{sensors:?}");
+    assert_eq!(report.warnings, [""; 0]);
+
+    let (_, few) = Case::new("FirstShot(lines: 20_000), Multipath(lines: 20_000)").run();
+    assert!(few.warnings[0].contains("too few to tell its error from the spread"), "{:?}", few.warnings);
+    let last = few.stages.iter().rfind(|stage| stage.light.is_some()).unwrap();
+    assert_eq!((last.repeats, last.light.as_ref().unwrap().errors.from), (None, ErrorsFrom::Lines));
+}
+
+#[test]
+fn shared_lines_give_the_same_bits_for_any_number_of_workers() {
+    let case = Case::new(SHARED);
+    let whole = case.run();
+    for (ranks, threads) in [(1, 3), (2, 1), (3, 2)] {
+        let out = format!("{ranks}-{threads}");
+        let options = case.options(&out, threads);
+        ranks::run_ranks(ranks, |comm| {
+            run_together(Ok(case.pipeline.clone()), &options, comm).unwrap().report
+        });
+        assert!(case.files(&out) == whole, "{ranks} ranks, {threads} threads");
     }
 }
 
@@ -212,8 +264,9 @@ impl Communicator for StopAfter {
 /// Runs are stopped within stages and between repeats, and resumed with other numbers of threads.
 #[test]
 fn a_run_that_is_stopped_again_and_again_gives_the_same_bits() {
-    for (transport, every) in [(BATCHES, 300), (REPLICAS, 0)] {
-        let case = Case::new(&format!("Repeat(times: 8, stages: [{SHOTS}, {transport}])"));
+    let of = |transport: &str| format!("Repeat(times: 8, stages: [{SHOTS}, {transport}])");
+    for (stages, every) in [(of(BATCHES), 300), (of(REPLICAS), 0), (SHARED.to_owned(), 300)] {
+        let case = Case::new(&stages);
         let whole = case.run();
         for sums in [23, 41] {
             let (out, mut stops) = (format!("stopped-{sums}"), 0);
@@ -230,15 +283,19 @@ fn a_run_that_is_stopped_again_and_again_gives_the_same_bits() {
                 };
                 match outcome {
                     Ok(_) => break,
-                    Err(Error::Interrupted { .. } | Error::InterruptedSaving { .. }) => stops += 1,
+                    Err(
+                        Error::Interrupted { .. }
+                        | Error::InterruptedSaving { .. }
+                        | Error::InterruptedMeasuring { .. },
+                    ) => stops += 1,
                     Err(error) => panic!("{}", error.chain()),
                 }
                 // Each attempt is a little longer, because a short one may not complete a slice.
-                assert!(stops < 200, "{transport}: no end after {stops} stops");
+                assert!(stops < 200, "{stages}: no end after {stops} stops");
             }
-            println!("{transport}: {stops} stops");
-            assert!(stops > 1, "{transport}: {stops} stops");
-            assert!(case.files(&out) == whole, "{transport}, after {stops} stops");
+            println!("{stages}: {stops} stops");
+            assert!(stops > 1, "{stages}: {stops} stops");
+            assert!(case.files(&out) == whole, "{stages}, after {stops} stops");
         }
     }
 }

@@ -99,7 +99,7 @@ fn room(lamps: &Lamps) -> Result<Model, Box<dyn std::error::Error>> {
 /// Returns the seconds per sensor, and the mean relative error.
 fn measure(model: &Model, solution: &Solution, rays: u64) -> (f64, f64) {
     // The preparation for all sensors is not timed.
-    let sensors = Gatherer::new(model, solution, SensorSettings { rays, error: 0.0 }, 1);
+    let sensors = Gatherer::new(model, solution, SensorSettings::new(rays, 0.0), 1);
     let start = Instant::now();
     let mut error = 0.0;
     for i in 0..POINTS {

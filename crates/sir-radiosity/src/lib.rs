@@ -56,6 +56,7 @@
 
 mod batches;
 mod build_accel;
+mod counted;
 mod emitter;
 mod error;
 mod first_shot;
@@ -81,8 +82,9 @@ mod transported;
 mod view_factors;
 mod visitor;
 
-pub use batches::{BatchSettings, Batches};
+pub use batches::{BatchSettings, Batches, crossings_per_patch};
 pub use build_accel::build_accel;
+pub use counted::{Counted, CountedPower};
 pub use emitter::{Emitter, SkyAperture};
 pub use error::SolveError;
 pub use first_shot::FirstShot;
@@ -97,14 +99,15 @@ pub use replicas::{Replica, ReplicaSettings, Replicas};
 pub use second_shot::SecondShot;
 pub use segments::{End, Segment, Segments};
 pub use sensors::{
-    Gatherer, Measurement, REPLICATIONS, Sensor, SensorSettings, SensorStage, SensorStart, SensorTask,
+    Gatherer, Measurement, REPLICATIONS, RepeatedMeasurements, Sensor, SensorSettings, SensorStage,
+    SensorStart, SensorTask,
 };
 pub use shot::{Shot, ShotSettings};
 pub use solution::Solution;
 pub use sources::{Source, emits, sources, total_power};
 pub use stage::{AnyOrder, Chain, Job, OneWorker, Stage, Workers, chain_units, run_stage, share};
 pub use totals::{Balance, Counts, StageTotals};
-pub use transported::Transported;
+pub use transported::{Transported, Walked};
 pub use view_factors::{
     Accuracy, Closed, ClosureError, MAX_GROUPS, Receiver, Residual, Share, ViewFactorLines,
     ViewFactorSettings, ViewFactorTask, ViewFactors,

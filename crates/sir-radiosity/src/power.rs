@@ -40,6 +40,12 @@ impl Quanta {
         self.0.iter().map(|&q| q as f64).sum()
     }
 
+    /// Returns the sum of the absolute values over the bands.
+    #[must_use]
+    pub fn amount(self) -> f64 {
+        self.0.iter().map(|&q| (q as f64).abs()).sum()
+    }
+
     #[inline]
     fn zip(self, other: Self, op: impl Fn(i64, i64) -> i64) -> Self {
         Self(std::array::from_fn(|k| op(self.0[k], other.0[k])))

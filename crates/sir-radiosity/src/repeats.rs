@@ -10,11 +10,18 @@
 
 use std::ops::AddAssign;
 
+use sir_lines::GlobalLines;
+use sir_mesh::SideId;
+
+use crate::counted::{Counted, common_scale, ratio};
+use crate::focus_sides::FocusSides;
+use crate::model::Model;
 use crate::power::Quanta;
 use crate::received::Received;
 use crate::totals::{Balance, Counts};
+use crate::transported::Walked;
 use crate::visitor::Visitor;
-use crate::visitor::{from_word, to_word, visit_counts, visit_slice};
+use crate::visitor::{from_word, to_word, visit_counts, visit_floats, visit_slice};
 
 /// Smallest number of repeats for which errors are computed from their spread.
 pub const MIN_REPEATS: u64 = 8;
@@ -49,30 +56,67 @@ impl QuantaSum {
 }
 
 /// Power received by the sides of patches in all repeats so far.
+///
+/// What lines have brought is estimated from the sums over all repeats, as if the lines of all were those of one: with few
+/// crossings, a ratio of sums is far better than a mean of ratios. Its error is that of its linearization (the delta
+/// method; Cochran 1977, section 6.4): per repeat the deviation of `power − β crossings`, with the mean power `β` of a
+/// crossing.
 #[derive(Clone, Debug)]
 pub struct Repeats {
     count: u64,
     sides: Vec<Sums>,
+    /// Sums of the variances that repeats state \[quanta²\], while they are too few for a spread.
+    stated: Vec<[f32; 3]>,
+    /// Domain of the lines that are counted, and their number in all repeats.
+    lines: Option<(GlobalLines, u64)>,
 }
 
-/// Sums over repeats of one side.
+/// Sums over repeats of one side, in 72 bytes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
-    power: QuantaSum,
-    /// Sum of the squared deviations from the mean \[quanta²\].
-    squares: [f64; 3],
-    /// Sum of the variances that the repeats state \[quanta²\].
-    stated: [f32; 3],
+    /// Power, as lines have brought it \[quanta\].
+    power: [f64; 3],
+    /// Sum of the squared deviations from the mean power \[quanta²\].
+    squares: [f32; 3],
+    /// Sum of the products of the deviations of power and crossings \[quanta\].
+    products: [f32; 3],
+    /// Part of `power` that counted lines have brought \[quanta\].
+    brought: [f32; 3],
+    /// Number of these lines.
+    crossings: f32,
+    /// Sum of the squared deviations from their mean number.
+    crossing_squares: f32,
+}
+
+impl Sums {
+    /// Returns the mean power of a crossing.
+    fn per_crossing(&self, band: usize) -> f64 {
+        if self.crossings > 0.0 { f64::from(self.brought[band]) / f64::from(self.crossings) } else { 0.0 }
+    }
+
+    /// Returns the variance of the mean of `count` repeats. `is_counted` is true if the ratio estimator applies.
+    fn variance(&self, count: u64, is_counted: bool) -> [f32; 3] {
+        let (pairs, crossings) = ((count * (count - 1)) as f64, f64::from(self.crossings));
+        // Two lines at least tell what a line brings, and how much that varies.
+        let is_ratio = is_counted && crossings >= 2.0;
+        let few = if is_ratio { crossings / (crossings - 1.0) } else { 1.0 };
+        [0, 1, 2].map(|band| {
+            let beta = if is_ratio { self.per_crossing(band) } else { 0.0 };
+            let squares = f64::from(self.squares[band]) - 2.0 * beta * f64::from(self.products[band])
+                + beta * beta * f64::from(self.crossing_squares);
+            (few * squares.max(0.0) / pairs) as f32
+        })
+    }
 }
 
 impl Repeats {
     /// Memory per side \[bytes\].
-    pub const BYTES_PER_SIDE: usize = size_of::<Sums>();
+    pub const BYTES_PER_SIDE: usize = size_of::<Sums>() + size_of::<[f32; 3]>();
 
     /// Returns the sums over no repeats, for runs with this number of sides.
     #[must_use]
     pub fn new(sides: usize) -> Self {
-        Self { count: 0, sides: vec![Sums::default(); sides] }
+        Self { count: 0, sides: vec![Sums::default(); sides], stated: vec![[0.0; 3]; sides], lines: None }
     }
 
     /// Returns the number of repeats so far.
@@ -88,60 +132,155 @@ impl Repeats {
         self.count >= MIN_REPEATS
     }
 
-    /// Adds a repeat. Repeats must be added in the order of their numbers: sums of power are the same in any order, but
-    /// squared deviations are rounded.
-    pub fn add(&mut self, received: &Received) {
-        let n = self.count;
-        for (sums, (power, variance)) in
-            self.sides.iter_mut().zip(received.power.iter().zip(&received.variance))
-        {
-            if n > 0 {
-                // Welford (1962). The deviation from the previous mean is computed in integers, so there is no
-                // cancellation.
-                let weight = n as f64 / (n + 1) as f64;
-                for ((square, sum), power) in sums.squares.iter_mut().zip(sums.power.0).zip(power.0) {
-                    let deviation = (i128::from(power) * i128::from(n) - sum) as f64 / n as f64;
-                    *square += deviation * deviation * weight;
+    /// Adds a repeat, and what its lines have brought if they were counted. Repeats must be added in the order of their
+    /// numbers, because sums are rounded.
+    pub fn add(
+        &mut self,
+        model: &Model,
+        in_focus: &FocusSides,
+        received: &Received,
+        counted: Option<&Counted>,
+    ) {
+        let n = self.count as f64;
+        let Self { sides, lines, .. } = self;
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let (sums, mut power) = (&mut sides[side.index()], received.power[side.index()]);
+            let mut crossings = 0.0;
+            if let Some(counted) = counted {
+                let brought = counted.sides[side.index()];
+                power = power - counted.estimate(model, in_focus, triangle, side) + brought.power;
+                crossings = brought.crossings as f64;
+                for (sum, brought) in sums.brought.iter_mut().zip(brought.power.0) {
+                    *sum = (f64::from(*sum) + brought as f64) as f32;
                 }
             }
-            sums.power += *power;
-            sums.stated.iter_mut().zip(variance).for_each(|(sum, variance)| *sum += variance);
+            if n > 0.0 {
+                // Welford (1962): deviations from the previous means.
+                let weight = n / (n + 1.0);
+                let of_crossings = crossings - f64::from(sums.crossings) / n;
+                let square = of_crossings * of_crossings * weight;
+                sums.crossing_squares = (f64::from(sums.crossing_squares) + square) as f32;
+                for band in 0..3 {
+                    let deviation = power.0[band] as f64 - sums.power[band] / n;
+                    let (square, product) = (&mut sums.squares[band], &mut sums.products[band]);
+                    *square = (f64::from(*square) + deviation * deviation * weight) as f32;
+                    *product = (f64::from(*product) + deviation * of_crossings * weight) as f32;
+                }
+            }
+            sums.power.iter_mut().zip(power.0).for_each(|(sum, power)| *sum += power as f64);
+            sums.crossings = (f64::from(sums.crossings) + crossings) as f32;
+        });
+        if let Some(counted) = counted {
+            let before = lines.take().map_or(0, |(_, lines)| lines);
+            *lines = Some((counted.domain.clone(), before + counted.lines));
         }
         self.count += 1;
-    }
-
-    /// Returns the mean of all repeats, to the nearest quantum, with the variance of the mean. The mean of a single
-    /// repeat is that repeat.
-    #[must_use]
-    pub fn mean(&self) -> Received {
-        let k = self.count.max(1);
-        let (pairs, squared) = ((k * (k - 1)) as f64, (k * k) as f64);
-        let variance = |sums: &Sums| match self.have_spread() {
-            true => sums.squares.map(|sum| (sum / pairs) as f32),
-            false => sums.stated.map(|sum| (f64::from(sum) / squared) as f32),
-        };
-        Received {
-            power: self.sides.iter().map(|sums| sums.power.mean(k)).collect(),
-            variance: self.sides.iter().map(variance).collect(),
+        if self.have_spread() {
+            self.stated = Vec::new();
+        } else {
+            let more = self.stated.iter_mut().zip(&received.variance);
+            more.for_each(|(sum, variance)| {
+                sum.iter_mut().zip(variance).for_each(|(sum, more)| *sum += more)
+            });
         }
     }
 
-    /// Visits the sums.
-    pub fn visit(&mut self, visitor: &mut dyn Visitor) {
-        visit_counts([&mut self.count], visitor);
+    /// Calls `visit` for every side with its area, the mean power of all repeats \[quanta\], and the variance of the mean
+    /// \[quanta²\].
+    fn for_each_mean(
+        &self,
+        model: &Model,
+        in_focus: &FocusSides,
+        mut visit: impl FnMut(SideId, f64, [f64; 3], [f32; 3]),
+    ) {
+        let count = self.count.max(1) as f64;
+        let forecast = self.lines.as_ref().map(|(domain, lines)| domain.forecast(*lines));
+        let factor = |sums: &Sums, area: f64| {
+            let expected = forecast.as_ref().map_or(0.0, |forecast| forecast.crossings(area));
+            ratio(expected, f64::from(sums.crossings))
+        };
+        let brought = |sums: &Sums| sums.brought.map(f64::from);
+        let scale = common_scale(model, in_focus, |triangle, side| {
+            let sums = &self.sides[side.index()];
+            (brought(sums), factor(sums, model.area(triangle, side)))
+        });
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let (sums, area) = (&self.sides[side.index()], model.area(triangle, side));
+            let is_counted = in_focus.contains(side) && self.lines.is_some();
+            let factor = if is_counted { factor(sums, area) } else { 1.0 };
+            let mean = [0, 1, 2].map(|band| {
+                let factor = if is_counted { factor * scale[band] } else { 1.0 };
+                (sums.power[band] + (factor - 1.0) * brought(sums)[band]) / count
+            });
+            let variance = match self.have_spread() {
+                true => sums.variance(self.count, is_counted),
+                false => self.stated[side.index()].map(|sum| (f64::from(sum) / (count * count)) as f32),
+            };
+            visit(side, area, mean, variance);
+        });
+    }
+
+    /// Returns the mean of all repeats, to the nearest quantum, with the variance of the mean.
+    #[must_use]
+    pub fn mean(&self, model: &Model, in_focus: &FocusSides) -> Received {
+        let mut received = Received {
+            power: Vec::with_capacity(self.sides.len()),
+            variance: Vec::with_capacity(self.sides.len()),
+        };
+        self.for_each_mean(model, in_focus, |_, _, mean, variance| {
+            received.power.push(Quanta(mean.map(|mean| mean.round() as i64)));
+            received.variance.push(variance);
+        });
+        received
+    }
+
+    /// Returns the relative error of the mean irradiance, per band: root of the area-weighted mean square of the standard
+    /// errors, over the area-weighted mean, over the sides in the focus. Zero in a band without light.
+    #[must_use]
+    pub fn relative_error(&self, model: &Model, in_focus: &FocusSides) -> [f64; 3] {
+        let (mut all, mut power, mut squares) = (0.0, [0.0; 3], [0.0; 3]);
+        self.for_each_mean(model, in_focus, |side, area, mean, variance| {
+            if in_focus.contains(side) && area > 0.0 {
+                all += area;
+                for band in 0..3 {
+                    power[band] += mean[band];
+                    squares[band] += f64::from(variance[band]) / area;
+                }
+            }
+        });
+        std::array::from_fn(
+            |band| if power[band] > 0.0 { (squares[band] * all).sqrt() / power[band] } else { 0.0 },
+        )
+    }
+
+    /// Visits the sums. `domain` is that of the lines that are counted.
+    pub fn visit(&mut self, domain: impl FnOnce() -> Option<GlobalLines>, visitor: &mut dyn Visitor) {
+        let mut lines = self.lines.as_ref().map_or(0, |(_, lines)| *lines);
+        visit_counts([&mut self.count, &mut lines], visitor);
+        if lines > 0 && self.lines.is_none() {
+            self.lines = domain().map(|domain| (domain, lines));
+        }
+        if self.have_spread() {
+            self.stated = Vec::new();
+        }
+        visit_floats(&mut self.stated, visitor);
         visit_slice(
             &mut self.sides,
             visitor,
             |sums| {
-                let [a, b, c, d, e, f] = sums.power.words();
-                let [g, h, i] = sums.squares.map(|square| square.to_bits() as i64);
-                let [j, k, l] = sums.stated.map(to_word);
-                [a, b, c, d, e, f, g, h, i, j, k, l]
+                let Sums { power, squares, products, brought, crossings, crossing_squares } = *sums;
+                let [a, b, c] = power.map(|power| power.to_bits() as i64);
+                let ([d, e, f], [g, h, i], [j, k, l]) =
+                    (squares.map(to_word), products.map(to_word), brought.map(to_word));
+                [a, b, c, d, e, f, g, h, i, j, k, l, to_word(crossings), to_word(crossing_squares)]
             },
-            |[a, b, c, d, e, f, g, h, i, j, k, l]| Sums {
-                power: QuantaSum::of_words([a, b, c, d, e, f]),
-                squares: [g, h, i].map(|square| f64::from_bits(square as u64)),
-                stated: [j, k, l].map(from_word),
+            |[a, b, c, d, e, f, g, h, i, j, k, l, m, n]| Sums {
+                power: [a, b, c].map(|word| f64::from_bits(word as u64)),
+                squares: [d, e, f].map(from_word),
+                products: [g, h, i].map(from_word),
+                brought: [j, k, l].map(from_word),
+                crossings: from_word(m),
+                crossing_squares: from_word(n),
             },
         );
     }
@@ -153,17 +292,19 @@ pub struct RepeatedTotals {
     counts: Counts,
     /// Emitted, absorbed, blocked, escaped, unshot.
     balance: [QuantaSum; 5],
-    extrapolated: QuantaSum,
+    walks: u64,
+    walked: QuantaSum,
 }
 
 impl RepeatedTotals {
     /// Adds the totals of one more repeat.
-    pub fn add(&mut self, balance: &Balance, counts: Counts, extrapolated: Quanta) {
+    pub fn add(&mut self, balance: &Balance, counts: Counts, walked: Walked) {
         let Balance { emitted, absorbed, blocked, escaped, unshot } = *balance;
         let powers = [emitted, absorbed, blocked, escaped, unshot];
         self.balance.iter_mut().zip(powers).for_each(|(sum, power)| *sum += power);
         self.counts += counts;
-        self.extrapolated += extrapolated;
+        self.walks += walked.walks;
+        self.walked += walked.power;
     }
 
     /// Returns the counts of all lines.
@@ -188,67 +329,136 @@ impl RepeatedTotals {
         Balance { emitted, absorbed, blocked, escaped, unshot }
     }
 
-    /// Returns the mean extrapolated power of `count` repeats.
+    /// Returns the number of random walks of all repeats, and the mean of their power in `count` repeats.
     #[must_use]
-    pub fn mean_extrapolated(&self, count: u64) -> Quanta {
-        self.extrapolated.mean(count)
+    pub fn mean_walked(&self, count: u64) -> Walked {
+        Walked { walks: self.walks, power: self.walked.mean(count) }
     }
 
     /// Visits the sums.
     pub fn visit(&mut self, visitor: &mut dyn Visitor) {
         let Counts { lines, empty, odd, crossings } = &mut self.counts;
-        visit_counts([lines, empty, odd, crossings], visitor);
+        visit_counts([lines, empty, odd, crossings, &mut self.walks], visitor);
         visit_slice(&mut self.balance, visitor, |sum| sum.words(), QuantaSum::of_words);
-        visit_slice(
-            std::slice::from_mut(&mut self.extrapolated),
-            visitor,
-            |sum| sum.words(),
-            QuantaSum::of_words,
-        );
+        visit_slice(std::slice::from_mut(&mut self.walked), visitor, |sum| sum.words(), QuantaSum::of_words);
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::LazyLock;
+
+    use glam::DVec3;
+    use sir_geom::{Material, Rgb, SceneBuilder, TriangleId};
+    use sir_lines::{Domain, Purpose, Streams};
+    use sir_mesh::Subdivision;
+
     use super::*;
+    use crate::counted::CountedPower;
+
+    /// A single triangle, which is a single side.
+    static MODEL: LazyLock<Model> = LazyLock::new(|| {
+        let mut builder = SceneBuilder::new();
+        let material = builder.add_material(Material::diffuse("m", Rgb::splat(0.5)));
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|corner| builder.add_vertex(corner));
+        builder.add_polygon(&corners, material);
+        Model::new(builder.build().unwrap().scene, Subdivision::PerTriangle).unwrap()
+    });
 
     fn received(power: i64, variance: f32) -> Received {
         Received { power: vec![Quanta([power, -power, 0])], variance: vec![[variance; 3]] }
     }
 
-    #[test]
-    fn the_mean_of_one_is_that_one() {
+    fn of(all: impl IntoIterator<Item = Received>) -> Repeats {
         let mut repeats = Repeats::new(1);
-        let one = received(i64::MAX, 0.1);
-        repeats.add(&one);
-        assert_eq!(repeats.mean(), one);
+        all.into_iter().for_each(|one| repeats.add(&MODEL, &FocusSides::all(), &one, None));
+        repeats
+    }
+
+    fn mean(repeats: &Repeats) -> Received {
+        repeats.mean(&MODEL, &FocusSides::all())
     }
 
     #[test]
-    fn means_are_rounded_to_the_nearest_and_sums_do_not_overflow() {
-        let mut repeats = Repeats::new(1);
-        for power in [i64::MAX, i64::MAX, i64::MAX - 2] {
-            repeats.add(&received(power, 3.0));
-        }
-        let mean = repeats.mean();
-        assert_eq!(mean.power[0], Quanta([i64::MAX - 1, 1 - i64::MAX, 0]));
+    fn the_mean_of_one_is_that_one() {
+        let one = received(1 << 52, 0.1);
+        assert_eq!(mean(&of([one.clone()])), one);
+    }
+
+    #[test]
+    fn few_repeats_have_the_errors_that_they_state() {
+        let mean = mean(&of([7, 8, 10].map(|power| received(power, 3.0))));
+        assert_eq!(mean.power[0], Quanta([8, -8, 0]));
         assert_eq!(mean.variance[0], [1.0; 3], "of three, the mean of what they state over three");
     }
 
     #[test]
     fn the_spread_is_that_of_the_textbook() {
         // Small deviations of large numbers, which must not cancel.
-        let far = 1_i64 << 60;
+        let far = 1_i64 << 30;
         let deviations = [3, -1, 4, -1, 5, -9, 2, -6, 5, 3];
-        let mut repeats = Repeats::new(1);
-        deviations.iter().for_each(|d| repeats.add(&received(far + d, 1e9)));
+        let repeats = of(deviations.map(|d| received(far + d, 1e9)));
         let n = deviations.len() as f64;
-        let mean = deviations.iter().sum::<i64>() as f64 / n;
-        let squares: f64 = deviations.iter().map(|&d| (d as f64 - mean) * (d as f64 - mean)).sum();
+        let center = deviations.iter().sum::<i64>() as f64 / n;
+        let squares: f64 = deviations.iter().map(|&d| (d as f64 - center) * (d as f64 - center)).sum();
         let expected = squares / (n * (n - 1.0));
-        let [r, g, b] = repeats.mean().variance[0].map(f64::from);
+        let [r, g, b] = mean(&repeats).variance[0].map(f64::from);
         assert!((r / expected - 1.0).abs() < 1e-6 && (g / expected - 1.0).abs() < 1e-6, "{r} {g} {expected}");
         assert_eq!(b, 0.0);
+    }
+
+    /// Many runs of repeats with few crossings each: the mean is unbiased, and its error is right. Lines bring power that
+    /// differs, or the same, in which case counting leaves no noise but that of the number of lines.
+    #[test]
+    fn pooled_ratios_are_unbiased_and_their_errors_honest() {
+        let domain = GlobalLines::from(Domain::hull(MODEL.scene.vertices()));
+        let (area, repeats) = (MODEL.scene.total_area(), 16u32);
+        let in_focus = FocusSides::all();
+        let per_line = domain.forecast(1).crossings(area);
+        for (expected, spread) in [(0.5, 0.9), (2.0, 0.9), (10.0, 0.9), (10.0, 0.0)] {
+            let lines = (expected / per_line).round() as u64;
+            let (runs, streams) = (4000u32, Streams::new(1, Purpose::PROBE));
+            let (mut sum, mut squares, mut stated, mut number) = (0.0, 0.0, 0.0, 0);
+            for _ in 0..runs {
+                let mut all = Repeats::new(1);
+                for _ in 0..repeats {
+                    let mut stream = streams.line(number);
+                    number += 1;
+                    // A Poisson number of lines (Knuth), which bring an uneven power each.
+                    let (mut crossings, mut power, mut product) = (0, 0.0, stream.unit());
+                    while product > libm::exp(-expected) {
+                        crossings += 1;
+                        power += 1e6 * (1.0 + spread * (2.0 * stream.unit() - 1.0));
+                        product *= stream.unit();
+                    }
+                    let power = Quanta([power as i64; 3]);
+                    let sides = vec![CountedPower { power, crossings }];
+                    let counted = Counted { domain: domain.clone(), lines, sides, scale: [1.0; 3] };
+                    let estimate = counted.estimate(&MODEL, &in_focus, TriangleId(0), SideId(0));
+                    let one = Received { power: vec![estimate], variance: vec![[0.0; 3]] };
+                    all.add(&MODEL, &in_focus, &one, Some(&counted));
+                }
+                // Without the common scale, which would undo the correction of a single side.
+                let sums = &all.sides[0];
+                let factor = ratio(expected * f64::from(repeats), f64::from(sums.crossings));
+                let mean = factor * f64::from(sums.brought[0]) / f64::from(repeats);
+                sum += mean;
+                squares += mean * mean;
+                stated += f64::from(sums.variance(u64::from(repeats), true)[0]);
+            }
+            let n = f64::from(runs);
+            let (mean, exact) = (sum / n, 1e6 * expected);
+            let variance = squares / n - mean * mean;
+            let z = (mean - exact) / (variance / n).sqrt();
+            let ratio = (variance / (stated / n)).sqrt();
+            println!("{expected} crossings, spread {spread}: z {z:.2}, spread over stated {ratio:.3}");
+            if spread > 0.0 {
+                assert!(z.abs() < 4.0, "{mean} of {exact}: z = {z}");
+                assert!((0.9..1.1).contains(&ratio), "{expected}: {ratio}");
+            } else {
+                assert!((mean / exact - 1.0).abs() < 1e-6 && variance < 1e-9 * exact * exact);
+            }
+        }
     }
 
     #[test]
@@ -259,19 +469,22 @@ mod tests {
             let (absorbed, blocked, escaped, unshot) = (q(k * k), q(1 + k), q(5), q(-k));
             let emitted = absorbed + blocked + escaped + unshot;
             let balance = Balance { emitted, absorbed, blocked, escaped, unshot };
-            totals.add(&balance, Counts { lines: 10, ..Counts::default() }, q(k));
+            totals.add(&balance, Counts { lines: 10, ..Counts::default() }, Walked { walks: 2, power: q(k) });
         }
         let mean = totals.mean_balance(7);
         assert!(mean.closes(), "{mean:?}");
         assert_eq!((mean.absorbed.0[0], mean.escaped.0[0]), (13, 5));
-        assert_eq!((totals.counts().lines, totals.mean_extrapolated(7)), (70, Quanta([3; 3])));
+        assert_eq!(
+            (totals.counts().lines, totals.mean_walked(7)),
+            (70, Walked { walks: 14, power: Quanta([3; 3]) })
+        );
     }
 
     #[test]
     fn a_balance_that_does_not_close_is_not_closed_by_the_mean() {
         let mut totals = RepeatedTotals::default();
         let balance = Balance { emitted: Quanta([7; 3]), absorbed: Quanta([3; 3]), ..Balance::default() };
-        totals.add(&balance, Counts::default(), Quanta::ZERO);
+        totals.add(&balance, Counts::default(), Walked::default());
         assert!(!totals.mean_balance(1).closes());
     }
 

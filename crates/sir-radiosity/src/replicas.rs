@@ -31,7 +31,7 @@ use crate::solution::Solution;
 use crate::stage::{Chain, Stage, Workers, chain_units, share};
 use crate::tallies::{Counters, PatchTallies, SquareUnit, SquareUnits, WorkerTallies};
 use crate::totals::{Balance, StageTotals};
-use crate::transported::Transported;
+use crate::transported::{Transported, Walked};
 use crate::visitor::Visitor;
 
 /// Settings of a multipath transport.
@@ -212,7 +212,15 @@ impl<'m> Stage for Replicas<'m> {
         tallies.add_to(&mut received);
         drop(tallies);
         let solution = Solution::new(settings.model, &received, unit);
-        Ok(Transported { solution, received, unit, balance, counts, extrapolated: Quanta::ZERO })
+        Ok(Transported {
+            solution,
+            received,
+            unit,
+            balance,
+            counts,
+            counted: None,
+            walked: Walked::default(),
+        })
     }
 }
 

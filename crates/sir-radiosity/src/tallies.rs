@@ -226,6 +226,17 @@ impl WorkerTallies<'_> {
         self.change(side, 0, power);
     }
 
+    /// Adds the power that a line brings to a side, and leaves the sum of the squares as it is.
+    #[inline]
+    pub(crate) fn receive(self, side: SideId, power: Quanta) {
+        let record = &self.records[side.index()];
+        let crossings = if self.shared { record.lock() } else { record.crossings.load(Relaxed) };
+        for (sum, power) in record.power.iter().zip(power.0) {
+            sum.store(sum.load(Relaxed).wrapping_add(power), Relaxed);
+        }
+        record.crossings.store(crossings, Release);
+    }
+
     /// Counts a line that leaves a side, and returns the power that it takes along: the share of the side times the
     /// weight of the line.
     #[inline]

@@ -1,5 +1,6 @@
 //! The outcome of a transport.
 
+use crate::counted::Counted;
 use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
 use crate::solution::Solution;
@@ -12,6 +13,8 @@ pub struct Transported {
     pub solution: Solution,
     /// Power received by each side, direct and indirect: the exact tallies.
     pub received: Received,
+    /// What the lines have brought, of which `received` has an estimate; `None` in replicas.
+    pub counted: Option<Counted>,
     /// Size of a quantum.
     pub unit: PowerUnit,
     /// Energy balance of this stage.
@@ -21,7 +24,16 @@ pub struct Transported {
     pub balance: Balance,
     /// Counts of lines and hits.
     pub counts: Counts,
-    /// Power added to the received power for what is unshot at the end. Zero in multipath, where the unshot power is
-    /// missing.
-    pub extrapolated: Quanta,
+    /// What was unshot when the lines ended, and was sent on by random walks. Nothing in replicas, where the unshot power
+    /// is missing.
+    pub walked: Walked,
+}
+
+/// Power that random walks have sent on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Walked {
+    /// Number of walks.
+    pub walks: u64,
+    /// Power with which they started.
+    pub power: Quanta,
 }

@@ -85,7 +85,7 @@ fn direct_light_does_not_depend_on_the_size_of_the_scene_or_its_place() {
     ] {
         for place in [Lamp::First, Lamp::Last] {
             let model = room(gray(0.0, 0.0), outside, offset, place);
-            let settings = SensorSettings { rays: 16_384, error: 0.0 };
+            let settings = SensorSettings::new(16_384, 0.0);
             let solution = Solution::dark(model.mesh.side_count());
             let sensor = Sensor::new(offset + DVec3::new(2.0, 0.0, 2.0), DVec3::Y).unwrap();
             let measured = Gatherer::new(&model, &solution, settings, 1).measure(0, &sensor);

@@ -14,7 +14,9 @@ use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::{Domain, seed_of_repeat};
 use sir_mesh::Subdivision;
-use sir_radiosity::{MIN_REPEATS, Model, PowerUnit, Received, Repeats, ReplicaSettings, Solution};
+use sir_radiosity::{
+    FocusSides, MIN_REPEATS, Model, PowerUnit, Received, Repeats, ReplicaSettings, Solution, Transported,
+};
 
 const SEEDS: u64 = 200;
 
@@ -80,10 +82,14 @@ impl Exact {
     }
 
     fn batches(&self, per_patch: u64, seed: u64) -> Outcome {
+        let all = self.transported(per_patch, seed);
+        (all.received, all.unit)
+    }
+
+    fn transported(&self, per_patch: u64, seed: u64) -> Transported {
         let first = shoot(&self.model, self.lines(per_patch, 1), seed);
         let shot = shoot_again(&self.model, &first, self.lines(per_patch / 4, 1), seed);
-        let all = batches(&self.model, shot, self.lines(per_patch, 2), seed);
-        (all.received, all.unit)
+        batches(&self.model, shot, self.lines(per_patch, 2), seed)
     }
 
     fn replicas(&self, seed: u64) -> Outcome {
@@ -105,12 +111,12 @@ impl Exact {
         let mut repeats = Repeats::new(self.model.mesh.side_count());
         let mut unit = None;
         for repeat in 0..MIN_REPEATS {
-            let (received, of) = self.batches(24, seed_of_repeat(seed, repeat));
-            repeats.add(&received);
-            unit = Some(of);
+            let all = self.transported(24, seed_of_repeat(seed, repeat));
+            repeats.add(&self.model, &FocusSides::all(), &all.received, all.counted.as_ref());
+            unit = Some(all.unit);
         }
         assert!(repeats.have_spread());
-        (repeats.mean(), unit.unwrap())
+        (repeats.mean(&self.model, &FocusSides::all()), unit.unwrap())
     }
 
     /// Checks one way to light the scene. If the stated errors are correct, 5 % of the deviations exceed `quantile`,

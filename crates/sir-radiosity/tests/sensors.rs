@@ -13,10 +13,10 @@ use sir_geom::{Light, LightKind, Material, Rgb, SceneBuilder, Sides, Sky, SkyMod
 use sir_mesh::Subdivision;
 use sir_radiosity::{Gatherer, Measurement, Model, REPLICATIONS, Sensor, SensorSettings, Solution};
 
-const RAYS: SensorSettings = SensorSettings { rays: 16_384, error: 0.0 };
+const RAYS: SensorSettings = SensorSettings::new(16_384, 0.0);
 
 /// For sources that are only found by chance.
-const MANY: SensorSettings = SensorSettings { rays: 1 << 18, error: 0.0 };
+const MANY: SensorSettings = SensorSettings::new(1 << 18, 0.0);
 
 const fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -335,7 +335,7 @@ fn standard_errors_are_honest() {
     let model = model(b);
     let solution = uniform(&model, 50.0);
     let sensor = at(v(1.0, 1.3, 0.0), v(0.1, 0.2, 1.0));
-    let settings = SensorSettings { rays: 2048, error: 0.0 };
+    let settings = SensorSettings::new(2048, 0.0);
     let runs: Vec<Measurement> =
         (0..300).map(|seed| Gatherer::new(&model, &solution, settings, seed).measure(0, &sensor)).collect();
     let rms = rms_of_deviations(&runs);
@@ -395,7 +395,7 @@ fn an_aim_saves_rays() {
     let model = model(b);
     let solution = uniform(&model, 0.0);
     let rays = |error| {
-        let settings = SensorSettings { rays: 1 << 20, error };
+        let settings = SensorSettings::new(1 << 20, error);
         let measured =
             Gatherer::new(&model, &solution, settings, 1).measure(0, &at(v(1.0, 1.0, 0.0), DVec3::Z));
         assert!(measured.luminance_error() < error * measured.luminance());
@@ -419,7 +419,7 @@ fn a_small_bright_spot_is_not_missed_without_a_word() {
     let (exact, factor) = (0.255, factor(&sensor, &spot));
     let solution = uniform(&model, exact / (0.5 * factor));
     let measure = |rays, error, number| {
-        Gatherer::new(&model, &solution, SensorSettings { rays, error }, 1).measure(number, &sensor)
+        Gatherer::new(&model, &solution, SensorSettings::new(rays, error), 1).measure(number, &sensor)
     };
     let mut missed = 0;
     for number in 0..20 {

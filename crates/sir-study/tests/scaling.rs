@@ -30,7 +30,8 @@ fn stage(name: &str, tracing: f64, sequential: f64, communication: f64) -> Stage
         crossings: 4000,
         batches: 1,
         balance,
-        extrapolated: [0.0; 3],
+        walks: 0,
+        walked: [0.0; 3],
     };
     let errors = ErrorsReport { from: ErrorsFrom::Lines, samples: 1000 };
     let light = LightReport { relative_error: [0.1; 3], errors, tally_hash: format!("hash of {name}") };

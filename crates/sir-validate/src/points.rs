@@ -38,7 +38,7 @@ pub(crate) fn irradiances(
     seed: u64,
     executor: &mut Executor<'_>,
 ) -> Result<Vec<Rgb>, RunError> {
-    let settings = SensorSettings { rays, error: 0.0 };
+    let settings = SensorSettings::new(rays, 0.0);
     let task = SensorTask { model, solution, sensors, settings, seed };
     let measured = executor.run::<SensorStage<'_>>(task, Start::Fresh(()))?.outcome;
     Ok(measured.iter().map(|measurement| measurement.irradiance).collect())

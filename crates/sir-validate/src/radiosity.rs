@@ -15,13 +15,10 @@ use crate::trial::{Quantity, Sample, Trial};
 /// Number of lines per run in a room of flat walls.
 const FLAT_LINES: u64 = 400_000;
 
-/// Numbers of parts of a circle and of lines per run, for whole spheres. Where one sphere sees more of itself than the
-/// other, the solver's extrapolation of the unshot power is only an approximation. Lines must therefore be many, so
-/// that little power remains unshot, and facets few.
+/// Numbers of parts of a circle and of lines per run, for whole spheres.
 const SPHERES: (u32, u64) = (48, 600_000);
 
-/// The same for zones of a sphere. All zones see all zones equally, so the extrapolation is exact, and facets may be
-/// many.
+/// The same for zones of a sphere.
 const ZONES: (u32, u64) = (SEGMENTS, 1_000_000);
 
 /// Returns the numbers of parts of a circle and of lines per run for the surfaces of a case.
@@ -208,7 +205,7 @@ mod tests {
         let model = per_face(scene(&surfaces, paint, segments).unwrap()).unwrap();
         let run = |seed| {
             let executor = &mut Executor::new(NonZeroUsize::MIN);
-            let light = solve(&model, 400_000, seed, executor).unwrap().all;
+            let light = solve(&model, 600_000, seed, executor).unwrap().all;
             means(&model, &light)[0].irradiance.x / exact - 1.0
         };
         Estimate::of(&(0..16).map(run).collect::<Vec<_>>())

@@ -11,7 +11,8 @@ use sir_mesh::{SideId, Subdivision};
 use sir_parallel::{Communicator, Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
     Balance, BatchSettings, Batches, Counts, FirstShot, Model, OneWorker, Quanta, Received, ReplicaSettings,
-    Replicas, SecondShot, Shot, ShotSettings, Stage, StageTotals, Transported, chain_units, run_stage,
+    Replicas, SecondShot, Shot, ShotSettings, Stage, StageTotals, Transported, Walked, chain_units,
+    run_stage,
 };
 
 use crate::observers::StopAfter;
@@ -57,7 +58,7 @@ pub(crate) struct Outcome {
     pub(crate) quantum: f64,
     pub(crate) balance: Balance,
     pub(crate) counts: Counts,
-    pub(crate) extrapolated: Quanta,
+    pub(crate) walked: Walked,
     pub(crate) batches: u64,
     pub(crate) sent: Vec<(SideId, Quanta)>,
 }
@@ -233,12 +234,12 @@ fn by_hand<S: Stage>(settings: S::Settings, input: S::Input) -> StageRun<S::Outc
 impl Outcome {
     fn of_shot(StageRun { outcome, batches, .. }: StageRun<Shot>) -> Self {
         let Shot { received, unit, balance, counts, sent } = outcome;
-        Self { received, quantum: unit.quantum(), balance, counts, extrapolated: Quanta::ZERO, batches, sent }
+        Self { received, quantum: unit.quantum(), balance, counts, walked: Walked::default(), batches, sent }
     }
 
     fn of_transport(StageRun { outcome, batches, .. }: StageRun<Transported>) -> Self {
-        let Transported { received, unit, balance, counts, extrapolated, .. } = outcome;
-        Self { received, quantum: unit.quantum(), balance, counts, extrapolated, batches, sent: Vec::new() }
+        let Transported { received, unit, balance, counts, walked, .. } = outcome;
+        Self { received, quantum: unit.quantum(), balance, counts, walked, batches, sent: Vec::new() }
     }
 
     /// Fails unless both outcomes are bit-identical.
@@ -251,7 +252,7 @@ impl Outcome {
             self.received.variance == expected.received.variance,
             "{what}: variance of the power received"
         );
-        assert_eq!(self.extrapolated, expected.extrapolated, "{what}: extrapolated power");
+        assert_eq!(self.walked, expected.walked, "{what}: random walks");
         assert_eq!(self.batches, expected.batches, "{what}: batches");
         assert!(self == expected, "{what}");
     }

@@ -11,7 +11,7 @@ use crate::ranks::run_ranks;
 const SEED: u64 = 5;
 
 /// A target for the error, so that some sensors need more rays than others.
-const SETTINGS: SensorSettings = SensorSettings { rays: 8192, error: 0.02 };
+const SETTINGS: SensorSettings = SensorSettings::new(8192, 0.02);
 
 fn sensors() -> Vec<Sensor> {
     let at = |i: i32| DVec3::new(-0.9 + 0.13 * f64::from(i), 0.5, -0.8);

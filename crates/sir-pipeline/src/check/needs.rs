@@ -7,7 +7,7 @@ use sir_radiosity::{Model, Quanta, Repeats};
 use crate::error::Error;
 use crate::format::bytes;
 use crate::memory;
-use crate::plan::{Action, Output, Pipeline};
+use crate::plan::{Output, Pipeline, Stage};
 use crate::prepare::cameras::chosen_camera;
 use crate::progress::Progress;
 use crate::run::save::{is_denoised, settings};
@@ -39,8 +39,11 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     // the unshot power.
     let tracing = size_of::<Quanta>() + size_of::<[f32; 3]>() + 2 * 64;
     let solution = 2 * size_of::<Rgb>();
-    let repeats = pipeline.stages.iter().any(|stage| matches!(stage.action, Action::Repeat(_)));
-    let tracing = tracing + if repeats { Repeats::BYTES_PER_SIDE } else { 0 };
+    // The light is summed over repeats wherever it is shown or measured.
+    let has_lines = |stage: &Stage| stage.action.lines() > 0;
+    let stages = pipeline.stages.iter().zip(pipeline.stages.iter().skip(1).map(Some).chain([None]));
+    let used = stages.filter(|(stage, next)| has_lines(stage) && !next.is_some_and(has_lines)).count();
+    let tracing = tracing + used * Repeats::BYTES_PER_SIDE;
     let shown = pipeline.outputs().any(|o| !matches!(o, Output::Table(_)));
     // EXR images need a display mesh of standard errors, too.
     let measured =

@@ -109,16 +109,16 @@ impl Multipath {
         }
     }
 
-    /// Runs the transport along global lines.
+    /// Runs the transport along this number of global lines.
     pub(crate) fn run(
         &self,
         model: &Model,
         domain: GlobalLines,
+        lines: u64,
         seed: u64,
         start: Start<Shot>,
         executor: &mut Executor<'_>,
     ) -> Result<StageRun<Transported>, RunError> {
-        let lines = self.lines;
         match &self.transport {
             Transport::Batches => {
                 executor.run::<Batches<'_>>(BatchSettings { model, domain, lines, seed }, start)
@@ -132,16 +132,8 @@ impl Multipath {
         }
     }
 
-    /// Returns the settings that reduce the unshot power, for a warning.
-    pub(crate) fn advice_on_unshot(&self) -> &'static str {
-        match self.transport {
-            Transport::Batches => "more lines",
-            Transport::Replicas(_) => "more lines, fewer replicas or a longer `tail`",
-        }
-    }
-
-    /// Returns true if the power that is unshot at the end is extrapolated, provided that any was received.
-    pub(crate) fn extrapolates(&self) -> bool {
-        self.transport == Transport::Batches
+    /// Returns true if power that is unshot at the end is missing from the result.
+    pub(crate) fn loses_unshot(&self) -> bool {
+        matches!(self.transport, Transport::Replicas(_))
     }
 }

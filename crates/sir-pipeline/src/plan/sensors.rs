@@ -107,7 +107,7 @@ impl Sensors {
     /// Returns the number of rays and the target error.
     #[must_use]
     pub fn settings(&self) -> SensorSettings {
-        SensorSettings { rays: self.rays, error: self.error.unwrap_or(0.0) }
+        SensorSettings::new(self.rays, self.error.unwrap_or(0.0))
     }
 
     fn output(&self, extension: &str) -> PathBuf {

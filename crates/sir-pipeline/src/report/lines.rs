@@ -2,7 +2,7 @@
 
 use sir_lines::GlobalLines;
 use sir_parallel::StageTime;
-use sir_radiosity::{Balance, Counts, PowerUnit, Quanta};
+use sir_radiosity::{Balance, Counts, PowerUnit, Quanta, Walked};
 
 use crate::report::result::{BalanceReport, DomainReport, LinesReport, Time};
 
@@ -12,7 +12,7 @@ pub(crate) struct Facts {
     pub(crate) balance: Balance,
     pub(crate) counts: Counts,
     pub(crate) batches: u64,
-    pub(crate) extrapolated: Quanta,
+    pub(crate) walked: Walked,
     pub(crate) domain: Option<DomainReport>,
 }
 
@@ -27,7 +27,7 @@ impl DomainReport {
 impl LinesReport {
     /// Creates the report, with powers converted from quanta to watts by `unit`.
     pub(crate) fn new(facts: Facts, unit: PowerUnit) -> Self {
-        let Facts { balance, counts, batches, extrapolated, domain } = facts;
+        let Facts { balance, counts, batches, walked, domain } = facts;
         let watts = |quanta: Quanta| unit.watts(quanta).to_array();
         Self {
             lines: counts.lines,
@@ -43,7 +43,8 @@ impl LinesReport {
                 escaped: watts(balance.escaped),
                 unshot: watts(balance.unshot),
             },
-            extrapolated: watts(extrapolated),
+            walks: walked.walks,
+            walked: watts(walked.power),
         }
     }
 }

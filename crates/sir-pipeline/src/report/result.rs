@@ -78,16 +78,20 @@ pub struct SceneReport {
 pub struct StageReport {
     /// Name of the stage, such as `FirstShot`.
     pub name: String,
-    /// Report of its lines, if it has any. In the `stages` of a `Repeat`: totals of all repeats, except for the balance
-    /// and the extrapolated power, which are means.
+    /// Report of its lines, if it has any. If it was repeated: totals of all repeats, except for the balance and `walked`,
+    /// which are means.
     #[serde(default, flatten, skip_serializing_if = "Option::is_none")]
     pub lines: Option<LinesReport>,
     /// Report of the light so far, if the stage adds to it.
     #[serde(default, flatten, skip_serializing_if = "Option::is_none")]
     pub light: Option<LightReport>,
-    /// Number of repeats of a `Repeat`. `Repeat(times: …)` with this number gives the same result.
+    /// Number of repeats of a `Repeat`, or of those that share the lines of the stage. `Repeat(times: …)` with this number
+    /// gives the same result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeats: Option<u64>,
+    /// Error of the light against lines and time, after each repeat from the eighth on; only of the last light.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub convergence: Vec<Convergence>,
     /// Stages of a `Repeat`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<Self>,
@@ -96,6 +100,25 @@ pub struct StageReport {
     pub sensors: Option<SensorsReport>,
     /// Time of the stage.
     pub time: Time,
+}
+
+/// Error of the mean of some repeats.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Convergence {
+    /// Number of repeats.
+    pub repeats: u64,
+    /// Number of lines of all stages in these repeats.
+    pub lines: u64,
+    /// Relative error of the irradiance, as in [`LightReport`].
+    pub relative_error: [f64; 3],
+    /// Time of these repeats.
+    pub time: Time,
+}
+
+impl Default for Convergence {
+    fn default() -> Self {
+        Self { repeats: 0, lines: 0, relative_error: [0.0; 3], time: Time::of(0.0) }
+    }
 }
 
 /// Report of the lines of a stage.
@@ -116,8 +139,10 @@ pub struct LinesReport {
     pub batches: u64,
     /// Energy balance.
     pub balance: BalanceReport,
-    /// Power added to the received power as an estimate for the unshot power \[W\], per band.
-    pub extrapolated: [f64; 3],
+    /// Number of random walks that sent on what was unshot when the lines ended.
+    pub walks: u64,
+    /// Power with which they started \[W\], per band.
+    pub walked: [f64; 3],
 }
 
 /// Report of the light so far.
@@ -176,7 +201,7 @@ pub struct BalanceReport {
     /// Power that left the scene, or came from outside and missed it.
     pub escaped: [f64; 3],
     /// Power that was reflected, but not sent out again. After the first shot, multipath distributes it. After
-    /// multipath, it is missing from the result, unless it was `extrapolated`.
+    /// replicas it is missing from the result; after batches it is what chance gives and takes, zero on average.
     pub unshot: [f64; 3],
 }
 
@@ -232,6 +257,7 @@ impl StageReport {
             lines: None,
             light: None,
             repeats: None,
+            convergence: Vec::new(),
             stages: Vec::new(),
             sensors: None,
             time,

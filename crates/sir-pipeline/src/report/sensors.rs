@@ -17,7 +17,7 @@ pub struct SensorsReport {
     pub rays: u64,
     /// Mean irradiance \[W/m²\].
     pub mean: f64,
-    /// Standard error of the mean \[W/m²\]. It combines the sampling errors, which are independent between sensors, and
+    /// Standard error of the mean \[W/m²\], from the spread of repeats; otherwise it combines the sampling errors, which are independent between sensors, and
     /// the errors of patches, which are assumed to be the same for all sensors.
     pub mean_error: f64,
     /// Smallest irradiance \[W/m²\].
@@ -29,7 +29,8 @@ pub struct SensorsReport {
 }
 
 impl SensorsReport {
-    pub(crate) fn new(name: &str, measured: &[Measurement]) -> Self {
+    /// Creates the report. `mean_error` is the error of the mean, if it is known from the spread of repeats.
+    pub(crate) fn new(name: &str, measured: &[Measurement], mean_error: Option<f64>) -> Self {
         let n = measured.len().max(1) as f64;
         let values = || measured.iter().map(Measurement::luminance);
         let mean = values().sum::<f64>() / n;
@@ -41,7 +42,7 @@ impl SensorsReport {
             points: measured.len(),
             rays: measured.iter().map(|m| m.rays).sum(),
             mean,
-            mean_error: (squares / (n * n) + inherited * inherited).sqrt(),
+            mean_error: mean_error.unwrap_or_else(|| (squares / (n * n) + inherited * inherited).sqrt()),
             minimum,
             maximum: values().fold(f64::NEG_INFINITY, f64::max),
             uniformity: if mean > 0.0 { minimum / mean } else { 0.0 },
@@ -88,7 +89,7 @@ mod tests {
             rays: 64,
             ..Measurement::default()
         });
-        let report = SensorsReport::new("desk", &measured);
+        let report = SensorsReport::new("desk", &measured, None);
         assert!((report.mean - 2.0).abs() < 1e-12 && (report.uniformity - 0.5).abs() < 1e-12);
         assert!((report.mean_error - (0.09f64 / 2.0 + 0.16).sqrt()).abs() < 1e-12);
         assert_eq!((report.points, report.rays), (2, 128));

@@ -1,23 +1,24 @@
 //! Light of a run, and the stages with lines that add to it.
 
+use std::borrow::Cow;
+
 use sir_lines::{Focus, GlobalLines, LocalLines};
 use sir_parallel::{Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
-    FirstShot, FocusSides, Model, PowerUnit, Quanta, Received, SecondShot, Shot, ShotSettings, Solution,
-    Transported,
+    Counted, FirstShot, Model, PowerUnit, Received, SecondShot, Shot, ShotSettings, Solution, Transported,
+    Walked,
 };
 
 use crate::plan::{Action, DomainKind};
 use crate::prepare::prepared::Prepared;
 use crate::report::lines::Facts;
-use crate::report::result::{DomainReport, ErrorsReport, LightReport};
+use crate::report::result::DomainReport;
 
 /// Runs stages with lines, one after the other, and keeps the light computed so far.
 pub(crate) struct Lighting<'m> {
     model: &'m Model,
     light: Light,
     focus: Option<Focus>,
-    inside: &'m FocusSides,
     /// Global lines of the last stage that used them.
     global: Option<(DomainKind, GlobalLines)>,
 }
@@ -27,9 +28,9 @@ enum Light {
     /// No light yet, or it has been passed on.
     None,
     /// Light of the shots, whose reflected power remains for global lines.
-    Direct(Shot),
+    Direct(Box<Shot>),
     /// Light of the shots and of global lines.
-    All(Transported),
+    All(Box<Transported>),
 }
 
 /// Outcome of a stage with lines, without the light.
@@ -43,36 +44,36 @@ pub(crate) struct Done {
 impl<'m> Lighting<'m> {
     /// Creates a lighting without light.
     pub(crate) fn new(prepared: &'m Prepared) -> Self {
-        let Prepared { model, focus, inside, .. } = prepared;
-        Self { model, light: Light::None, focus: *focus, inside, global: None }
+        let Prepared { model, focus, .. } = prepared;
+        Self { model, light: Light::None, focus: *focus, global: None }
     }
 
-    /// Runs a stage, or resumes a saved one. Returns `None` if it is not a stage with lines.
+    /// Runs a stage with this number of lines, or resumes a saved one. Returns `None` if it is not a stage with lines.
     pub(crate) fn run(
         &mut self,
         action: &Action,
+        lines: u64,
         seed: u64,
         executor: &mut Executor<'_>,
         saved: Option<Saved>,
     ) -> Result<Option<Done>, RunError> {
         let model = self.model;
-        let shot = |lines| ShotSettings::new(model, LocalLines { count: lines, focus: self.focus }, seed);
+        let shot = ShotSettings::new(model, LocalLines { count: lines, focus: self.focus }, seed);
         let done = match action {
-            Action::FirstShot(stage) => {
+            Action::FirstShot(_) => {
                 let start = saved.map_or(Start::Fresh(()), Start::Resumed);
                 self.light = Light::None;
-                self.shot(executor.run::<FirstShot<'_>>(shot(stage.lines), start)?)
+                self.shot(executor.run::<FirstShot<'_>>(shot, start)?)
             }
-            Action::SecondShot(stage) => {
-                let settings = shot(stage.lines);
+            Action::SecondShot(_) => {
                 let Some(start) = self.start(saved) else { return Ok(None) };
-                self.shot(executor.run::<SecondShot<'_>>(settings, start)?)
+                self.shot(executor.run::<SecondShot<'_>>(shot, start)?)
             }
             Action::Multipath(stage) => {
                 let Some(start) = self.start(saved) else { return Ok(None) };
                 let domain = self.global_lines(stage.domain);
                 let report = DomainReport::of(&domain);
-                self.transport(stage.run(model, domain, seed, start, executor)?, report)
+                self.transport(stage.run(model, domain, lines, seed, start, executor)?, report)
             }
             _ => return Ok(None),
         };
@@ -84,7 +85,7 @@ impl<'m> Lighting<'m> {
     fn start(&mut self, saved: Option<Saved>) -> Option<Start<Shot>> {
         match (saved, std::mem::replace(&mut self.light, Light::None)) {
             (Some(saved), _) => Some(Start::Resumed(saved)),
-            (None, Light::Direct(shot)) => Some(Start::Fresh(shot)),
+            (None, Light::Direct(shot)) => Some(Start::Fresh(*shot)),
             (None, _) => None,
         }
     }
@@ -100,16 +101,16 @@ impl<'m> Lighting<'m> {
     fn shot(&mut self, run: StageRun<Shot>) -> Done {
         let StageRun { outcome, time, batches } = run;
         let Shot { balance, counts, unit, .. } = outcome;
-        let facts = Facts { balance, counts, batches, extrapolated: Quanta::ZERO, domain: None };
-        self.light = Light::Direct(outcome);
+        let facts = Facts { balance, counts, batches, walked: Walked::default(), domain: None };
+        self.light = Light::Direct(Box::new(outcome));
         Done { facts, unit, time }
     }
 
     fn transport(&mut self, run: StageRun<Transported>, domain: DomainReport) -> Done {
         let StageRun { outcome, time, batches } = run;
-        let Transported { balance, counts, extrapolated, unit, .. } = outcome;
-        let facts = Facts { balance, counts, batches, extrapolated, domain: Some(domain) };
-        self.light = Light::All(outcome);
+        let Transported { balance, counts, walked, unit, .. } = outcome;
+        let facts = Facts { balance, counts, batches, walked, domain: Some(domain) };
+        self.light = Light::All(Box::new(outcome));
         Done { facts, unit, time }
     }
 
@@ -122,19 +123,20 @@ impl<'m> Lighting<'m> {
         }
     }
 
-    /// Returns the result so far, and its report. After global lines, which are the last stage with lines, the light is
-    /// not kept.
-    pub(crate) fn result(&mut self, errors: ErrorsReport) -> Option<(LightReport, Solution)> {
-        let hash = self.received()?.hash();
-        let solution = match std::mem::replace(&mut self.light, Light::None) {
-            Light::None => return None,
-            Light::Direct(shot) => {
-                let solution = shot.solution(self.model);
-                self.light = Light::Direct(shot);
-                solution
-            }
-            Light::All(all) => all.solution,
-        };
-        Some((LightReport::new(self.model, self.inside, &solution, errors, hash), solution))
+    /// Returns what counted lines have brought of it, if the last stage had any.
+    pub(crate) fn counted(&self) -> Option<&Counted> {
+        match &self.light {
+            Light::All(all) => all.counted.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Returns the result so far; `None` if no stage has run.
+    pub(crate) fn solution(&self) -> Option<Cow<'_, Solution>> {
+        match &self.light {
+            Light::None => None,
+            Light::Direct(shot) => Some(Cow::Owned(shot.solution(self.model))),
+            Light::All(all) => Some(Cow::Borrowed(&all.solution)),
+        }
     }
 }

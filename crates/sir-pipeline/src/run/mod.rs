@@ -10,7 +10,7 @@ pub(crate) mod execute;
 mod lighting;
 pub(crate) mod lock;
 mod reach;
-mod repeat;
+mod repeating;
 pub(crate) mod resume;
 pub(crate) mod save;
 mod sensor_files;

@@ -23,6 +23,7 @@ pub(crate) fn write(
     sensors: &Sensors,
     layout: &Layout,
     measured: &[Measurement],
+    summary: &SensorsReport,
     units: Units,
     directory: &Path,
 ) -> Result<Vec<OutputReport>, Error> {
@@ -37,8 +38,7 @@ pub(crate) fn write(
     write_atomically(&table, |file| write_table(file, &layout.sensors, measured))?;
     let mut written = vec![output(directory, &sensors.table(), "sensors")?];
     if let (Some(map), Some(cells)) = (sensors.map(), &layout.cells) {
-        let report = SensorsReport::new(&sensors.name, measured);
-        write_map(&place(&map)?, &map_of(cells, measured, &report, units))?;
+        write_map(&place(&map)?, &map_of(cells, measured, summary, units))?;
         written.push(output(directory, &map, "map")?);
     }
     Ok(written)

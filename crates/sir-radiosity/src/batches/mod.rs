@@ -24,15 +24,18 @@
 //!   by lines of weight 1, as if there were no others. For the other sides, `n` is the number of lines if all had the
 //!   larger weight, and the ratio estimator is not applied, because their lines are not equivalent. The number of lines
 //!   of a batch follows from the power in the focus.
-//! * *Extrapolation of the tail.* The power that is unshot at the end would be distributed much like the power sent in
-//!   the tail. If `L₀` is unshot at the start of the tail and `L` at the end, the power received in the tail is
-//!   multiplied by `1 + L/(L₀ − L)`, so that all power is accounted for.
+//! * *Random walks.* What is unshot when the lines end is sent on by random walks along local lines, which end where
+//!   their light is absorbed. So nothing is left out, however few lines meet a surface, or however often light is
+//!   reflected.
 
 mod estimator;
+mod patch_sizes;
 mod schedule;
 mod side_range;
 mod side_state;
 mod sums;
 mod transport;
+mod walks;
 
+pub use patch_sizes::crossings_per_patch;
 pub use transport::{BatchSettings, Batches};

@@ -10,20 +10,20 @@ use crate::visitor::{Visitor, visit_counts, visit_float};
 
 /// Largest number of parts in which the power of the sources is sent out.
 ///
-/// More parts spread the light of a source over more lines. Most of this gain is reached with 16 parts. Each part costs
+/// More parts spread the light of a source over more lines. Most of this gain is reached with 8 parts. Each part costs
 /// an exchange between ranks.
-const MAX_PARTS: u64 = 16;
+const MAX_PARTS: u64 = 8;
 
 /// Smallest number of crossings of a typical patch by a batch that sends a part of the sources, so that the power it
 /// holds is not dominated by chance.
-const CROSSINGS_PER_PART: f64 = 8.0;
+const CROSSINGS_PER_PART: f64 = 4.0;
 
-/// Crossings of a typical patch by the smallest batch. Smaller batches delay less of what the tail sends.
-const MIN_CROSSINGS: f64 = 0.25;
+/// Crossings of a typical patch by the smallest batch. With fewer, batches cost more than random walks do.
+const MIN_CROSSINGS: f64 = 2.0;
 
-/// Crossings of a typical patch that are reserved for the tail, times the absorbed share of the power sent. The unshot
-/// power falls below `exp(−RESERVE/2)`.
-const RESERVE: f64 = 7.0;
+/// Crossings of a typical patch that are reserved for the tail, times the absorbed share of the power sent. Random walks
+/// send on what is unshot then.
+const RESERVE: f64 = 2.0;
 
 /// Largest share of all lines that is reserved for the tail.
 const MAX_RESERVE_SHARE: f64 = 0.75;
@@ -34,8 +34,11 @@ const MAX_RESERVE_BATCHES: f64 = 32.0;
 /// Unshot share of the power of the sources below which no further batch is made.
 const NEGLIGIBLE: f64 = 1e-5;
 
-/// Largest ratio of the unshot power at the end to that at the start of the tail for which the tail is extrapolated.
-const MAX_EXTRAPOLATION: f64 = 0.9;
+/// Smallest number of random walks, and the largest share of the number of lines that it may be.
+const MIN_WALKS: (u64, u64) = (1000, 10);
+
+/// Variance that random walks add, as a share of that of the lines if these bring very different amounts.
+const WALK_VARIANCE: f64 = 0.5;
 
 /// Schedule of the transport: the current batch, the sums over all batches so far, and the size of the next batch.
 #[derive(Clone, Copy, Debug)]
@@ -58,8 +61,6 @@ pub(super) struct Schedule {
     outside_weight: f64,
     /// Reflected direct power.
     source: FocusSums,
-    /// Unshot power at the start of the tail.
-    unshot_at_tail: FocusSums,
     /// Sums over all batches so far; `unshot` is the current one.
     sums: BatchSums,
 }
@@ -89,7 +90,6 @@ impl Schedule {
             source,
             max_lines,
             outside_weight: 1.0 / f64::from(domain.weight()),
-            unshot_at_tail: FocusSums::default(),
             sums: BatchSums { unshot: source, ..BatchSums::default() },
         };
         schedule.batch = [0, schedule.next_lines()];
@@ -121,9 +121,30 @@ impl Schedule {
         self.sums
     }
 
-    /// True in the first batch of the tail, which sends nothing of the sources.
-    pub(super) fn tail_begins(&self) -> bool {
-        self.number == self.parts
+    /// True if all lines are traced.
+    pub(super) fn is_over(&self) -> bool {
+        self.batch[0] == self.lines
+    }
+
+    /// Returns the number of random walks that send on the unshot power, whose amount over all sides is `amount`.
+    /// `crossings` is the expected number of crossings of all sides by all lines.
+    ///
+    /// Lines know the power `P/n` of a typical one of `n` patches up to `P/n` times the root of `n/crossings`, if the
+    /// light is uneven. A walk brings `amount/walks` to each of the patches on its way, of which there are `1/(1−r)`
+    /// on average.
+    pub(super) fn walks(&self, amount: f64, crossings: f64) -> u64 {
+        let (sent, reflected) = (self.sums.sent.all.total(), self.sums.reflected.all.total());
+        if amount == 0.0 {
+            return 0;
+        }
+        if sent <= 0.0 {
+            return self.lines;
+        }
+        let rays = 1.0 / (1.0 - (reflected / sent).clamp(0.0, 0.999));
+        let share = amount / sent;
+        let walks = share * share * rays * crossings / WALK_VARIANCE;
+        let (fewest, share) = MIN_WALKS;
+        (walks as u64).clamp(fewest.min(self.lines.div_ceil(share)), self.lines)
     }
 
     /// Adds the sums of the batch that ends and proceeds to the next one. Returns false if there is none.
@@ -131,14 +152,11 @@ impl Schedule {
         self.sums += closed;
         self.sums.unshot = closed.unshot;
         let [_, end] = self.batch;
-        if end >= self.lines {
+        self.batch = [end, end];
+        if self.is_over() {
             return false;
         }
         self.number += 1;
-        if self.tail_begins() {
-            self.unshot_at_tail = self.sums.unshot;
-        }
-        self.batch = [end, end];
         self.batch[1] += self.next_lines();
         true
     }
@@ -180,24 +198,13 @@ impl Schedule {
         lines.min(self.max_lines)
     }
 
-    /// Returns the extrapolation factor per band: the power to be added for each unit of power received in the tail.
-    ///
-    /// Unshot power in the focus is assumed to spread in the focus, and unshot power elsewhere likewise.
-    pub(super) fn extrapolation(&self, inside: bool) -> [f64; 3] {
-        let [unshot_at_tail, unshot] = [self.unshot_at_tail, self.sums.unshot].map(|sums| sums.part(inside));
-        std::array::from_fn(|band| {
-            let (before, after) = (unshot_at_tail.0[band] as f64, unshot.0[band] as f64);
-            if after > 0.0 && after <= MAX_EXTRAPOLATION * before { after / (before - after) } else { 0.0 }
-        })
-    }
-
     pub(super) fn visit(&mut self, focused: bool, visitor: &mut dyn Visitor) {
         // The other fields follow from the scene and the number of lines.
-        let Self { batch: [start, end], number, reflected_share, source, unshot_at_tail, sums, .. } = self;
+        let Self { batch: [start, end], number, reflected_share, source, sums, .. } = self;
         visit_counts([start, end, number], visitor);
         visit_float(reflected_share, visitor);
         let BatchSums { unshot, sent, reflected, absorbed } = sums;
-        for power in [source, unshot_at_tail, unshot, sent, reflected] {
+        for power in [source, unshot, sent, reflected] {
             visitor.same(&mut power.all.0);
             if focused {
                 visitor.same(&mut power.in_focus.0);

@@ -33,18 +33,14 @@ impl<'a> SideRange<'a> {
         let forecast = self.domain.forecast(batch.end - batch.start);
         let heavy = f64::from(self.domain.weight());
         let withheld = self.schedule.withheld();
-        let tail_begins = self.schedule.tail_begins();
         for (triangle, sides) in self.sides() {
             for i in sides {
                 let weight = if self.focus_sides.contains(SideId(i)) { 1.0 } else { heavy };
                 let expected = forecast.crossings(self.model.area(triangle, SideId(i))) / weight;
                 let lines = weight * (expected + 1.0 + expected.sqrt() * expected.min(1.0));
                 let k = (i - self.first) as usize;
-                let state = &mut self.states[k];
-                if tail_begins {
-                    state.snapshot = state.brought.0.map(|q| q as f32);
-                }
-                let kept = |band: usize| withheld * f64::from(state.snapshot[band]);
+                let state = &self.states[k];
+                let kept = |band: usize| withheld * f64::from(state.source[band]);
                 let share = |band: usize| (state.unshot.0[band] as f64 - kept(band)) / lines;
                 self.tallies.set_share(SideId(i), [0, 1, 2].map(share));
             }

@@ -24,11 +24,6 @@ impl FocusSums {
     pub(super) fn weighted(self, outside: f64) -> f64 {
         self.in_focus.total() + outside * (self.all - self.in_focus).total()
     }
-
-    /// Returns the sum over sides in the focus, or over the others.
-    pub(super) fn part(self, in_focus: bool) -> Quanta {
-        if in_focus { self.in_focus } else { self.all - self.in_focus }
-    }
 }
 
 impl AddAssign for FocusSums {

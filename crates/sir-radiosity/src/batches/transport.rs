@@ -3,17 +3,20 @@
 use std::ops::Range;
 
 use sir_lines::{GlobalLines, Purpose, Streams};
+use sir_mesh::SideId;
 
-use crate::batches::estimator::Counted;
+use crate::batches::estimator;
+use crate::batches::patch_sizes::PatchSizes;
 use crate::batches::schedule::Schedule;
 use crate::batches::side_range::SideRange;
 use crate::batches::side_state::SideState;
 use crate::batches::sums::{BatchSums, FocusSums};
+use crate::batches::walks::Walks;
 use crate::error::SolveError;
 use crate::focus_sides::FocusSides;
 use crate::global;
 use crate::model::Model;
-use crate::power::PowerUnit;
+use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
 use crate::segments::{End, Segment};
 use crate::shot::Shot;
@@ -21,7 +24,7 @@ use crate::solution::Solution;
 use crate::stage::{AnyOrder, Stage, Workers, map_parts};
 use crate::tallies::{Counters, PatchTallies, SquareUnit, SquareUnits, WorkerTallies};
 use crate::totals::{Balance, StageTotals};
-use crate::transported::Transported;
+use crate::transported::{Transported, Walked};
 use crate::visitor::Visitor;
 
 /// Settings of a transport in batches.
@@ -60,33 +63,13 @@ pub struct Batches<'m> {
     states: Vec<SideState>,
     unit: PowerUnit,
     schedule: Schedule,
-}
-
-/// Sums over patch areas, for the number of lines that cross a typical patch.
-struct PatchSizes {
-    /// Sum of the areas of the sides in the focus; of all sides, if there are none in the focus.
-    area: f64,
-    /// Sum of the squares of these areas.
-    square: f64,
-}
-
-impl PatchSizes {
-    fn of(model: &Model, focus_sides: &FocusSides) -> Self {
-        let mut sizes = Self { area: 0.0, square: 0.0 };
-        model.mesh.for_each_side(|triangle, _, _, side| {
-            if focus_sides.contains(side) || focus_sides.is_empty() {
-                let area = model.area(triangle, side);
-                sizes.area += area;
-                sizes.square += area * area;
-            }
-        });
-        sizes
-    }
-
-    /// Returns the number of lines that cross a typical patch once. Patches are weighted by area.
-    fn lines_per_crossing(&self, domain: &GlobalLines, lines: u64) -> f64 {
-        domain.forecast(lines).surface * self.area / (2.0 * self.square)
-    }
+    seed: u64,
+    /// Random walks after the last batch.
+    walks: Option<Walks>,
+    walked: Walked,
+    /// Power of walks that surfaces have reflected and absorbed.
+    reflected_walks: Quanta,
+    absorbed_walks: Quanta,
 }
 
 impl<'m> Batches<'m> {
@@ -108,7 +91,23 @@ impl<'m> Batches<'m> {
         let offset = (offset * (1u128 << 64) as f64) as u64;
         let streams = Streams::new(seed, purpose);
         let states = vec![SideState::default(); model.mesh.side_count()];
-        Self { model, domain, offset, focus_sides, streams, tallies, direct, states, unit, schedule }
+        Self {
+            model,
+            domain,
+            offset,
+            focus_sides,
+            streams,
+            tallies,
+            direct,
+            states,
+            unit,
+            schedule,
+            seed,
+            walks: None,
+            walked: Walked::default(),
+            reflected_walks: Quanta::ZERO,
+            absorbed_walks: Quanta::ZERO,
+        }
     }
 
     /// Divides the sides into at most `count` ranges.
@@ -124,6 +123,41 @@ impl<'m> Batches<'m> {
     /// Sets the power that all sides send with each line of the batch that begins.
     fn open(&mut self, workers: &dyn Workers) {
         map_parts(workers, self.ranges(workers.count()), |mut sides| sides.open());
+    }
+
+    /// Prepares random walks with the power that is unshot when all lines are traced. Returns false if there is none.
+    fn begin_walks(&mut self) -> bool {
+        let Self { model, ref domain, ref states, ref schedule, seed, .. } = *self;
+        let amount = states.iter().map(|state| state.unshot.amount()).sum();
+        let forecast = domain.forecast(schedule.lines());
+        let mut crossings = 0.0;
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            crossings += forecast.crossings(model.area(triangle, side))
+        });
+        let count = schedule.walks(amount, crossings);
+        if count > 0 {
+            let unshot = |side: SideId| states[side.index()].unshot;
+            self.walks = Some(Walks::new(model, unshot, count, seed, Purpose::WALKS));
+        }
+        self.walks.is_some()
+    }
+
+    /// Adds the power that walks have brought to that of the shots.
+    fn end_walks(&mut self, walks: &Walks) {
+        self.walked = Walked { walks: walks.count(), power: self.schedule.sums().unshot.all };
+        let Self { model, ref tallies, ref mut direct, .. } = *self;
+        let (mut all, mut all_reflected) = (Quanta::ZERO, Quanta::ZERO);
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            let (power, _) = tallies.take(side);
+            let reflected = power.scaled(model.reflectance(triangle, side));
+            all += power;
+            all_reflected += reflected;
+            direct.power[side.index()] += power;
+            for (variance, more) in direct.variance[side.index()].iter_mut().zip(walks.variance(power)) {
+                *variance += more as f32;
+            }
+        });
+        (self.reflected_walks, self.absorbed_walks) = (all_reflected, all - all_reflected);
     }
 }
 
@@ -180,7 +214,7 @@ impl<'m> Stage for Batches<'m> {
         let reflected_share = balance.unshot.total() / balance.emitted.total().max(1.0);
         let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (source, reflected_share));
         for (state, unshot) in stage.states.iter_mut().zip(unshot) {
-            (state.unshot, state.snapshot) = (unshot, unshot.0.map(|q| q as f32));
+            (state.unshot, state.source) = (unshot, unshot.0.map(|q| q as f32));
         }
         stage.open(workers);
         Ok(stage)
@@ -200,15 +234,21 @@ impl<'m> Stage for Batches<'m> {
         let direct = Received::nothing(sides);
         let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (FocusSums::default(), 0.0));
         stage.visit_after_units(visitor);
+        if stage.schedule.is_over() {
+            stage.begin_walks();
+        }
         Ok(stage)
     }
 
     fn round(&self) -> Range<u64> {
-        self.schedule.batch()
+        match &self.walks {
+            Some(_) => self.schedule.lines()..self.expected(),
+            None => self.schedule.batch(),
+        }
     }
 
     fn expected(&self) -> u64 {
-        self.schedule.lines()
+        self.schedule.lines() + self.walks.as_ref().map_or(0, Walks::count)
     }
 
     fn chain(&self, _number: u64) -> AnyOrder {
@@ -216,8 +256,12 @@ impl<'m> Stage for Batches<'m> {
     }
 
     fn trace(&self, worker: usize, _chain: &mut AnyOrder, lines: Range<u64>, totals: &mut StageTotals) {
-        let StageTotals { balance, counts } = totals;
         let tallies = self.tallies.of_worker(worker);
+        if let Some(walks) = &self.walks {
+            let first = self.schedule.lines();
+            return walks.trace(self.model, lines.start - first..lines.end - first, tallies, totals);
+        }
+        let StageTotals { balance, counts } = totals;
         let prefetch = |side| tallies.prefetch(side);
         let draw = |index| self.domain.line(index, self.offset, self.streams.line(index).point());
         if self.domain.focus().is_none() {
@@ -237,15 +281,19 @@ impl<'m> Stage for Batches<'m> {
     }
 
     fn advance(&mut self, workers: &dyn Workers) -> bool {
+        if let Some(walks) = self.walks.take() {
+            self.end_walks(&walks);
+            return false;
+        }
         let mut sums = BatchSums::default();
         map_parts(workers, self.ranges(workers.count()), |mut sides| sides.close())
             .into_iter()
             .for_each(|part| sums += part);
-        let another = self.schedule.advance(sums);
-        if another {
+        if self.schedule.advance(sums) {
             self.open(workers);
+            return true;
         }
-        another
+        self.begin_walks()
     }
 
     fn visit_end(&mut self, visitor: &mut dyn Visitor) {
@@ -264,23 +312,32 @@ impl<'m> Stage for Batches<'m> {
 
     fn finish(self, totals: StageTotals) -> Result<Transported, SolveError> {
         let Self { model, domain, focus_sides, mut direct, tallies, states, unit, schedule, .. } = self;
-        let StageTotals { balance: Balance { blocked, escaped, .. }, counts } = totals;
+        let StageTotals { balance: Balance { emitted: sent_by_walks, blocked, escaped, .. }, counts } =
+            totals;
         let BatchSums { unshot, absorbed, .. } = schedule.sums();
-        let balance = Balance { emitted: schedule.source(), absorbed, blocked, escaped, unshot: unshot.all };
+        let balance = Balance {
+            emitted: schedule.source(),
+            absorbed: absorbed + self.absorbed_walks,
+            blocked,
+            escaped,
+            unshot: unshot.all + self.reflected_walks - sent_by_walks,
+        };
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "multipath" });
         }
-        let counted = Counted {
-            model,
-            domain: &domain,
-            focus_sides: &focus_sides,
-            tallies: &tallies,
-            states: &states,
-            schedule: &schedule,
-        };
-        let extrapolated = counted.add_to(&mut direct);
+        let counted = estimator::counted(model, domain, schedule.lines(), &focus_sides, states);
+        estimator::add_to(&mut direct, model, &counted, &focus_sides, &tallies);
+        drop(tallies);
         let solution = Solution::new(model, &direct, unit);
-        Ok(Transported { solution, received: direct, unit, balance, counts, extrapolated })
+        Ok(Transported {
+            solution,
+            received: direct,
+            counted: Some(counted),
+            unit,
+            balance,
+            counts,
+            walked: self.walked,
+        })
     }
 }
 

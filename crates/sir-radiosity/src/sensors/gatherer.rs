@@ -13,9 +13,6 @@ use crate::sensors::start::SensorStart;
 use crate::sensors::unmet::Brightness;
 use crate::solution::Solution;
 
-/// Rays of all replications before the first check of the error.
-const FIRST: u64 = 2048;
-
 /// Measures the light of a solution at points, by final gathering.
 #[derive(Clone, Debug)]
 pub struct Gatherer<'s> {
@@ -53,10 +50,11 @@ impl<'s> Gatherer<'s> {
         let lights = self.lights(sensor, start, &mut tracer);
         let choice = self.emitters.from(start.origin, sensor);
         let stream = |k| self.streams.line(number * REPLICATIONS + k);
-        let mut replications: Vec<_> = (0..REPLICATIONS).map(|k| Replication::new(&mut stream(k))).collect();
+        let SensorSettings { rays, error: target, replications: count, first } = self.settings;
+        let mut replications: Vec<_> = (0..count).map(|k| Replication::new(&mut stream(k))).collect();
         let mut patch_hits = PatchHits::default();
-        let most = self.settings.rays.div_ceil(REPLICATIONS).max(1);
-        let mut rays = if self.settings.error > 0.0 { most.min(FIRST / REPLICATIONS) } else { most };
+        let most = rays.div_ceil(count).max(1);
+        let mut rays = if target > 0.0 { most.min(first.div_ceil(count)) } else { most };
         loop {
             for replication in &mut replications {
                 replication.trace(
@@ -68,14 +66,14 @@ impl<'s> Gatherer<'s> {
                     &mut patch_hits,
                 );
             }
-            let unmet = self.brightness.unmet(&patch_hits.extremes, rays * REPLICATIONS);
+            let unmet = self.brightness.unmet(&patch_hits.extremes, rays * count);
             let mut measurement = Measurement::of(&replications, unmet, lights);
             // Rays may all have missed something small and bright. It makes no part of the error, which would be far too
             // large where there is nothing of this kind in view, but it takes more rays to exclude it.
             let error = libm::hypot(measurement.sampling_error(), unmet.luminance.sqrt());
-            let enough = error <= self.settings.error * measurement.luminance();
+            let enough = error <= target * measurement.luminance();
             if rays == most || enough {
-                measurement.inherit(&patch_hits.errors(self.model, self.solution), rays * REPLICATIONS);
+                measurement.inherit(&patch_hits.errors(self.model, self.solution), rays * count);
                 return measurement;
             }
             rays = most.min(2 * rays);

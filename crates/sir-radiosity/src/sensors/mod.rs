@@ -8,6 +8,7 @@
 mod emitters;
 mod gatherer;
 mod measurement;
+mod repeated;
 mod replication;
 mod sensor;
 mod stage;
@@ -17,6 +18,7 @@ mod unmet;
 
 pub use gatherer::Gatherer;
 pub use measurement::Measurement;
+pub use repeated::RepeatedMeasurements;
 pub use sensor::{REPLICATIONS, Sensor, SensorSettings};
 pub use stage::{SensorStage, SensorTask};
 pub use start::SensorStart;

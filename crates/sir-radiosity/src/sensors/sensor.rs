@@ -15,11 +15,46 @@ pub struct Sensor {
 /// Settings of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorSettings {
-    /// Largest number of rays of a sensor over its hemisphere, rounded up to a multiple of [`REPLICATIONS`]. The same
-    /// number is aimed at emitting surfaces, if there are any.
+    /// Largest number of rays of a sensor over its hemisphere, rounded up to a multiple of the number of replications. The
+    /// same number is aimed at emitting surfaces, if there are any.
     pub rays: u64,
     /// Relative sampling error of the luminance-weighted irradiance at which a sensor stops early; 0 for never.
     pub error: f64,
+    /// Number of independent sets of rays, at least 2 and at most [`REPLICATIONS`].
+    pub replications: u64,
+    /// Rays of all replications before the first check of the error.
+    pub first: u64,
+}
+
+/// Rays of all replications and repeats before the first check of the error.
+const FIRST: u64 = 2048;
+
+/// Replications of each of several repeats, if sensors stop early.
+const REPLICATIONS_TO_STOP: u64 = 8;
+
+impl SensorSettings {
+    /// Returns the settings for this number of rays and this relative error.
+    #[must_use]
+    pub const fn new(rays: u64, error: f64) -> Self {
+        Self { rays, error, replications: REPLICATIONS, first: FIRST }
+    }
+
+    /// Returns the settings for one of several repeats, which share the rays. The mean of their measurements has about
+    /// the error of a single one with all rays.
+    #[must_use]
+    pub fn shared(self, repeats: u64) -> Self {
+        if repeats <= 1 {
+            return self;
+        }
+        let stops = self.error > 0.0;
+        let replications = if stops { REPLICATIONS_TO_STOP } else { (REPLICATIONS / repeats).max(2) };
+        Self {
+            rays: self.rays.div_ceil(repeats),
+            error: self.error * (repeats as f64).sqrt(),
+            replications,
+            first: FIRST.div_ceil(repeats),
+        }
+    }
 }
 
 impl Sensor {

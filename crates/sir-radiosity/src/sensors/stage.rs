@@ -50,7 +50,15 @@ impl<'s> Stage for SensorStage<'s> {
     fn identity(task: &Self::Settings) -> Vec<u64> {
         let SensorTask { model, sensors, settings, seed, .. } = task;
         let sides = model.mesh.side_count() as u64;
-        vec![6, sides, sensors.len() as u64, settings.rays, settings.error.to_bits(), *seed]
+        vec![
+            6,
+            sides,
+            sensors.len() as u64,
+            settings.rays,
+            settings.error.to_bits(),
+            settings.replications,
+            *seed,
+        ]
     }
 
     fn begin(task: Self::Settings, (): (), _workers: &dyn Workers) -> Result<Self, SolveError> {

@@ -26,7 +26,7 @@ pub(crate) struct Transported {
     pub(crate) reflected_bias: Bands,
     /// Error of the radiosity against the reference.
     pub(crate) relative_rms: Bands,
-    /// Unshot share of the power that surfaces reflect. Batches extrapolate it.
+    /// Unshot share of the power that surfaces reflect. Batches send it on by random walks, and what is left is zero on average.
     pub(crate) unshot_share: f64,
     /// Time of multipath on all cores \[s\].
     pub(crate) seconds: f64,
@@ -137,7 +137,7 @@ impl Farm {
              the result; each replica loses the power that is unshot when its lines end (`tail: 0`). \
              Reflected light is the power that surfaces reflect after the first reflection of the direct \
              light, against the reference; the RMS is that of the luminance of all light. Batches \
-             extrapolate the unshot power.\n\n{}",
+             send the rest on by random walks.\n\n{}",
             grid.end()
         )
     }

@@ -1,0 +1,224 @@
+//! Random walks: local lines that send on what is unshot when the global lines end.
+//!
+//! A walk starts at a side with a share of the unshot power, and goes on from every patch that it hits until it is
+//! absorbed, blocked or leaves the scene (a shooting random walk: Pattanaik and Mudur 1992). Walks therefore carry all
+//! further reflections, and leave nothing unshot but what chance gives and takes: a sum with mean zero.
+//!
+//! Walks are allocated in proportion to the amount of unshot power, which is negative for sides that have sent more
+//! than they held. All walks carry the same amount: a walk that is reflected goes on with the probability `p` that its
+//! amount is, and then carries what is reflected over `p`.
+
+use std::collections::HashMap;
+
+use std::ops::Range;
+
+use glam::DVec3;
+use sir_accel::{Hit, Ray};
+use sir_geom::{Line, Rgb, Side, TriangleId};
+use sir_lines::{Allocation, Purpose, Stream, Streams, cosine_direction};
+use sir_mesh::{PatchId, SideId};
+
+use crate::emitter::point_on_surface;
+use crate::model::Model;
+use crate::power::Quanta;
+use crate::tallies::WorkerTallies;
+use crate::totals::StageTotals;
+
+/// Number of walks that are traced together.
+const WALKS: u64 = 1024;
+
+/// Side of a patch at which a walk starts or goes on.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// A triangle of the patch.
+    triangle: TriangleId,
+    patch: PatchId,
+    side: Side,
+}
+
+/// Walks that start at one side.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    /// End of the numbers of these walks, exclusive.
+    end: u64,
+    place: Place,
+    /// Power of each walk.
+    power: Quanta,
+}
+
+/// A set of random walks from the sides that hold unshot power.
+#[derive(Debug)]
+pub(super) struct Walks {
+    starts: Vec<Start>,
+    /// Triangles of the patches that have several.
+    merged: HashMap<u32, Vec<TriangleId>>,
+    streams: Streams,
+    count: u64,
+    /// Mean power of a walk over a walk's power, per band: Σp²/Σ|p|.
+    mean: [f64; 3],
+}
+
+/// A walk between two rays.
+struct Walk {
+    stream: Stream,
+    power: Quanta,
+}
+
+impl Walks {
+    /// Returns `count` walks that start with the unshot power, indexed by [`SideId`].
+    pub(super) fn new(
+        model: &Model,
+        unshot: impl Fn(SideId) -> Quanta,
+        count: u64,
+        seed: u64,
+        purpose: Purpose,
+    ) -> Self {
+        let mesh = &model.mesh;
+        let weights: Vec<f64> =
+            (0..mesh.side_count()).map(|side| unshot(SideId::new(side)).amount()).collect();
+        let total: f64 = weights.iter().sum();
+        let offset = Streams::new(seed, Purpose::ALLOCATION).line(purpose.0).unit();
+        let allocation = Allocation::new(&weights, count, offset);
+        let (mut starts, mut end) = (Vec::new(), 0);
+        let (mut squares, mut amounts) = ([0.0; 3], [0.0; 3]);
+        mesh.for_each_side(|triangle, patch, side, id| {
+            let walks = allocation.count(id.index());
+            if walks == 0 {
+                return;
+            }
+            end += walks;
+            // The expected number of walks is `count` times the share of the side.
+            let share = total / (count as f64 * weights[id.index()]);
+            let power = unshot(id).scaled(Rgb::splat(share));
+            for band in 0..3 {
+                let amount = (power.0[band] as f64).abs();
+                squares[band] += walks as f64 * amount * amount;
+                amounts[band] += walks as f64 * amount;
+            }
+            starts.push(Start { end, place: Place { triangle, patch, side }, power });
+        });
+        let mean =
+            [0, 1, 2].map(|band| if amounts[band] > 0.0 { squares[band] / amounts[band] } else { 0.0 });
+        Self { starts, merged: merged(model), streams: Streams::new(seed, purpose), count, mean }
+    }
+
+    /// Returns the number of walks.
+    pub(super) fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Returns the variance of the power that walks bring to a side \[quanta²\]: that of a sum of a random number of
+    /// walks which all bring the mean.
+    pub(super) fn variance(&self, power: Quanta) -> [f64; 3] {
+        [0, 1, 2].map(|band| (power.0[band] as f64).abs() * self.mean[band])
+    }
+
+    /// Traces some walks to their ends. `emitted` of the balance is the power of all their rays.
+    pub(super) fn trace(
+        &self,
+        model: &Model,
+        walks: Range<u64>,
+        tallies: WorkerTallies<'_>,
+        totals: &mut StageTotals,
+    ) {
+        let mut tracer = model.accel.tracer();
+        let (mut rays, mut going) = (Vec::new(), Vec::new());
+        let mut first = walks.start;
+        while first < walks.end {
+            let end = walks.end.min(first + WALKS);
+            let mut start = self.starts.partition_point(|start| start.end <= first);
+            for number in first..end {
+                while self.starts[start].end <= number {
+                    start += 1;
+                }
+                let Start { place, power, .. } = self.starts[start];
+                let mut stream = self.streams.line(number);
+                rays.push(self.ray(model, place, &mut stream));
+                going.push(Walk { stream, power });
+            }
+            first = end;
+            while !rays.is_empty() {
+                let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
+                tracer.closest_each(&rays, |i, hit| hits[i] = hit);
+                rays.clear();
+                let before = std::mem::take(&mut going);
+                for (mut walk, hit) in before.into_iter().zip(hits) {
+                    totals.balance.emitted += walk.power;
+                    let Some(hit) = hit else {
+                        totals.balance.escaped += walk.power;
+                        continue;
+                    };
+                    let Some(side) = model.mesh.side_at(hit.triangle, hit.point, hit.side) else {
+                        totals.balance.blocked += walk.power;
+                        continue;
+                    };
+                    tallies.receive(side, walk.power);
+                    if let Some(power) =
+                        reflected(walk.power, model.reflectance(hit.triangle, side), &mut walk.stream)
+                    {
+                        let patch = model.mesh.patch_at(hit.triangle, hit.point);
+                        let place = Place { triangle: hit.triangle, patch, side: hit.side };
+                        rays.push(self.ray(model, place, &mut walk.stream));
+                        going.push(Walk { power, ..walk });
+                    }
+                }
+            }
+        }
+    }
+
+    /// Returns a ray from a random point of a patch.
+    fn ray(&self, model: &Model, place: Place, stream: &mut Stream) -> Ray {
+        let Place { triangle, patch, side } = place;
+        let scene = &model.scene;
+        let triangle = match self.merged.get(&patch.0) {
+            Some(triangles) => one_of(triangles, |t| scene.area(t), stream.unit()),
+            None => triangle,
+        };
+        let corners = scene.corners(triangle);
+        let part: [DVec3; 3] = model.mesh.patch_corners(triangle, patch).map(|corner| corner.point(corners));
+        let origin = point_on_surface(scene, triangle, part, stream);
+        let normal = match side {
+            Side::Front => scene.normal(triangle),
+            Side::Back => -scene.normal(triangle),
+        };
+        Ray::leaving(Line { origin, direction: cosine_direction(normal, stream.point()) }, triangle)
+    }
+}
+
+/// Returns the triangles of the patches that have several, by number of patch.
+fn merged(model: &Model) -> HashMap<u32, Vec<TriangleId>> {
+    let Model { scene, mesh, .. } = model;
+    let mut merged: HashMap<u32, Vec<TriangleId>> = HashMap::new();
+    if mesh.patch_count() < scene.triangles().len() {
+        for triangle in scene.triangle_ids() {
+            let patches = mesh.patches_of(triangle);
+            if patches.len() == 1 {
+                merged.entry(patches.start).or_default().push(triangle);
+            }
+        }
+        merged.retain(|_, triangles| triangles.len() > 1);
+    }
+    merged
+}
+
+/// Returns a random triangle with a probability in proportion to its area. `random` is uniform in `[0, 1)`.
+fn one_of(triangles: &[TriangleId], area: impl Fn(TriangleId) -> f64, random: f64) -> TriangleId {
+    let all: f64 = triangles.iter().map(|&t| area(t)).sum();
+    let mut left = random * all;
+    let mut chosen = triangles[0];
+    for &triangle in triangles {
+        chosen = triangle;
+        left -= area(triangle);
+        if left < 0.0 {
+            break;
+        }
+    }
+    chosen
+}
+
+/// Returns the power with which a walk goes on from a surface, or `None` if it ends there.
+fn reflected(power: Quanta, reflectance: Rgb, stream: &mut Stream) -> Option<Quanta> {
+    let whole = power.scaled(reflectance);
+    let probability = whole.amount() / power.amount();
+    (stream.unit() < probability).then(|| power.scaled(reflectance / probability))
+}
