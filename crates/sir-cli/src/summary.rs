@@ -40,7 +40,7 @@ pub fn summary(result: &RunResult) -> String {
             });
             let shared = stage.repeats.map_or(String::new(), |repeats| format!(", {repeats} repeats"));
             text += &format!(
-                "{:<10} {} lines{through}{shared} in {}, {} lines/s, {:.1} % empty, {:.1} % odd\n",
+                "{:<10} {} lines{through} in {}, {} lines/s{shared}, {:.1} % empty, {:.1} % odd\n",
                 stage.name,
                 grouped(lines.lines),
                 duration(stage.time.seconds),
@@ -68,7 +68,11 @@ fn balance(lines: &LinesReport, units: Units) -> String {
     };
     let b = &lines.balance;
     let emitted = sum(b.emitted);
-    let share = |bands| if emitted > 0.0 { 100.0 * sum(bands) / emitted } else { 0.0 };
+    let share = |bands| {
+        let percent = if emitted > 0.0 { 100.0 * sum(bands) / emitted } else { 0.0 };
+        // No minus sign before a zero.
+        if percent.abs() < 0.005 { 0.0 } else { percent }
+    };
     format!(
         "           {emitted:.6} {} sent = {:.2} % absorbed + {:.2} % blocked + {:.2} % escaped + {:.2} % unshot\n",
         units.power(),
