@@ -110,7 +110,8 @@ fn sphere_interior_with_uneven_emission() {
         add_sphere(&mut b, number(&c["geometry"]["parameters"]["R"]), 2, Facing::Inward, &zones);
         let model = per_face(b);
         for (way, transport) in TRANSPORTS {
-            let runs = runs(&model, transport, 300_000, RUNS);
+            // The spread of 16 runs is too uncertain where most of the noise is that of the first shot, common to both.
+            let runs = runs(&model, transport, 300_000, 2 * RUNS);
             for zone in 0..3 {
                 let name = format!("B zone {}", zone + 1);
                 Estimate::of(runs.iter().map(|r| r[zone].x))
