@@ -110,7 +110,7 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
     /// focus, all lines of sources in it, and all others. There are no lines if there are no sources.
     fn begin(settings: Self::Settings, input: I, workers: &dyn Workers) -> Result<Self, SolveError> {
         let ShotSources { sources, sides, unit } = input.sources(&settings)?;
-        let ShotSettings { model, lines, seed } = settings;
+        let ShotSettings { model, lines, seed, .. } = settings;
         let weights = sources.weights();
         let FocusedSources { sources, density, .. } = sources;
         let lines = if sources.is_empty() { 0 } else { lines.count };

@@ -5,8 +5,8 @@
 //! bright as a lamp, and its global lines cause most of the noise of all surfaces that see it. Local lines carry the
 //! same power from everywhere.
 //!
-//! The ratio of the power of the brightest patches to the power of all sources is that of the lines of this shot to the
-//! lines of the first shot. A line of this shot then carries as much power as a line of the first shot.
+//! By default, the ratio of the power of the brightest patches to the power of all sources is that of the lines of this
+//! shot to the lines of the first shot. A line of this shot then carries as much power as a line of the first shot.
 
 use sir_geom::{Rgb, Side};
 use sir_lines::Purpose;
@@ -34,13 +34,20 @@ impl ShotInput for Shot {
     const PURPOSE: Purpose = Purpose::SECOND_SHOT;
 
     fn sources(&self, settings: &ShotSettings<'_>) -> Result<ShotSources, SolveError> {
-        let ShotSettings { model, lines, .. } = settings;
+        let ShotSettings { model, lines, reflected_share, .. } = settings;
         let unshot = self.unshot(model);
-        let total = self.balance.emitted.total() * lines.count as f64 / self.counts.lines.max(1) as f64;
         let focus = lines.focus.as_ref();
-        let of_first = |focus| FocusedSources::new(model, Some(focus), self.counts.lines);
-        let share = focus.map_or(1.0, |focus| of_first(focus).inner_share());
-        let bright = brightest(model, &unshot, &FocusSides::of(model, focus), total * share);
+        let in_focus = FocusSides::of(model, focus);
+        let total = match reflected_share {
+            Some(share) => share * held(model, &unshot, &in_focus),
+            None => {
+                let of_first = |focus| FocusedSources::new(model, Some(focus), self.counts.lines);
+                let share = focus.map_or(1.0, |focus| of_first(focus).inner_share());
+                let ratio = lines.count as f64 / self.counts.lines.max(1) as f64;
+                self.balance.emitted.total() * ratio * share
+            }
+        };
+        let bright = brightest(model, &unshot, &in_focus, total);
         let (sources, sides) = sources_of(model, self, &unshot, &bright);
         Ok(ShotSources { sources: FocusedSources::plain(sources), sides, unit: self.unit })
     }
@@ -95,6 +102,17 @@ fn sources_of(model: &Model, shot: &Shot, unshot: &[Quanta], bright: &[bool]) ->
         }
     }
     (sources, sides)
+}
+
+/// Returns the power that the sides in the focus hold together.
+fn held(model: &Model, unshot: &[Quanta], in_focus: &FocusSides) -> f64 {
+    let mut held = 0.0;
+    model.mesh.for_each_side(|_, _, _, side| {
+        if in_focus.contains(side) {
+            held += unshot[side.index()].total().max(0.0);
+        }
+    });
+    held
 }
 
 /// Returns, per side, true if it is one of the brightest sides in the focus that hold `total` together. If all sides

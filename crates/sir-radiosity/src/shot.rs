@@ -18,18 +18,28 @@ pub struct ShotSettings<'m> {
     pub lines: LocalLines,
     /// Seed of the random numbers.
     pub seed: u64,
+    /// In a second shot: share of the reflected power in the focus that its lines carry, from the brightest patches on. If
+    /// `None`, a line carries as much power as a line of the first shot.
+    pub reflected_share: Option<f64>,
 }
 
 impl<'m> ShotSettings<'m> {
     /// Returns the settings for this number of lines.
     pub fn new(model: &'m Model, lines: impl Into<LocalLines>, seed: u64) -> Self {
-        Self { model, lines: lines.into(), seed }
+        Self { model, lines: lines.into(), seed, reflected_share: None }
+    }
+
+    /// Returns settings of a second shot whose lines carry this share of the reflected power.
+    #[must_use]
+    pub fn of_reflected(self, share: Option<f64>) -> Self {
+        Self { reflected_share: share, ..self }
     }
 
     /// Returns numbers that identify a shot of this `kind` and its settings.
     pub(crate) fn identity(&self, kind: u64) -> Vec<u64> {
         let mut words = vec![kind, self.model.mesh.side_count() as u64, self.lines.count, self.seed];
         words.extend(self.lines.focus.iter().flat_map(|focus| focus.identity()));
+        words.extend(self.reflected_share.map(f64::to_bits));
         words
     }
 }

@@ -12,6 +12,7 @@ use sir_radiosity::{
 use crate::plan;
 use crate::plan::{Action, Pipeline};
 use crate::prepare::prepared::Prepared;
+use crate::run::split::Split;
 
 /// Duration of the trial of a stage.
 const PROBE: Duration = Duration::from_millis(300);
@@ -36,9 +37,13 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
     let (focus, seed) = (*focus, pipeline.seed);
     let mut shot = None;
     let mut estimates = Vec::new();
-    for stage in pipeline.flat_stages() {
-        let name = stage.action.name();
-        match stage.action {
+    let actions = pipeline.flat_stages().flat_map(|stage| match &stage.action {
+        Action::Solve(solve) => Split::usual(solve.lines).actions(),
+        action => vec![action.clone()],
+    });
+    for action in actions {
+        let name = action.name();
+        match action {
             Action::FirstShot(plan::FirstShot { lines }) => {
                 let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
                 let stage = FirstShot::begin(settings, (), &OneWorker)?;
@@ -46,9 +51,10 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
                 shot = Some(stage.finish(totals)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
-            Action::SecondShot(plan::SecondShot { lines }) => {
+            Action::SecondShot(plan::SecondShot { lines, share }) => {
                 let Some(first) = shot.take() else { continue };
                 let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
+                let settings = settings.of_reflected(share);
                 let stage = SecondShot::begin(settings, first, &OneWorker)?;
                 let (rate, _) = try_stage(&stage, stage.round().end);
                 shot = Some(stage.into_input());

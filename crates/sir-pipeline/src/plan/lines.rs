@@ -1,7 +1,7 @@
-//! The stages `FirstShot` and `SecondShot`.
+//! The stages `FirstShot`, `SecondShot` and `Solve`.
 
 use crate::text::field::Format as _;
-use crate::text::formats::{Count, count};
+use crate::text::formats::{Count, count, number};
 use crate::text::record::record;
 
 /// Largest number of lines or repeats. A larger one is certainly an error.
@@ -23,8 +23,20 @@ record! {
 record! {
     /// Stage that sends the power reflected by the brightest patches along local lines.
     pub struct SecondShot {
-        /// Total number of lines. The more lines there are, the more patches send along them, so that each line carries
-        /// as much power as a line of the first shot.
+        /// Total number of lines.
+        pub lines: u64 = line_count().required();
+        /// Share of the reflected light that is sent, from the brightest patches on; `1` is all of it. By default, each
+        /// line carries as much power as a line of the first shot.
+        pub share: Option<f64> =
+            number(1.0).with_range(|x| x > 0.0 && x <= 1.0, "above 0, at most 1").optional("from the lines");
+    }
+}
+
+record! {
+    /// Stage that computes all light: a first shot, a second shot and global lines.
+    pub struct Solve {
+        /// Number of lines of all three stages together. A pilot of a few per cent of that number decides how they are
+        /// divided.
         pub lines: u64 = line_count().required();
     }
 }

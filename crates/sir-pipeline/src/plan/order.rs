@@ -5,6 +5,9 @@ use crate::text::reader::Reader;
 /// Name of a stage, and its text in the file.
 pub(crate) type Named<'a> = (&'static str, &'a str);
 
+/// Stages that compute all light.
+const WHOLE: [&str; 2] = ["Repeat", "Solve"];
+
 /// Reports every stage, given by name and text, whose input no earlier stage provides. A missing input is reported
 /// once.
 pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &str) {
@@ -13,7 +16,8 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
         return;
     };
     let (mut scene, mut first_shot, mut multipath) = (false, false, false);
-    let repeat = stages.iter().find(|(name, _)| *name == "Repeat");
+    // The stage that computes all light, beside which there is no other one with lines.
+    let whole = stages.iter().find(|(name, _)| WHOLE.contains(name));
     for (i, &(name, place)) in stages.iter().enumerate() {
         if !["Save", "Sensors"].contains(&name)
             && let Some((_, first)) = stages[..i].iter().find(|(n, _)| *n == name)
@@ -34,19 +38,32 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
             let help = "begin the stages with `Load(path: \"scene.gltf\")`";
             reader.problem(place, format!("`{name}` before `Load`: there is no scene yet"), help);
             scene = true;
-            first_shot |= ["FirstShot", "Repeat"].contains(&name);
-            multipath |= ["Multipath", "Repeat"].contains(&name);
+            first_shot |= name == "FirstShot" || WHOLE.contains(&name);
+            multipath |= name == "Multipath" || WHOLE.contains(&name);
             continue;
         }
-        if let (Some((_, repeat)), "FirstShot" | "SecondShot" | "Multipath") = (repeat, name) {
-            let message = format!("`{name}` outside of the `Repeat` in line {}", reader.line(repeat));
-            reader.problem(place, message, format!("move `{name}` into the `stages` of `Repeat`"));
+        if let (Some(&(whole, of_whole)), "FirstShot" | "SecondShot" | "Multipath" | "Solve" | "Repeat") =
+            (whole, name)
+            && !std::ptr::eq(place, of_whole)
+        {
+            let line = reader.line(of_whole);
+            let (message, help) = match (whole, name) {
+                ("Repeat", "FirstShot" | "SecondShot" | "Multipath") => (
+                    format!("`{name}` outside of the `Repeat` in line {line}"),
+                    format!("move `{name}` into the `stages` of `Repeat`"),
+                ),
+                _ => (
+                    format!("`{name}` beside the `{whole}` in line {line}, which computes all light"),
+                    format!("leave out `{name}` or `{whole}`"),
+                ),
+            };
+            reader.problem(place, message, help);
             continue;
         }
         match name {
             "Load" => scene = true,
             "Light" | "Subdivide" | "Focus" if first_shot => {
-                let light = if repeat.is_some() { "Repeat" } else { "FirstShot" };
+                let light = whole.map_or("FirstShot", |(name, _)| name);
                 let why = match name {
                     "Light" | "Focus" => "light has already been sent without it",
                     _ => "light has already been computed on the existing patches",
@@ -58,7 +75,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
                 );
             }
             "FirstShot" => first_shot = true,
-            "Repeat" => (first_shot, multipath) = (true, true),
+            "Repeat" | "Solve" => (first_shot, multipath) = (true, true),
             "SecondShot" if multipath => reader.problem(
                 place,
                 "`SecondShot` after `Multipath`: all light has been distributed",
@@ -69,7 +86,10 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
                     "Save" | "Sensors" => "there is no result yet",
                     _ => "there is no light to distribute yet",
                 };
-                let help = format!("put `FirstShot(lines: 1_000_000)` before `{name}`");
+                let help = match name {
+                    "Save" | "Sensors" => format!("put `Solve(lines: 1_000_000)` before `{name}`"),
+                    _ => format!("put `FirstShot(lines: 1_000_000)` before `{name}`"),
+                };
                 reader.problem(place, format!("`{name}` before `FirstShot`: {why}"), help);
                 first_shot = true;
                 multipath |= name == "Multipath";
@@ -82,7 +102,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
         reader.problem(
             last,
             "the pipeline ends without computing anything",
-            "add `FirstShot(lines: 1_000_000)` and `Multipath(lines: 1_000_000)`",
+            "add `Solve(lines: 1_000_000)`",
         );
     }
 }

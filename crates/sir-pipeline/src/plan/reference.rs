@@ -3,7 +3,7 @@
 use crate::plan::focus::Focus;
 use crate::plan::image::{Camera, Image};
 use crate::plan::light::Distant;
-use crate::plan::lines::{FirstShot, SecondShot};
+use crate::plan::lines::{FirstShot, SecondShot, Solve};
 use crate::plan::load::Load;
 use crate::plan::multipath::{Multipath, Replicas};
 use crate::plan::panel::Panel;
@@ -33,6 +33,7 @@ pub fn field_tables() -> Vec<(&'static str, String)> {
         table::<Environment>(),
         table::<Subdivide>(),
         table::<Focus>(),
+        table::<Solve>(),
         table::<FirstShot>(),
         table::<SecondShot>(),
         table::<Multipath>(),

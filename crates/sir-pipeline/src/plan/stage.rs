@@ -2,7 +2,7 @@
 
 use crate::plan::focus::Focus;
 use crate::plan::light::Light;
-use crate::plan::lines::{FirstShot, MAX_LINES, SecondShot};
+use crate::plan::lines::{FirstShot, MAX_LINES, SecondShot, Solve};
 use crate::plan::load::Load;
 use crate::plan::multipath::{Multipath, Transport};
 use crate::plan::order::{Named, check_order, check_repeated};
@@ -48,6 +48,8 @@ choice! {
         Subdivide(Subdivide),
         /// Gives a box of interest a larger share of the lines.
         Focus(Focus),
+        /// Computes all light, with one number of lines.
+        Solve(Solve),
         /// Sends the power of the light sources along local lines.
         FirstShot(FirstShot),
         /// Sends the power reflected by the brightest patches along local lines.
@@ -75,7 +77,8 @@ impl Action {
     pub fn lines(&self) -> u64 {
         match self {
             Self::FirstShot(FirstShot { lines })
-            | Self::SecondShot(SecondShot { lines })
+            | Self::SecondShot(SecondShot { lines, .. })
+            | Self::Solve(Solve { lines })
             | Self::Multipath(Multipath { lines, .. }) => *lines,
             Self::Repeat(repeat) => repeat.stages.iter().map(|stage| stage.action.lines()).sum(),
             Self::Load(_)

@@ -20,16 +20,46 @@ impl LightReport {
 
 /// Returns [`LightReport::relative_error`].
 pub(crate) fn relative_error(model: &Model, inside: &FocusSides, solution: &Solution) -> [f64; 3] {
-    let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
-    model.mesh.for_each_side(|triangle, _, _, side| {
-        if !inside.contains(side) {
-            return;
-        }
-        let a = model.area(triangle, side);
-        let error = solution.error[side.index()];
-        area += a;
-        sum += a * solution.irradiance[side.index()];
-        square += a * error * error;
-    });
+    let Deviation { area, sum, square } = Deviation::of(model, inside, solution);
     std::array::from_fn(|k| if sum[k] > 0.0 { (square[k] * area).sqrt() / sum[k] } else { 0.0 })
+}
+
+/// Sums over the patches in the focus.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Deviation {
+    /// Area \[m²\].
+    area: f64,
+    /// Irradiance times area \[W\].
+    sum: Rgb,
+    /// Squared standard error times area.
+    square: Rgb,
+}
+
+impl Deviation {
+    /// Returns the sums over a solution.
+    pub(crate) fn of(model: &Model, inside: &FocusSides, solution: &Solution) -> Self {
+        let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            if !inside.contains(side) {
+                return;
+            }
+            let a = model.area(triangle, side);
+            let error = solution.error[side.index()];
+            area += a;
+            sum += a * solution.irradiance[side.index()];
+            square += a * error * error;
+        });
+        Self { area, sum, square }
+    }
+
+    /// Returns the relative variance that has been added since an earlier stage, as a share of the light at the end, in the
+    /// mean over the bands with light. It is not negative.
+    pub(crate) fn relative_variance_beyond(&self, before: &Self, end: &Self) -> f64 {
+        let of_band = |k: usize| {
+            let sum = end.sum[k];
+            (sum > 0.0).then(|| (self.square[k] - before.square[k]).max(0.0) * end.area / (sum * sum))
+        };
+        let bands: Vec<f64> = (0..3).filter_map(of_band).collect();
+        bands.iter().sum::<f64>() / bands.len().max(1) as f64
+    }
 }

@@ -92,9 +92,12 @@ pub struct StageReport {
     /// Error of the light against lines and time, after each repeat from the eighth on; only of the last light.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub convergence: Vec<Convergence>,
-    /// Stages of a `Repeat`.
+    /// Stages of a `Repeat` or `Solve`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<Self>,
+    /// Number of lines of the pilot of a `Solve`, which the result does not contain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pilot: Option<u64>,
     /// Summary of its sensors, if it has any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensors: Option<SensorsReport>,
@@ -259,6 +262,7 @@ impl StageReport {
             repeats: None,
             convergence: Vec::new(),
             stages: Vec::new(),
+            pilot: None,
             sensors: None,
             time,
         }

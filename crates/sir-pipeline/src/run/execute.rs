@@ -153,6 +153,7 @@ pub fn run_together(
         stage: 0,
         repeat: 0,
         part: 0,
+        split: None,
         report,
     };
     let (pipeline, prepared) = (&pipeline, &prepared);

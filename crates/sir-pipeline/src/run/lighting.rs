@@ -65,9 +65,9 @@ impl<'m> Lighting<'m> {
                 self.light = Light::None;
                 self.shot(executor.run::<FirstShot<'_>>(shot, start)?)
             }
-            Action::SecondShot(_) => {
+            Action::SecondShot(stage) => {
                 let Some(start) = self.start(saved) else { return Ok(None) };
-                self.shot(executor.run::<SecondShot<'_>>(shot, start)?)
+                self.shot(executor.run::<SecondShot<'_>>(shot.of_reflected(stage.share), start)?)
             }
             Action::Multipath(stage) => {
                 let Some(start) = self.start(saved) else { return Ok(None) };

@@ -1,8 +1,8 @@
 //! Runs a pipeline: its stages in order, checkpoints, files and the report.
 //!
 //! * `execute`: starts or resumes a run; `resume`: contents of a checkpoint; `directory`: run directories, `lock`: their locks.
-//! * `stages`: one stage after the other; `lighting`: the light so far; `repeat`: the stage `Repeat`;
-//!   `reach`: the global lines that met what is lit.
+//! * `stages`: one stage after the other; `lighting`: the light so far; `repeating`: repeats of
+//!   the stages with lines; `sharing`: their number; `split`: the lines of a `Solve`; `reach`: the global lines that met what is lit.
 //! * `save`: images, lit scenes and tables; `sensor_files`: files of sensors.
 
 pub(crate) mod directory;
@@ -14,6 +14,8 @@ mod repeating;
 pub(crate) mod resume;
 pub(crate) mod save;
 mod sensor_files;
+mod sharing;
+pub(crate) mod split;
 mod stages;
 
 pub use crate::run_files::CHECKPOINT;

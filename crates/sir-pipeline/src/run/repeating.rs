@@ -9,13 +9,12 @@ use std::time::{Duration, Instant};
 use sir_lines::seed_of_repeat;
 use sir_parallel::{Checkpoints, Communicator, Saved, StageTime, Start};
 use sir_radiosity::{
-    MIN_REPEATS, PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, SensorStage, SensorTask, Solution,
-    Visitor, crossings_per_patch, share,
+    PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, SensorStage, SensorTask, Solution, Visitor, share,
 };
 
 use crate::error::Error;
 use crate::format::{duration, grouped};
-use crate::plan::{Action, Multipath, Pipeline, Repeat, Sensors, Transport, Until};
+use crate::plan::{Action, Pipeline, Repeat, Sensors, Until};
 use crate::prepare::prepared::Prepared;
 use crate::progress::PAUSE;
 use crate::ranks::agree;
@@ -27,72 +26,13 @@ use crate::report::sensors::SensorsReport;
 use crate::run::execute::Run;
 use crate::run::lighting::{Done, Lighting};
 use crate::run::reach::{dark_warning, few_lines_warning};
+use crate::run::sharing::{SHARED, Sharing};
 use crate::run::stages::unshot_warning;
 use crate::stopwatch::Stopwatch;
 
-/// Number of repeats among which the lines of a pipeline are shared, if they suffice.
-const SHARED: u64 = 16;
-
-/// Smallest number of lines that should cross a typical patch in a repeat.
-const CROSSINGS: f64 = 30.0;
-
-/// Repeats among which the lines of a pipeline are shared.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sharing {
-    /// Number of repeats.
-    pub(crate) repeats: u64,
-    /// Number of lines that cross a typical patch in all repeats, if they are too few for the spread of repeats.
-    pub(crate) too_few: Option<f64>,
-}
-
-impl Sharing {
-    const NONE: Self = Self { repeats: 1, too_few: None };
-
-    /// Returns the sharing of a pipeline: none if it has a `Repeat`, or no global lines, as the errors of a shot are known
-    /// without repeats, or the published transport.
-    pub(crate) fn of(pipeline: &Pipeline, prepared: &Prepared) -> Self {
-        let Prepared { model, focus, .. } = prepared;
-        let lines = || pipeline.stages.iter().map(|stage| stage.action.lines()).filter(|lines| *lines > 0);
-        let multipath = pipeline.stages.iter().find_map(|stage| match &stage.action {
-            Action::Multipath(multipath) => Some(multipath),
-            _ => None,
-        });
-        match multipath {
-            Some(Multipath { lines: global, domain, transport: Transport::Batches }) => {
-                let domain = domain.lines_around(&model.scene, *focus);
-                let crossings = crossings_per_patch(model, &domain, *global);
-                let repeats = ((crossings / CROSSINGS) as u64).min(SHARED).min(lines().min().unwrap_or(1));
-                match repeats {
-                    MIN_REPEATS.. => Self { repeats, too_few: None },
-                    _ => Self { repeats: 1, too_few: Some(crossings) },
-                }
-            }
-            _ => Self::NONE,
-        }
-    }
-
-    /// Returns a warning if lines are too few for repeats.
-    fn warning(self, lines: u64) -> Option<String> {
-        let crossings = self.too_few?;
-        let wanted = lines as f64 * MIN_REPEATS as f64 * CROSSINGS / crossings;
-        Some(format!(
-            "a typical patch is crossed by {crossings:.0} lines, too few to tell its error from the spread of repeats; errors \
-             are those of single lines, which are too small where patches inherit noise from each other; give `Multipath` {} \
-             lines or more, or make fewer patches",
-            grouped(rounded_up(wanted))
-        ))
-    }
-}
-
-/// Returns a number rounded up to two digits.
-fn rounded_up(x: f64) -> u64 {
-    let unit = 10u64.pow((x.max(10.0).log10().floor() as u32).saturating_sub(1));
-    (x / unit as f64).ceil() as u64 * unit
-}
-
 /// A stage that is run in every repeat.
 struct Step<'a> {
-    /// Number of the stage in the pipeline, and in a `Repeat`.
+    /// Number of the stage in the pipeline, and in a `Repeat` or `Solve`.
     place: (usize, usize),
     action: &'a Action,
     totals: RepeatedTotals,
@@ -111,8 +51,8 @@ struct Repeating<'a> {
     steps: Vec<Step<'a>>,
     until: Until,
     at_most: Option<u64>,
-    /// True if the repeats share the lines that the pipeline states.
-    share_lines: bool,
+    /// How the repeats share the lines that the pipeline states; `None` if each has all of them.
+    sharing: Option<Sharing>,
     /// Number of repeats that share the rays of sensors.
     share_rays: u64,
     /// Number of finished repeats.
@@ -137,8 +77,15 @@ impl Run<'_> {
         mut saved: Option<Saved>,
     ) -> Result<(), Error> {
         let (pipeline, prepared) = (self.pipeline, self.prepared);
-        let sharing = Sharing::of(pipeline, prepared);
-        let mut repeating = Repeating::new(pipeline, prepared, first, sharing.repeats);
+        let solve = pipeline.stages.iter().find_map(|stage| match &stage.action {
+            Action::Solve(solve) => Some(solve.lines),
+            _ => None,
+        });
+        if let (Some(lines), None) = (solve, self.head.split) {
+            self.head.split = Some(self.split(lines)?);
+        }
+        let of_solve = self.head.split.map_or(Vec::new(), |split| split.actions());
+        let mut repeating = Repeating::new(pipeline, prepared, first, &of_solve);
         let mut lighting = Lighting::new(prepared);
         let (mut repeat, mut begun) = match saved {
             Some(_) => (self.head.repeat, repeating.step_at((self.head.stage, self.head.part))),
@@ -191,11 +138,7 @@ impl Run<'_> {
             self.progress
                 .note(&format!("Repeat: {count} times in {}", duration(repeating.elapsed().as_secs_f64())));
         }
-        let multipath = pipeline.stages.iter().map(|stage| match &stage.action {
-            Action::Multipath(multipath) => multipath.lines,
-            _ => 0,
-        });
-        self.warn(sharing.warning(multipath.sum()).into_iter().collect());
+        self.warn(repeating.sharing.and_then(|sharing| sharing.warning(solve)).into_iter().collect());
         self.report(first, &mut repeating)
     }
 
@@ -258,7 +201,7 @@ impl Run<'_> {
                         report.sensors = Some(summary);
                     }
                 }
-                Action::Repeat(repeat) => {
+                Action::Repeat(_) | Action::Solve(_) => {
                     for step in steps {
                         let (part, light) = repeating.report(step);
                         self.warn_of_lines(repeating.steps[step].action, &part, light.as_ref());
@@ -267,9 +210,12 @@ impl Run<'_> {
                     }
                     report.light = report.stages.last_mut().and_then(|stage| stage.light.take());
                     report.repeats = Some(repeating.count);
-                    report.convergence.clone_from(&repeating.convergence);
                     report.time = repeating.time();
-                    self.warn(missed_target_warning(repeat, &report));
+                    if let Action::Repeat(repeat) = &stage.action {
+                        self.warn(missed_target_warning(repeat, &report));
+                    } else {
+                        report.pilot = self.head.split.map(|split| split.pilot);
+                    }
                 }
                 _ => {
                     for step in steps {
@@ -304,23 +250,34 @@ impl Run<'_> {
 }
 
 impl<'a> Repeating<'a> {
-    fn new(pipeline: &'a Pipeline, prepared: &'a Prepared, first: usize, shared: u64) -> Self {
+    /// Returns the sums over no repeats of the stages from number `first` on. A `Solve` has the stages `of_solve`.
+    fn new(pipeline: &'a Pipeline, prepared: &'a Prepared, first: usize, of_solve: &'a [Action]) -> Self {
         let mut places = Vec::new();
-        let (mut until, mut at_most, mut share_lines, mut share_rays) =
-            (Until::Times(shared), None, true, shared);
+        let mut repeat = None;
         for (number, stage) in pipeline.stages.iter().enumerate().skip(first) {
             match &stage.action {
-                Action::Repeat(repeat) => {
-                    (until, at_most, share_lines) = (repeat.until, repeat.at_most, false);
-                    // The number of repeats may not be known, or be large.
-                    let most = repeat.at_most.unwrap_or(u64::MAX).min(SHARED);
-                    share_rays = if let Until::Times(times) = until { times.min(most) } else { most };
-                    let parts = repeat.stages.iter().enumerate();
+                Action::Repeat(stage) => {
+                    repeat = Some(stage);
+                    let parts = stage.stages.iter().enumerate();
                     places.extend(parts.map(|(part, stage)| ((number, part), &stage.action)));
+                }
+                Action::Solve(_) => {
+                    let parts = of_solve.iter().enumerate();
+                    places.extend(parts.map(|(part, action)| ((number, part), action)));
                 }
                 action => places.push(((number, 0), action)),
             }
         }
+        let (sharing, until, at_most) = match repeat {
+            Some(repeat) => (None, repeat.until, repeat.at_most),
+            None => {
+                let sharing = Sharing::of(places.iter().map(|(_, action)| *action), prepared);
+                (Some(sharing), Until::Times(sharing.repeats), None)
+            }
+        };
+        // The number of repeats may not be known, or be large.
+        let most = at_most.unwrap_or(u64::MAX).min(SHARED);
+        let share_rays = if let Until::Times(times) = until { times.min(most) } else { most };
         let sides = prepared.model.mesh.side_count();
         let mut steps = Vec::new();
         for (i, &(place, action)) in places.iter().enumerate() {
@@ -347,7 +304,7 @@ impl<'a> Repeating<'a> {
             steps,
             until,
             at_most,
-            share_lines,
+            sharing,
             share_rays,
             count: 0,
             unit: None,
@@ -376,12 +333,12 @@ impl<'a> Repeating<'a> {
 
     /// Returns the number of lines of a stage in a repeat.
     fn lines(&self, action: &Action, repeat: u64) -> u64 {
-        match (self.share_lines, self.until) {
-            (true, Until::Times(repeats)) => {
+        match self.sharing {
+            Some(Sharing { repeats, .. }) => {
                 let lines = share(action.lines(), repeat, repeats);
                 lines.end - lines.start
             }
-            _ => action.lines(),
+            None => action.lines(),
         }
     }
 
@@ -479,7 +436,7 @@ impl<'a> Repeating<'a> {
     /// Returns a line about what is repeated.
     fn announcement(&self) -> String {
         let with_lines = || self.steps.iter().filter(|step| step.action.lines() > 0);
-        if let (true, Until::Times(repeats)) = (self.share_lines, self.until) {
+        if let Some(Sharing { repeats, .. }) = self.sharing {
             let stages = with_lines()
                 .map(|step| format!("{}: {} lines", step.action.name(), grouped(step.action.lines())));
             return format!("{}; in {repeats} repeats", stages.collect::<Vec<_>>().join(", "));

@@ -16,6 +16,7 @@ use crate::progress::Progress;
 use crate::ranks::{agree, broadcast_text};
 use crate::report::result::Report;
 use crate::run::lock::{DirectoryLock, check_unused};
+use crate::run::split::Split;
 use crate::run_files::{CHECKPOINT, REPORT};
 
 /// Metadata of a checkpoint, in addition to the state of its stage.
@@ -29,8 +30,11 @@ pub(crate) struct Head {
     pub(crate) stage: usize,
     /// Number of the repeat in a `Repeat`, from 0.
     pub(crate) repeat: u64,
-    /// Number of the stage in a `Repeat`, from 0.
+    /// Number of the stage in a `Repeat` or `Solve`, from 0.
     pub(crate) part: usize,
+    /// Lines of the stages of a `Solve`, after its pilot.
+    #[serde(default)]
+    pub(crate) split: Option<Split>,
     /// Report of the stages before the saved one.
     pub(crate) report: Report,
 }

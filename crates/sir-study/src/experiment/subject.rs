@@ -113,9 +113,10 @@ impl Subject {
         }
         let second_shot = self.pipeline.flat_stages().find_map(|stage| match &stage.action {
             // In proportion to the local lines.
-            Action::SecondShot(SecondShot { lines }) => {
-                let share = changes.lines.local as f64 / self.asked.local as f64;
-                Some(Action::SecondShot(SecondShot { lines: ((*lines as f64 * share) as u64).max(1) }))
+            Action::SecondShot(SecondShot { lines, share }) => {
+                let scale = changes.lines.local as f64 / self.asked.local as f64;
+                let lines = ((*lines as f64 * scale) as u64).max(1);
+                Some(Action::SecondShot(SecondShot { lines, share: *share }))
             }
             _ => None,
         });
