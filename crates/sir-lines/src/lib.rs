@@ -81,6 +81,7 @@ mod local;
 mod parallel;
 mod point;
 mod r2_sequence;
+mod sobol;
 mod stream;
 mod turn;
 
@@ -94,6 +95,7 @@ pub use local::{
     continuous_point_on_triangle, cosine_direction, point_on_triangle, spot_direction, unit_vector,
 };
 pub use parallel::ParallelLines;
-pub use point::random_point;
+pub use point::{Numbers, random_point};
 pub use r2_sequence::R2Sequence;
+pub use sobol::{SobolPoint, SobolPoints};
 pub use stream::{Purpose, Stream, Streams, seed_of_repeat};

@@ -1,4 +1,4 @@
-//! Random points of the unit cube.
+//! Uniform points of the unit cube.
 
 use rand::Rng;
 
@@ -14,6 +14,18 @@ pub(crate) fn unit(bits: u64) -> f64 {
 #[inline]
 pub fn random_point<const K: usize>(generator: &mut (impl Rng + ?Sized)) -> [f64; K] {
     std::array::from_fn(|_| unit(generator.next_u64()))
+}
+
+/// Uniform numbers of one line, which decide where it begins and where it goes.
+pub trait Numbers {
+    /// Draws a uniform number in `[0, 1)`: a multiple of 2⁻⁵³.
+    fn unit(&mut self) -> f64;
+
+    /// Draws a uniform point of the unit cube `[0, 1)^K`, coordinate by coordinate, as [`unit`](Self::unit) does.
+    #[inline]
+    fn point<const K: usize>(&mut self) -> [f64; K] {
+        std::array::from_fn(|_| self.unit())
+    }
 }
 
 #[cfg(test)]

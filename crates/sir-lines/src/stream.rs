@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use rand::{Rng, SeedableRng, TryRng};
 use rand_xoshiro::SplitMix64;
 
-use crate::point::{random_point, unit};
+use crate::point::{Numbers, random_point, unit};
 
 /// Purpose of a set of lines. Lines of different purposes have independent streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -30,6 +30,8 @@ impl Purpose {
     pub const VIEW_FACTORS: Self = Self(12);
     /// Random walks that send on what global lines have left unshot.
     pub const WALKS: Self = Self(17);
+    /// Scrambles of the points of a stage, combined with its purpose.
+    pub(crate) const SCRAMBLE: Self = Self(1 << 32);
     /// Seeds of repeats.
     const REPEAT: Self = Self(16);
 }
@@ -93,6 +95,21 @@ impl Stream {
     #[inline]
     pub fn point<const K: usize>(&mut self) -> [f64; K] {
         random_point(&mut self.0)
+    }
+}
+
+impl Stream {
+    /// Draws 64 random bits.
+    #[inline]
+    pub(crate) fn word(&mut self) -> u64 {
+        self.0.next_u64()
+    }
+}
+
+impl Numbers for Stream {
+    #[inline]
+    fn unit(&mut self) -> f64 {
+        Self::unit(self)
     }
 }
 

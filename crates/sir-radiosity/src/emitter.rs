@@ -7,7 +7,7 @@ use glam::DVec3;
 use sir_accel::Ray;
 use sir_geom::{Barycentric, BoundingBox, Line, Scene, Side, Sky, Spread, TriangleId};
 use sir_lines::{
-    Domain, ParallelLines, Stream, cosine_direction, point_on_triangle, spot_direction, unit_vector,
+    Domain, Numbers, ParallelLines, cosine_direction, point_on_triangle, spot_direction, unit_vector,
 };
 use sir_mesh::PatchId;
 
@@ -70,34 +70,37 @@ const OUTSIDE: f64 = 0.25;
 const ROUNDING: f64 = 1.0 / (1u64 << 17) as f64;
 
 impl Emitter {
-    /// Returns a random ray.
+    /// Returns the ray that belongs to the numbers of a line. The first four are the most important ones: they choose a
+    /// point and a direction.
     #[inline]
     #[must_use]
-    pub fn ray(&self, scene: &Scene, stream: &mut Stream) -> Ray {
+    pub fn ray(&self, scene: &Scene, numbers: &mut impl Numbers) -> Ray {
         match self {
             Self::Surface { triangle, corners, normal, .. } => {
-                let origin = point_on_surface(scene, *triangle, *corners, stream);
-                let line = Line { origin, direction: cosine_direction(*normal, stream.point()) };
+                let origin = point_on_surface(scene, *triangle, *corners, numbers);
+                let line = Line { origin, direction: cosine_direction(*normal, numbers.point()) };
                 Ray::leaving(line, *triangle)
             }
             Self::Point { position, spread } => {
                 let direction = match *spread {
-                    Spread::Isotropic => unit_vector(stream.point()),
-                    Spread::Lambertian { axis } => cosine_direction(axis, stream.point()),
-                    Spread::Spot { axis, inner, outer } => spot_direction(axis, inner, outer, stream.point()),
+                    Spread::Isotropic => unit_vector(numbers.point()),
+                    Spread::Lambertian { axis } => cosine_direction(axis, numbers.point()),
+                    Spread::Spot { axis, inner, outer } => {
+                        spot_direction(axis, inner, outer, numbers.point())
+                    }
                 };
                 // A lamp in a surface, or just below it for rounding, sends light to both sides.
                 let start = ROUNDING * position.abs().max_element();
                 Ray::new(Line { origin: *position, direction }).within(start..f64::INFINITY)
             }
             Self::Distant { lines, around } => loop {
-                let line = lines.line(stream.point());
+                let line = lines.line(numbers.point());
                 if !around.is_some_and(|bounds| bounds.meets(&line)) {
                     break from_outside(scene, lines.bounds(), line);
                 }
             },
-            Self::Dome(aperture) => from_sky(scene, aperture, stream, Sky::share),
-            Self::Ground(aperture) => from_sky(scene, aperture, stream, |sky, towards| {
+            Self::Dome(aperture) => from_sky(scene, aperture, numbers, Sky::share),
+            Self::Ground(aperture) => from_sky(scene, aperture, numbers, |sky, towards| {
                 f64::from(u8::from(towards.dot(sky.up()) <= 0.0))
             }),
         }
@@ -112,16 +115,16 @@ pub(crate) fn point_on_surface(
     scene: &Scene,
     triangle: TriangleId,
     part: [DVec3; 3],
-    stream: &mut Stream,
+    numbers: &mut impl Numbers,
 ) -> DVec3 {
-    let mut point = point_on_triangle(stream.point()).point(part);
+    let mut point = point_on_triangle(numbers.point()).point(part);
     if scene.is_transparent(triangle) {
         let corners = scene.corners(triangle);
         for _ in 0..MAX_TRIES {
-            if stream.unit() < scene.opacity_at(triangle, Barycentric::of(point, corners)) {
+            if numbers.unit() < scene.opacity_at(triangle, Barycentric::of(point, corners)) {
                 break;
             }
-            point = point_on_triangle(stream.point()).point(part);
+            point = point_on_triangle(numbers.point()).point(part);
         }
     }
     point
@@ -131,17 +134,17 @@ pub(crate) fn point_on_surface(
 fn from_sky(
     scene: &Scene,
     aperture: &SkyAperture,
-    stream: &mut Stream,
+    numbers: &mut impl Numbers,
     share: impl Fn(&Sky, DVec3) -> f64,
 ) -> Ray {
     let bounds = Domain::Box(aperture.through);
     loop {
-        let line = bounds.line(stream.point());
+        let line = bounds.line(numbers.point());
         if aperture.around.is_some_and(|around| around.meets(&line)) {
             continue;
         }
         // Only a scene with a sky has such sources.
-        if scene.sky().is_none_or(|sky| stream.unit() < share(sky, -line.direction)) {
+        if scene.sky().is_none_or(|sky| numbers.unit() < share(sky, -line.direction)) {
             break from_outside(scene, aperture.through, line);
         }
     }

@@ -102,7 +102,7 @@ pub use sensors::{
     Gatherer, Measurement, REPLICATIONS, RepeatedMeasurements, Sensor, SensorSettings, SensorStage,
     SensorStart, SensorTask,
 };
-pub use shot::{Shot, ShotSettings};
+pub use shot::{Points, Shot, ShotSettings};
 pub use solution::Solution;
 pub use sources::{Source, emits, sources, total_power};
 pub use stage::{AnyOrder, Chain, Job, OneWorker, Stage, Workers, chain_units, run_stage, share};

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use sir_accel::Ray;
-use sir_lines::{Allocation, Purpose, Streams};
+use sir_lines::{Allocation, Purpose, SobolPoints, Streams};
 use sir_mesh::SideId;
 
 use crate::error::SolveError;
@@ -11,7 +11,7 @@ use crate::global::PREFETCH_DISTANCE;
 use crate::model::Model;
 use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
-use crate::shot::{Shot, ShotSettings};
+use crate::shot::{Points, Shot, ShotSettings};
 use crate::sources::{FocusedSources, Source};
 use crate::stage::{AnyOrder, Stage, Workers};
 use crate::tallies::{Counters, HEADROOM, PatchTallies, SquareUnit};
@@ -35,10 +35,17 @@ pub struct LocalShot<'m, I> {
     /// Power of one line of each source.
     per_line: Vec<Quanta>,
     allocation: Allocation,
-    streams: Streams,
+    numbers: LineNumbers,
     unit: PowerUnit,
     lines: u64,
     tallies: PatchTallies,
+}
+
+/// Numbers of the lines.
+#[derive(Debug)]
+enum LineNumbers {
+    Random(Streams),
+    Sobol(Box<SobolPoints>),
 }
 
 /// Starting point of a shot, from which the sources of its lines follow.
@@ -92,7 +99,11 @@ impl<I> LocalShot<'_, I> {
 
     /// Returns the ray of a line of a source.
     fn ray_of(&self, source: usize, index: u64) -> Ray {
-        self.sources[source].emitter.ray(&self.model.scene, &mut self.streams.line(index))
+        let (emitter, scene) = (&self.sources[source].emitter, &self.model.scene);
+        match &self.numbers {
+            LineNumbers::Random(streams) => emitter.ray(scene, &mut streams.line(index)),
+            LineNumbers::Sobol(points) => emitter.ray(scene, &mut points.line(index)),
+        }
     }
 }
 
@@ -110,7 +121,7 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
     /// focus, all lines of sources in it, and all others. There are no lines if there are no sources.
     fn begin(settings: Self::Settings, input: I, workers: &dyn Workers) -> Result<Self, SolveError> {
         let ShotSources { sources, sides, unit } = input.sources(&settings)?;
-        let ShotSettings { model, lines, seed, .. } = settings;
+        let ShotSettings { model, lines, seed, points, .. } = settings;
         let weights = sources.weights();
         let FocusedSources { sources, density, .. } = sources;
         let lines = if sources.is_empty() { 0 } else { lines.count };
@@ -121,14 +132,17 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
         let offset =
             Streams::new(seed, Purpose::ALLOCATION).line(I::PURPOSE.0 - Purpose::FIRST_SHOT.0).unit();
         let allocation = Allocation::new(&weights, lines, offset);
-        let streams = Streams::new(seed, I::PURPOSE);
+        let numbers = match points {
+            Points::Random => LineNumbers::Random(Streams::new(seed, I::PURPOSE)),
+            Points::Sobol => LineNumbers::Sobol(Box::new(SobolPoints::new(seed, I::PURPOSE))),
+        };
         // No line brings more than this. Lines in a focus may bring much less, so squares then need precision, not
         // headroom.
         let exact = if density > 1.0 { 1.0 / HEADROOM.sqrt() } else { 1.0 };
         let largest = |band: usize| exact * per_line.iter().map(|q| q.0[band] as f64).fold(0.0, f64::max);
         let squares = SquareUnit::new([0, 1, 2].map(largest), lines as f64);
         let tallies = PatchTallies::new(model.mesh.side_count(), workers.count(), COPIES, squares);
-        Ok(Self { input, model, sources, sides, per_line, allocation, streams, unit, lines, tallies })
+        Ok(Self { input, model, sources, sides, per_line, allocation, numbers, unit, lines, tallies })
     }
 
     /// Restores the input and the tallies. The sources follow from the input.

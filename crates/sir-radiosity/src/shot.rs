@@ -9,6 +9,18 @@ use crate::received::Received;
 use crate::solution::Solution;
 use crate::totals::{Balance, Counts};
 
+/// Points of the lines of a shot: where each begins on its source, and its direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Points {
+    /// Independent random points.
+    #[default]
+    Random,
+    /// Points of one scrambled Sobol' sequence for all lines, see [`SobolPoints`](sir_lines::SobolPoints). The noise is
+    /// smaller, but the errors that a shot states are those of independent points. Those from the spread of repeats are
+    /// right.
+    Sobol,
+}
+
 /// Settings of a first or second shot.
 #[derive(Clone, Copy, Debug)]
 pub struct ShotSettings<'m> {
@@ -18,6 +30,8 @@ pub struct ShotSettings<'m> {
     pub lines: LocalLines,
     /// Seed of the random numbers.
     pub seed: u64,
+    /// Points of the lines.
+    pub points: Points,
     /// In a second shot: share of the reflected power in the focus that its lines carry, from the brightest patches on. If
     /// `None`, a line carries as much power as a line of the first shot.
     pub reflected_share: Option<f64>,
@@ -26,7 +40,13 @@ pub struct ShotSettings<'m> {
 impl<'m> ShotSettings<'m> {
     /// Returns the settings for this number of lines.
     pub fn new(model: &'m Model, lines: impl Into<LocalLines>, seed: u64) -> Self {
-        Self { model, lines: lines.into(), seed, reflected_share: None }
+        Self { model, lines: lines.into(), seed, points: Points::Random, reflected_share: None }
+    }
+
+    /// Returns settings with these points.
+    #[must_use]
+    pub fn with(self, points: Points) -> Self {
+        Self { points, ..self }
     }
 
     /// Returns settings of a second shot whose lines carry this share of the reflected power.
@@ -39,7 +59,7 @@ impl<'m> ShotSettings<'m> {
     pub(crate) fn identity(&self, kind: u64) -> Vec<u64> {
         let mut words = vec![kind, self.model.mesh.side_count() as u64, self.lines.count, self.seed];
         words.extend(self.lines.focus.iter().flat_map(|focus| focus.identity()));
-        words.extend(self.reflected_share.map(f64::to_bits));
+        words.extend([self.points as u64, self.reflected_share.map_or(0, f64::to_bits)]);
         words
     }
 }

@@ -99,11 +99,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
         }
     }
     if !first_shot {
-        reader.problem(
-            last,
-            "the pipeline ends without computing anything",
-            "add `Solve(lines: 1_000_000)`",
-        );
+        reader.problem(last, "the pipeline ends without computing anything", "add `Solve(lines: 1_000_000)`");
     }
 }
 

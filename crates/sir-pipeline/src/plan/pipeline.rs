@@ -15,12 +15,15 @@ use crate::text::record::{Body as _, Record as _, record};
 use crate::text::ron_tree;
 use crate::text::ron_tree::Value;
 use crate::units::Units;
+use sir_radiosity::Points;
 
 /// Maximum size of a pipeline file \[bytes\]: enough for thousands of outputs.
 const MAX_BYTES: u64 = 1 << 18;
 
 const UNITS: Choice<Units> =
     Choice(&[("Radiometric", Units::Radiometric), ("Photometric", Units::Photometric)]);
+
+const POINTS: Choice<Points> = Choice(&[("Sobol", Points::Sobol), ("Random", Points::Random)]);
 
 record! {
     /// Contents of a pipeline file.
@@ -31,6 +34,9 @@ record! {
         /// Radiometric or photometric units. With the latter, read lumens (lm) for W, lux (lx) for W/m², candelas for
         /// W/sr and cd/m² for W/(m² sr); nothing is converted.
         pub units: Units = UNITS.or(Units::Radiometric);
+        /// Points of the lines of both shots: `Sobol`, a scrambled Sobol' sequence, has less noise. `Random` points are
+        /// independent. Without repeats they are always random, see `Multipath`.
+        pub points: Points = POINTS.or(Points::Sobol);
         /// Stages, in the order in which they run.
         pub stages: Vec<Stage> = StageList::ALL.required();
     }
@@ -47,6 +53,8 @@ pub struct Pipeline {
     pub seed: u64,
     /// Units of its numbers. Default radiometric.
     pub units: Units,
+    /// Points of the lines of both shots. Default Sobol'.
+    pub points: Points,
     /// Stages, in the order in which they run.
     pub stages: Vec<Stage>,
 }
@@ -103,8 +111,8 @@ impl Pipeline {
             }
         };
         match content {
-            Some(Content { seed, units, stages }) if reader.problems.is_empty() => {
-                Ok(Self { path: path.to_owned(), text: text.to_owned(), seed, units, stages })
+            Some(Content { seed, units, points, stages }) if reader.problems.is_empty() => {
+                Ok(Self { path: path.to_owned(), text: text.to_owned(), seed, units, points, stages })
             }
             _ => Err(Diagnostics::new(path, text, reader.problems)),
         }
@@ -114,7 +122,8 @@ impl Pipeline {
     /// to the folder of the file.
     #[must_use]
     pub fn to_ron(&self) -> String {
-        let content = Content { seed: self.seed, units: self.units, stages: self.stages.clone() };
+        let content =
+            Content { seed: self.seed, units: self.units, points: self.points, stages: self.stages.clone() };
         let fields = content.write_fields().into_iter();
         let fields: String = fields.map(|(name, value)| format!("    {name}: {value},\n")).collect();
         format!("{}(\n{fields})\n", Content::NAME)

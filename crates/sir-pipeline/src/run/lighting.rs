@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use sir_lines::{Focus, GlobalLines, LocalLines};
 use sir_parallel::{Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
-    Counted, FirstShot, Model, PowerUnit, Received, SecondShot, Shot, ShotSettings, Solution, Transported,
-    Walked,
+    Counted, FirstShot, Model, Points, PowerUnit, Received, SecondShot, Shot, ShotSettings, Solution,
+    Transported, Walked,
 };
 
 use crate::plan::{Action, DomainKind};
@@ -19,6 +19,8 @@ pub(crate) struct Lighting<'m> {
     model: &'m Model,
     light: Light,
     focus: Option<Focus>,
+    /// Points of the lines of shots.
+    points: Points,
     /// Global lines of the last stage that used them.
     global: Option<(DomainKind, GlobalLines)>,
 }
@@ -43,9 +45,9 @@ pub(crate) struct Done {
 
 impl<'m> Lighting<'m> {
     /// Creates a lighting without light.
-    pub(crate) fn new(prepared: &'m Prepared) -> Self {
+    pub(crate) fn new(prepared: &'m Prepared, points: Points) -> Self {
         let Prepared { model, focus, .. } = prepared;
-        Self { model, light: Light::None, focus: *focus, global: None }
+        Self { model, light: Light::None, focus: *focus, points, global: None }
     }
 
     /// Runs a stage with this number of lines, or resumes a saved one. Returns `None` if it is not a stage with lines.
@@ -58,7 +60,8 @@ impl<'m> Lighting<'m> {
         saved: Option<Saved>,
     ) -> Result<Option<Done>, RunError> {
         let model = self.model;
-        let shot = ShotSettings::new(model, LocalLines { count: lines, focus: self.focus }, seed);
+        let shot =
+            ShotSettings::new(model, LocalLines { count: lines, focus: self.focus }, seed).with(self.points);
         let done = match action {
             Action::FirstShot(_) => {
                 let start = saved.map_or(Start::Fresh(()), Start::Resumed);

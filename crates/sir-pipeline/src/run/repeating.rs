@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 use sir_lines::seed_of_repeat;
 use sir_parallel::{Checkpoints, Communicator, Saved, StageTime, Start};
 use sir_radiosity::{
-    PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, SensorStage, SensorTask, Solution, Visitor, share,
+    Points, PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, SensorStage, SensorTask, Solution,
+    Visitor, share,
 };
 
 use crate::error::Error;
@@ -86,12 +87,14 @@ impl Run<'_> {
         }
         let of_solve = self.head.split.map_or(Vec::new(), |split| split.actions());
         let mut repeating = Repeating::new(pipeline, prepared, first, &of_solve);
-        let mut lighting = Lighting::new(prepared);
+        let is_single = repeating.is_single();
+        // The errors that single lines state are those of independent points.
+        let points = if is_single { Points::Random } else { pipeline.points };
+        let mut lighting = Lighting::new(prepared, points);
         let (mut repeat, mut begun) = match saved {
             Some(_) => (self.head.repeat, repeating.step_at((self.head.stage, self.head.part))),
             None => (0, 0),
         };
-        let is_single = repeating.is_single();
         if !is_single {
             self.progress.note(&repeating.announcement());
         }

@@ -25,10 +25,7 @@ pub(crate) struct Sharing {
 impl Sharing {
     /// Returns the sharing of stages with lines, in the order in which they are run. There is none without global lines, as
     /// the errors of a shot are known without repeats, or with the published transport.
-    pub(crate) fn of<'a>(
-        actions: impl Iterator<Item = &'a Action> + Clone,
-        prepared: &Prepared,
-    ) -> Self {
+    pub(crate) fn of<'a>(actions: impl Iterator<Item = &'a Action> + Clone, prepared: &Prepared) -> Self {
         let Prepared { model, focus, .. } = prepared;
         let fewest = actions.clone().map(Action::lines).filter(|lines| *lines > 0).min().unwrap_or(1);
         let multipath = actions.filter_map(|action| match action {

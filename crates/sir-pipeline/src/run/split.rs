@@ -77,9 +77,8 @@ impl Split {
     /// Returns the split with the smallest variance in a given time. `global_time` is the time of a global line over that
     /// of a local line, and `least_global` the number of global lines that the spread of repeats needs.
     fn best(trials: &[Trial], lines: u64, global_time: f64, least_global: u64) -> Self {
-        let weights = |trial: &Trial| {
-            [trial.first.sqrt(), trial.second.sqrt(), (trial.global / global_time).sqrt()]
-        };
+        let weights =
+            |trial: &Trial| [trial.first.sqrt(), trial.second.sqrt(), (trial.global / global_time).sqrt()];
         let cost = |trial: &Trial| {
             let [first, second, global] = weights(trial);
             first + second + global * global_time

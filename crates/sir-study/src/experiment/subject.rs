@@ -130,8 +130,8 @@ impl Subject {
         let pictures = self.pictures().filter(|_| changes.pictures).cloned();
         actions.push(Action::Save(Save { outputs: std::iter::once(table(TABLE)).chain(pictures).collect() }));
         let stages = actions.into_iter().map(|action| Stage { action, span: Span::default() }).collect();
-        let (seed, units) = (changes.seed, self.pipeline.units);
-        let derived = Pipeline { path: PathBuf::new(), text: String::new(), seed, units, stages };
+        let (seed, units, points) = (changes.seed, self.pipeline.units, self.pipeline.points);
+        let derived = Pipeline { path: PathBuf::new(), text: String::new(), seed, units, points, stages };
         let Self { name, digest, .. } = self;
         format!(
             "// Derived from the pipeline of {name} by `sir experiment`. SHA-256 of the scene:\n// \
