@@ -7,7 +7,8 @@ use glam::DVec3;
 use sir_accel::Ray;
 use sir_geom::{Barycentric, BoundingBox, Line, Scene, Side, Sky, Spread, TriangleId};
 use sir_lines::{
-    Domain, Numbers, ParallelLines, cosine_direction, point_on_triangle, spot_direction, unit_vector,
+    Domain, Numbers, ParallelLines, continuous_point_on_triangle, cosine_direction, spot_direction,
+    unit_vector,
 };
 use sir_mesh::PatchId;
 
@@ -117,14 +118,14 @@ pub(crate) fn point_on_surface(
     part: [DVec3; 3],
     numbers: &mut impl Numbers,
 ) -> DVec3 {
-    let mut point = point_on_triangle(numbers.point()).point(part);
+    let mut point = continuous_point_on_triangle(numbers.point()).point(part);
     if scene.is_transparent(triangle) {
         let corners = scene.corners(triangle);
         for _ in 0..MAX_TRIES {
             if numbers.unit() < scene.opacity_at(triangle, Barycentric::of(point, corners)) {
                 break;
             }
-            point = point_on_triangle(numbers.point()).point(part);
+            point = continuous_point_on_triangle(numbers.point()).point(part);
         }
     }
     point
