@@ -32,8 +32,7 @@ A pipeline is a text file like this one (reference: docs/pipeline.md):
       stages: [
           Load(path: \"room.gltf\"),
           Subdivide(patches: 20_000),
-          FirstShot(lines: 1_000_000),
-          Multipath(lines: 1_000_000),
+          Solve(lines: 2_000_000),
           Save([Image(path: \"view.png\"), Gltf(path: \"result.glb\"), Table(path: \"patches.csv\")]),
       ],
   )

@@ -36,8 +36,12 @@ struct Case {
 
 impl Case {
     fn new(stages: &str) -> Self {
+        Self::with("points: Sobol", stages)
+    }
+
+    fn with(points: &str, stages: &str) -> Self {
         let text = format!(
-            "(seed: 3, stages: [Load(path: \"furnace.gltf\"), Subdivide(patches: 200), {stages}, \
+            "(seed: 3, {points}, stages: [Load(path: \"furnace.gltf\"), Subdivide(patches: 200), {stages}, \
              Save([Table(path: \"patches.npy\"), Image(path: \"view.exr\", width: 12, samples: 1)])])"
         );
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/furnace/furnace.gltf");
@@ -77,6 +81,9 @@ fn timeless(mut report: Report) -> Report {
         stage.time = Time::of(0.0);
         stage.convergence.iter_mut().for_each(|point| point.time = Time::of(0.0));
         stage.stages.iter_mut().for_each(|part| part.time = Time::of(0.0));
+        if let Some(pilot) = &mut stage.pilot {
+            pilot.time = Time::of(0.0);
+        }
     }
     report
 }
@@ -159,16 +166,54 @@ fn lines_are_shared_among_repeats_if_they_suffice() {
 
 #[test]
 fn shared_lines_give_the_same_bits_for_any_number_of_workers() {
-    let case = Case::new(SHARED);
-    let whole = case.run();
-    for (ranks, threads) in [(1, 3), (2, 1), (3, 2)] {
-        let out = format!("{ranks}-{threads}");
-        let options = case.options(&out, threads);
-        ranks::run_ranks(ranks, |comm| {
-            run_together(Ok(case.pipeline.clone()), &options, comm).unwrap().report
-        });
-        assert!(case.files(&out) == whole, "{ranks} ranks, {threads} threads");
+    for stages in [SHARED, SOLVE] {
+        let case = Case::new(stages);
+        let whole = case.run();
+        for (ranks, threads) in [(1, 3), (2, 1), (3, 2)] {
+            let out = format!("{ranks}-{threads}");
+            let options = case.options(&out, threads);
+            ranks::run_ranks(ranks, |comm| {
+                run_together(Ok(case.pipeline.clone()), &options, comm).unwrap().report
+            });
+            assert!(case.files(&out) == whole, "{stages}: {ranks} ranks, {threads} threads");
+        }
     }
+}
+
+const SOLVE: &str = "Solve(lines: 240_000)";
+
+/// The lines of a `Solve` are all traced, after a pilot, and give the same as the stages that it reports.
+#[test]
+fn a_solve_is_a_division_of_its_lines() {
+    let (files, report) = Case::new(SOLVE).run();
+    let solve = report.stages.iter().find(|stage| stage.name == "Solve").unwrap();
+    let lines = |stage: &StageReport| stage.lines.as_ref().unwrap().lines;
+    assert_eq!(solve.stages.iter().map(lines).sum::<u64>(), 240_000);
+    assert!((1..=30_000).contains(&solve.pilot.unwrap().lines), "{:?}", solve.pilot);
+    assert_eq!(solve.light.as_ref().unwrap().errors.from, ErrorsFrom::Spread);
+    let shares: Vec<Option<f64>> = [None, Some(0.5), Some(1.0)].to_vec();
+    let of = |share: Option<f64>| {
+        let stages = solve.stages.iter().map(|stage| match (stage.name.as_str(), share) {
+            ("SecondShot", Some(share)) => format!("SecondShot(lines: {}, share: {share})", lines(stage)),
+            (name, _) => format!("{name}(lines: {})", lines(stage)),
+        });
+        Case::new(&stages.collect::<Vec<_>>().join(", ")).run().0
+    };
+    assert!(shares.into_iter().any(|share| of(share) == files), "{solve:?}");
+}
+
+/// The pilot of a `Solve` in a `Repeat` runs once.
+#[test]
+fn a_solve_can_be_repeated_until_its_error_is_small() {
+    let stages = "Repeat(until: RelativeError(0.03), stages: [Solve(lines: 30_000)])";
+    let (_, report) = Case::new(stages).run();
+    let repeat = repeated(&report);
+    let names: Vec<_> = repeat.stages.iter().map(|stage| stage.name.as_str()).collect();
+    assert!(["FirstShot", "Multipath"].iter().all(|name| names.contains(name)), "{names:?}");
+    let sum: u64 = repeat.stages.iter().map(|stage| stage.lines.as_ref().unwrap().lines).sum();
+    assert_eq!(sum, 30_000 * repeat.repeats.unwrap());
+    assert!(repeat.pilot.unwrap().lines < 5_000, "{:?}", repeat.pilot);
+    assert!(repeat.light.as_ref().unwrap().relative_error.into_iter().fold(0.0, f64::max) <= 0.03);
 }
 
 /// The result of a target equals that of the same number of repeats. The target is met by the mean of all repeats, and
@@ -192,7 +237,7 @@ fn a_target_is_met_and_its_number_of_repeats_gives_the_same_bits() {
 #[test]
 fn errors_of_few_repeats_are_those_that_they_state() {
     let text = |times: u64| format!("Repeat(times: {times}, stages: [FirstShot(lines: 5_000)])");
-    let light = |times| repeated(&Case::new(&text(times)).run().1).light.clone().unwrap();
+    let light = |times| repeated(&Case::with("points: Random", &text(times)).run().1).light.clone().unwrap();
     let [one, few, many] = [1, MIN_REPEATS - 1, MIN_REPEATS].map(light);
     assert_eq!(few.errors, ErrorsReport { from: ErrorsFrom::Lines, samples: 5_000 * (MIN_REPEATS - 1) });
     assert_eq!(many.errors, ErrorsReport { from: ErrorsFrom::Spread, samples: MIN_REPEATS });
@@ -265,7 +310,8 @@ impl Communicator for StopAfter {
 #[test]
 fn a_run_that_is_stopped_again_and_again_gives_the_same_bits() {
     let of = |transport: &str| format!("Repeat(times: 8, stages: [{SHOTS}, {transport}])");
-    for (stages, every) in [(of(BATCHES), 300), (of(REPLICAS), 0), (SHARED.to_owned(), 300)] {
+    let shared = [SHARED, SOLVE].map(|stages| (stages.to_owned(), 300));
+    for (stages, every) in [(of(BATCHES), 300), (of(REPLICAS), 0)].into_iter().chain(shared) {
         let case = Case::new(&stages);
         let whole = case.run();
         for sums in [23, 41] {

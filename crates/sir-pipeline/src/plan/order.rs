@@ -48,7 +48,7 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
         {
             let line = reader.line(of_whole);
             let (message, help) = match (whole, name) {
-                ("Repeat", "FirstShot" | "SecondShot" | "Multipath") => (
+                ("Repeat", "FirstShot" | "SecondShot" | "Multipath" | "Solve") => (
                     format!("`{name}` outside of the `Repeat` in line {line}"),
                     format!("move `{name}` into the `stages` of `Repeat`"),
                 ),
@@ -108,8 +108,10 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
 pub(crate) fn check_repeated(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &str) {
     let help = "begin the `stages` of `Repeat` with `FirstShot(lines: 1_000_000)`";
     match stages.first() {
-        None => reader.problem(list, "`Repeat` has no stages", help),
-        Some(("FirstShot", _)) => {}
+        None => {
+            reader.problem(list, "`Repeat` has no stages", "write `stages: [Solve(lines: 1_000_000)]`");
+        }
+        Some(("FirstShot" | "Solve", _)) => {}
         Some((name, place)) => reader.problem(
             place,
             format!("`{name}` before `FirstShot`: there is no light to distribute yet"),
@@ -118,7 +120,14 @@ pub(crate) fn check_repeated(reader: &mut Reader<'_>, stages: &[Named<'_>], list
     }
     for (&(before, _), &(name, place)) in stages.iter().zip(stages.iter().skip(1)) {
         let rank = |name| ["FirstShot", "SecondShot", "Multipath"].iter().position(|n| *n == name);
-        if rank(before) >= rank(name) {
+        if [before, name].contains(&"Solve") {
+            let message = format!("`{name}` after `{before}`");
+            reader.problem(
+                place,
+                message,
+                "`Solve` computes all light: leave out the other stages, or `Solve`",
+            );
+        } else if rank(before) >= rank(name) {
             let message = format!("`{name}` after `{before}`");
             reader.problem(
                 place,

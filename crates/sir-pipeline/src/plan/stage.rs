@@ -98,7 +98,7 @@ record! {
         pub until: Until = until();
         /// Maximum number of repeats. A warning reports that a target was not reached.
         pub at_most: Option<u64> = count(1, MAX_LINES, 100).optional("no limit");
-        /// `FirstShot` and the stages that may follow it, except `Sensors` and `Save`.
+        /// `Solve`, or `FirstShot` and the stages that may follow it, except `Sensors` and `Save`.
         pub stages: Vec<Stage> = StageList::REPEATED.required();
     }
 }
@@ -223,7 +223,7 @@ impl StageList {
     /// Stages of a `Repeat`.
     const REPEATED: Self = Self {
         what: "repeated stage",
-        known: &["FirstShot", "SecondShot", "Multipath"],
+        known: &["Solve", "FirstShot", "SecondShot", "Multipath"],
         check_order: check_repeated,
         example: "[FirstShot(lines: 1_000_000), …]",
         breaks: ["", ""],

@@ -95,13 +95,22 @@ pub struct StageReport {
     /// Stages of a `Repeat` or `Solve`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<Self>,
-    /// Number of lines of the pilot of a `Solve`, which the result does not contain.
+    /// Pilot of a `Solve`, whose lines the result does not contain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pilot: Option<u64>,
+    pub pilot: Option<PilotReport>,
     /// Summary of its sensors, if it has any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensors: Option<SensorsReport>,
     /// Time of the stage.
+    pub time: Time,
+}
+
+/// Report of the pilot of a `Solve`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PilotReport {
+    /// Number of its lines.
+    pub lines: u64,
+    /// Its time, which is a part of that of the stage.
     pub time: Time,
 }
 
@@ -272,7 +281,7 @@ impl StageReport {
 impl Time {
     /// Returns the time of a stage without lines, or of a run.
     #[must_use]
-    pub fn of(seconds: f64) -> Self {
+    pub const fn of(seconds: f64) -> Self {
         Self { seconds, lines_per_second: None, sequential: None, communication: None, peak_memory: None }
     }
 }

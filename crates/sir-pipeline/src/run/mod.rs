@@ -2,13 +2,14 @@
 //!
 //! * `execute`: starts or resumes a run; `resume`: contents of a checkpoint; `directory`: run directories, `lock`: their locks.
 //! * `stages`: one stage after the other; `lighting`: the light so far; `repeating`: repeats of
-//!   the stages with lines; `sharing`: their number; `split`: the lines of a `Solve`; `reach`: the global lines that met what is lit.
+//!   the stages with lines; `sharing`: their number; `split`: the lines of a `Solve`, `pilot`: how they are found; `reach`: the global lines that met what is lit.
 //! * `save`: images, lit scenes and tables; `sensor_files`: files of sensors.
 
 pub(crate) mod directory;
 pub(crate) mod execute;
 mod lighting;
 pub(crate) mod lock;
+mod pilot;
 mod reach;
 mod repeating;
 pub(crate) mod resume;

@@ -78,12 +78,14 @@ impl Run<'_> {
         mut saved: Option<Saved>,
     ) -> Result<(), Error> {
         let (pipeline, prepared) = (self.pipeline, self.prepared);
-        let solve = pipeline.stages.iter().find_map(|stage| match &stage.action {
+        let solve = pipeline.flat_stages().find_map(|stage| match &stage.action {
             Action::Solve(solve) => Some(solve.lines),
             _ => None,
         });
         if let (Some(lines), None) = (solve, self.head.split) {
-            self.head.split = Some(self.split(lines)?);
+            let has_repeat = pipeline.stages.iter().any(|stage| matches!(stage.action, Action::Repeat(_)));
+            let repeats = if has_repeat { 1 } else { SHARED };
+            self.head.split = Some(self.split(lines, repeats)?);
         }
         let of_solve = self.head.split.map_or(Vec::new(), |split| split.actions());
         let mut repeating = Repeating::new(pipeline, prepared, first, &of_solve);
@@ -214,10 +216,10 @@ impl Run<'_> {
                     report.light = report.stages.last_mut().and_then(|stage| stage.light.take());
                     report.repeats = Some(repeating.count);
                     report.time = repeating.time();
+                    report.pilot = self.head.split.map(|split| split.pilot);
+                    report.time.seconds += report.pilot.map_or(0.0, |pilot| pilot.time.seconds);
                     if let Action::Repeat(repeat) = &stage.action {
                         self.warn(missed_target_warning(repeat, &report));
-                    } else {
-                        report.pilot = self.head.split.map(|split| split.pilot);
                     }
                 }
                 _ => {
@@ -261,14 +263,14 @@ impl<'a> Repeating<'a> {
             match &stage.action {
                 Action::Repeat(stage) => {
                     repeat = Some(stage);
-                    let parts = stage.stages.iter().enumerate();
-                    places.extend(parts.map(|(part, stage)| ((number, part), &stage.action)));
+                    let actions = stage.stages.iter().map(|stage| &stage.action);
+                    let actions = actions.flat_map(|action| parts_of(action, of_solve)).enumerate();
+                    places.extend(actions.map(|(part, action)| ((number, part), action)));
                 }
-                Action::Solve(_) => {
-                    let parts = of_solve.iter().enumerate();
-                    places.extend(parts.map(|(part, action)| ((number, part), action)));
+                action => {
+                    let actions = parts_of(action, of_solve).iter().enumerate();
+                    places.extend(actions.map(|(part, action)| ((number, part), action)));
                 }
-                action => places.push(((number, 0), action)),
             }
         }
         let (sharing, until, at_most) = match repeat {
@@ -500,6 +502,14 @@ impl<'a> Repeating<'a> {
         }
         let lines = self.steps.iter().map(|step| step.totals.counts().lines).sum();
         Time::of_lines(time, lines)
+    }
+}
+
+/// Returns the stages of a `Solve`, or the stage itself if it is another one.
+fn parts_of<'a>(action: &'a Action, of_solve: &'a [Action]) -> &'a [Action] {
+    match action {
+        Action::Solve(_) => of_solve,
+        _ => std::slice::from_ref(action),
     }
 }
 

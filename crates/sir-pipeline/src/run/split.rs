@@ -6,42 +6,16 @@
 //! Neyman 1934), where it is `(√a + √b + √(cκ))²`. The noise that reflected light inherits from earlier stages is left out.
 
 use serde::{Deserialize, Serialize};
-use sir_lines::{GlobalLines, LocalLines, seed_of_repeat};
-use sir_parallel::Start;
-use sir_radiosity::{
-    BatchSettings, Batches, FirstShot, Model, SecondShot, Shot, ShotSettings, Solution, Transported,
-    crossings_per_patch,
-};
 
-use crate::error::Error;
 use crate::format::{grouped, percent};
 use crate::plan::{Action, DomainKind, FirstShot as First, Multipath, SecondShot as Second, Transport};
-use crate::ranks::agree;
-use crate::report::light::Deviation;
-use crate::run::execute::Run;
-use crate::run::sharing::{CROSSINGS, SHARED};
-
-/// Lines of each shot of the pilot, as a share of all lines.
-const PILOT_SHOT: f64 = 1.0 / 64.0;
-
-/// Crossings of a typical patch by the global lines of the pilot, and the largest share of all lines for them.
-const PILOT_CROSSINGS: (f64, f64) = (8.0, 1.0 / 64.0);
-
-/// Shares of the reflected light that a second shot may send, of which the pilot tries each.
-const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
-
-/// Time of a global line over that of a local line: for the line itself, and for each surface that it crosses. Measured on
-/// the Cornell box and the museum's stair.
-const GLOBAL_TIME: [f64; 2] = [1.0, 0.5];
+use crate::report::result::{PilotReport, Time};
 
 /// Smallest and largest share of all lines for the first shot and for global lines.
 const BOUNDS: (f64, f64) = (0.05, 0.9);
 
 /// Largest share of all lines for those global lines that are needed for the spread of repeats.
 const REPEATS_SHARE: f64 = 0.25;
-
-/// Number of the repeat whose seed the pilot has. No run has that many repeats.
-const PILOT_REPEAT: u64 = u64::MAX;
 
 /// Lines of the stages of a `Solve`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,29 +28,37 @@ pub(crate) struct Split {
     share: f64,
     /// Global lines.
     global: u64,
-    /// Lines of the pilot.
-    pub(crate) pilot: u64,
+    /// Lines and time of the pilot.
+    pub(crate) pilot: PilotReport,
 }
+
+const NO_PILOT: PilotReport = PilotReport { lines: 0, time: Time::of(0.0) };
 
 /// What the pilot says of one share of the reflected light: the relative variances times the numbers of lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Trial {
-    share: f64,
-    first: f64,
-    second: f64,
-    global: f64,
+pub(crate) struct Trial {
+    pub(crate) share: f64,
+    pub(crate) first: f64,
+    pub(crate) second: f64,
+    pub(crate) global: f64,
 }
 
 impl Split {
     /// Returns a usual split, for estimates of time.
     pub(crate) fn usual(lines: u64) -> Self {
         let (second, global) = (lines / 4, (lines / 4).max(1));
-        Self { first: lines.saturating_sub(second + global).max(1), second, share: 1.0, global, pilot: 0 }
+        Self {
+            first: lines.saturating_sub(second + global).max(1),
+            second,
+            share: 1.0,
+            global,
+            pilot: NO_PILOT,
+        }
     }
 
     /// Returns the split with the smallest variance in a given time. `global_time` is the time of a global line over that
     /// of a local line, and `least_global` the number of global lines that the spread of repeats needs.
-    fn best(trials: &[Trial], lines: u64, global_time: f64, least_global: u64) -> Self {
+    pub(crate) fn best(trials: &[Trial], lines: u64, global_time: f64, least_global: u64) -> Self {
         let weights =
             |trial: &Trial| [trial.first.sqrt(), trial.second.sqrt(), (trial.global / global_time).sqrt()];
         let cost = |trial: &Trial| {
@@ -98,7 +80,7 @@ impl Split {
         let second = if best.share > 0.0 { (rest * of_shots).min((rest - fewest).max(0.0)) } else { 0.0 };
         let (global, second) = ((global as u64).max(1), second as u64);
         let first = lines.saturating_sub(global + second).max(1);
-        Self { first, second, share: best.share, global, pilot: 0 }
+        Self { first, second, share: best.share, global, pilot: NO_PILOT }
     }
 
     /// Returns the stages with these lines.
@@ -114,7 +96,7 @@ impl Split {
     }
 
     /// Returns a line about the split.
-    fn message(&self) -> String {
+    pub(crate) fn message(&self) -> String {
         let Self { first, second, share, global, pilot } = *self;
         let all = (first + second + global) as f64;
         let of_all = |lines: u64| percent(lines as f64 / all);
@@ -127,85 +109,10 @@ impl Split {
         };
         format!(
             "Solve: after a pilot of {} lines, {} of the lines in the first shot, {second}, {} global lines",
-            grouped(pilot),
+            grouped(pilot.lines),
             of_all(first),
             of_all(global)
         )
-    }
-}
-
-/// The pilot of a `Solve`.
-struct Pilot<'m> {
-    model: &'m Model,
-    domain: GlobalLines,
-    /// Lines of each shot, and global lines.
-    shot: u64,
-    global: u64,
-    seed: u64,
-}
-
-impl Run<'_> {
-    /// Traces the pilot of a `Solve` with this number of lines, and returns the split that follows.
-    pub(crate) fn split(&mut self, lines: u64) -> Result<Split, Error> {
-        let (model, focus) = (&self.prepared.model, self.prepared.focus);
-        let domain = DomainKind::Hull.lines_around(&model.scene, focus);
-        let per_crossing = lines as f64 / crossings_per_patch(model, &domain, lines);
-        let (crossings, most) = PILOT_CROSSINGS;
-        let pilot = Pilot {
-            model,
-            domain,
-            shot: (PILOT_SHOT * lines as f64).ceil() as u64,
-            global: (crossings * per_crossing).min(most * lines as f64).ceil() as u64,
-            seed: seed_of_repeat(self.head.report.seed, PILOT_REPEAT),
-        };
-        let traced = self.trials(&pilot);
-        let (trials, crossings) = agree(self.comm, traced)?;
-        let [per_line, each] = GLOBAL_TIME;
-        let needed = SHARED as f64 * CROSSINGS * per_crossing;
-        let split = Split::best(&trials, lines, per_line + each * crossings, needed.ceil() as u64);
-        let (shots, global) = (pilot.shot * SHARES.len() as u64, pilot.global * SHARES.len() as u64);
-        let split = Split { pilot: shots + global, ..split };
-        self.progress.note(&split.message());
-        Ok(split)
-    }
-
-    /// Traces the pilot. Returns its trials, and the number of surfaces that a global line crosses.
-    fn trials(&self, pilot: &Pilot<'_>) -> Result<(Vec<Trial>, f64), Error> {
-        let Pilot { model, ref domain, shot, global, seed } = *pilot;
-        let inside = &self.prepared.inside;
-        let of_shot = || {
-            let lines = LocalLines { count: shot, focus: self.prepared.focus };
-            ShotSettings::new(model, lines, seed)
-        };
-        let deviation = |solution: &Solution| Deviation::of(model, inside, solution);
-        let total = pilot.shot * SHARES.len() as u64 + pilot.global * SHARES.len() as u64;
-        let mut executor = self.executor_without_checkpoints();
-        executor.observer = Box::new(self.progress.part("Solve: pilot", total, &self.options.stop));
-        let first: Shot = executor.run::<FirstShot<'_>>(of_shot(), Start::Fresh(()))?.outcome;
-        let after_first = deviation(&first.solution(model));
-        let (mut trials, mut crossings) = (Vec::new(), 0.0);
-        for share in SHARES {
-            let (mut both, mut after_both) = (first.clone(), after_first);
-            if share > 0.0 {
-                let settings = of_shot().of_reflected(Some(share));
-                both = executor.run::<SecondShot<'_>>(settings, Start::Fresh(both))?.outcome;
-                after_both = deviation(&both.solution(model));
-            }
-            let settings = BatchSettings { model, domain: domain.clone(), lines: global, seed };
-            let all: Transported = executor.run::<Batches<'_>>(settings, Start::Fresh(both))?.outcome;
-            crossings = all.counts.crossings as f64 / all.counts.lines.max(1) as f64;
-            let after_all = deviation(&all.solution);
-            let of_lines = |lines: u64, after: &Deviation, before: &Deviation| {
-                lines as f64 * after.relative_variance_beyond(before, &after_all)
-            };
-            trials.push(Trial {
-                share,
-                first: of_lines(shot, &after_first, &Deviation::default()),
-                second: of_lines(shot, &after_both, &after_first),
-                global: of_lines(global, &after_all, &after_both),
-            });
-        }
-        Ok((trials, crossings))
     }
 }
 

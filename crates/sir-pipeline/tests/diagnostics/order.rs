@@ -303,6 +303,17 @@ fn what_cannot_be_repeated() {
 }
 
 #[test]
+fn solve_stands_alone() {
+    let load = r#"Load(path: "room.obj"),"#;
+    let solve = "Solve(lines: 10),";
+    insta::assert_snapshot!(stages(&[load, solve, "Multipath(lines: 10),"]), @"");
+    insta::assert_snapshot!(stages(&[load, solve, "Repeat(times: 2, stages: [FirstShot(lines: 10)]),"]), @"");
+    insta::assert_snapshot!(stages(&[load, solve, solve, "Subdivide(patches: 9),"]), @"");
+    insta::assert_snapshot!(stages(&[load, "Repeat(times: 2, stages: [Solve(lines: 10), Multipath(lines: 10)]),"]), @"");
+    insta::assert_snapshot!(stages(&[load, "SecondShot(lines: 10, share: 1.5),", solve]), @"");
+}
+
+#[test]
 fn repeats_out_of_place() {
     let repeat = "Repeat(times: 2, stages: [FirstShot(lines: 10)]),";
     let load = r#"Load(path: "room.obj"),"#;

@@ -11,6 +11,7 @@ use crate::batches::side_state::SideState;
 use crate::batches::sums::BatchSums;
 use crate::focus_sides::FocusSides;
 use crate::model::Model;
+use crate::power::Quanta;
 use crate::tallies::PatchTallies;
 
 /// A range of consecutive sides between two batches. All ranges together contain all sides, and may be processed
@@ -54,15 +55,20 @@ impl<'a> SideRange<'a> {
         for (triangle, sides) in self.sides() {
             for i in sides {
                 let side = SideId(i);
-                let reflectance = self.model.reflectance(triangle, side);
                 let (power, crossings) = self.tallies.take(side);
+                let state = &mut self.states[(i - self.first) as usize];
+                let in_focus = self.focus_sides.contains(side);
+                // Lines of a small batch meet few of many small patches.
+                if crossings == 0 && power == Quanta::ZERO {
+                    sums.unshot.add(state.unshot, in_focus);
+                    continue;
+                }
+                let reflectance = self.model.reflectance(triangle, side);
                 let sent = self.tallies.share(side).times(i64::from(crossings));
                 let reflected = power.scaled(reflectance);
-                let state = &mut self.states[(i - self.first) as usize];
                 state.brought += power;
                 state.unshot += reflected - sent;
                 state.crossings += u64::from(crossings);
-                let in_focus = self.focus_sides.contains(side);
                 sums.unshot.add(state.unshot, in_focus);
                 sums.sent.add(sent, in_focus);
                 sums.reflected.add(reflected, in_focus);

@@ -9,7 +9,7 @@ use crate::experiment::error::ExperimentError;
 use crate::experiment::lines::{Lines, fitted};
 use sir_pipeline::fingerprint::{self, hex};
 use sir_pipeline::plan::{
-    Action, DomainKind, FirstShot, Load, Multipath, Output, Pipeline, Save, SecondShot, Stage, Table,
+    Action, DomainKind, FirstShot, Load, Multipath, Output, Pipeline, Save, SecondShot, Solve, Stage, Table,
     Transport,
 };
 use sir_pipeline::run::{absolute, run_name};
@@ -50,12 +50,20 @@ impl Subject {
     /// Reads a pipeline.
     pub(crate) fn read(path: &Path, scale: f64) -> Result<Self, StudyError> {
         let pipeline = Pipeline::read(path)?;
+        // The lines of a `Solve` are divided as in the publication: 100 million local and 130 million global ones.
+        let local_share = |lines: u64| (lines as f64 / 2.3).round() as u64;
         let local = pipeline.flat_stages().find_map(|stage| match &stage.action {
             Action::FirstShot(FirstShot { lines }) => Some(*lines),
+            Action::Solve(Solve { lines }) => Some(local_share(*lines)),
             _ => None,
         });
         let multipath = pipeline.flat_stages().find_map(|stage| match &stage.action {
             Action::Multipath(multipath) => Some(multipath.clone()),
+            Action::Solve(Solve { lines }) => {
+                let (lines, transport, domain) =
+                    (lines - local_share(*lines), Transport::Batches, DomainKind::Hull);
+                Some(Multipath { lines, transport, domain })
+            }
             _ => None,
         });
         let (Some(local), Some(Multipath { lines: global, transport, domain })) = (local, multipath) else {
