@@ -110,6 +110,9 @@ pub struct StageReport {
 pub struct PilotReport {
     /// Number of its lines.
     pub lines: u64,
+    /// Result of the pilot, besides the numbers of lines of the stages: share of the reflected light that the second shot
+    /// carries; 0 if there is none.
+    pub share: f64,
     /// Its time, which is a part of that of the stage.
     pub time: Time,
 }

@@ -66,7 +66,7 @@ impl Run<'_> {
         let mut split = Split::best(&trials, lines, per_line + each * crossings, needed.ceil() as u64);
         let (shots, global) = (pilot.shot * SHARES.len() as u64, pilot.global * SHARES.len() as u64);
         let time = Time::of(watch.seconds());
-        split.pilot = PilotReport { lines: shots + global, time };
+        split.pilot = PilotReport { lines: shots + global, share: split.share(), time };
         self.progress.note(&split.message());
         Ok(split)
     }

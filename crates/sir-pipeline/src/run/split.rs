@@ -32,7 +32,7 @@ pub(crate) struct Split {
     pub(crate) pilot: PilotReport,
 }
 
-const NO_PILOT: PilotReport = PilotReport { lines: 0, time: Time::of(0.0) };
+const NO_PILOT: PilotReport = PilotReport { lines: 0, share: 0.0, time: Time::of(0.0) };
 
 /// What the pilot says of one share of the reflected light: the relative variances times the numbers of lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +81,11 @@ impl Split {
         let (global, second) = ((global as u64).max(1), second as u64);
         let first = lines.saturating_sub(global + second).max(1);
         Self { first, second, share: best.share, global, pilot: NO_PILOT }
+    }
+
+    /// Returns the share of the reflected light that the second shot carries.
+    pub(crate) fn share(&self) -> f64 {
+        if self.second > 0 { self.share } else { 0.0 }
     }
 
     /// Returns the stages with these lines.

@@ -78,7 +78,7 @@ fn impossible_orders() {
     2 | Load(path: "room.obj"),
       | ^^^^
       |
-      = help: add `FirstShot(lines: 1_000_000)` and `Multipath(lines: 1_000_000)`
+      = help: add `Solve(lines: 1_000_000)`
     "#);
 }
 
@@ -254,7 +254,7 @@ fn what_cannot_be_repeated() {
     3 | Repeat(times: 2, stages: []),
       |                          ^^
       |
-      = help: begin the `stages` of `Repeat` with `FirstShot(lines: 1_000_000)`
+      = help: write `stages: [Solve(lines: 1_000_000)]`
     ");
     insta::assert_snapshot!(repeat("times: 2, stages: [Multipath(lines: 9), FirstShot(lines: 9)]"), @r"
     error: `Multipath` before `FirstShot`: there is no light to distribute yet
@@ -306,11 +306,67 @@ fn what_cannot_be_repeated() {
 fn solve_stands_alone() {
     let load = r#"Load(path: "room.obj"),"#;
     let solve = "Solve(lines: 10),";
-    insta::assert_snapshot!(stages(&[load, solve, "Multipath(lines: 10),"]), @"");
-    insta::assert_snapshot!(stages(&[load, solve, "Repeat(times: 2, stages: [FirstShot(lines: 10)]),"]), @"");
-    insta::assert_snapshot!(stages(&[load, solve, solve, "Subdivide(patches: 9),"]), @"");
-    insta::assert_snapshot!(stages(&[load, "Repeat(times: 2, stages: [Solve(lines: 10), Multipath(lines: 10)]),"]), @"");
-    insta::assert_snapshot!(stages(&[load, "SecondShot(lines: 10, share: 1.5),", solve]), @"");
+    insta::assert_snapshot!(stages(&[load, solve, "Multipath(lines: 10),"]), @r#"
+    error: `Multipath` beside the `Solve` in line 3, which computes all light
+     --> x.ron:4:1
+      |
+    4 | Multipath(lines: 10),
+      | ^^^^^^^^^
+      |
+      = help: leave out `Multipath` or `Solve`
+    "#);
+    insta::assert_snapshot!(stages(&[load, solve, "Repeat(times: 2, stages: [FirstShot(lines: 10)]),"]), @r#"
+    error: `Repeat` beside the `Solve` in line 3, which computes all light
+     --> x.ron:4:1
+      |
+    4 | Repeat(times: 2, stages: [FirstShot(lines: 10)]),
+      | ^^^^^^
+      |
+      = help: leave out `Repeat` or `Solve`
+    "#);
+    insta::assert_snapshot!(stages(&[load, solve, solve, "Subdivide(patches: 9),"]), @r#"
+    error: a second `Solve`; the first is in line 3
+     --> x.ron:4:1
+      |
+    4 | Solve(lines: 10),
+      | ^^^^^
+      |
+      = help: keep one, with all the lines
+
+    error: `Subdivide` after `Solve`: light has already been computed on the existing patches
+     --> x.ron:5:1
+      |
+    5 | Subdivide(patches: 9),
+      | ^^^^^^^^^
+      |
+      = help: move `Subdivide` to before `Solve`
+    "#);
+    insta::assert_snapshot!(stages(&[load, "Repeat(times: 2, stages: [Solve(lines: 10), Multipath(lines: 10)]),"]), @r#"
+    error: `Multipath` after `Solve`
+     --> x.ron:3:45
+      |
+    3 | Repeat(times: 2, stages: [Solve(lines: 10), Multipath(lines: 10)]),
+      |                                             ^^^^^^^^^
+      |
+      = help: `Solve` computes all light: leave out the other stages, or `Solve`
+    "#);
+    insta::assert_snapshot!(stages(&[load, "SecondShot(lines: 10, share: 1.5),", solve]), @r#"
+    error: `SecondShot` beside the `Solve` in line 4, which computes all light
+     --> x.ron:3:1
+      |
+    3 | SecondShot(lines: 10, share: 1.5),
+      | ^^^^^^^^^^
+      |
+      = help: leave out `SecondShot` or `Solve`
+
+    error: `share` must be a number above 0, at most 1, but it is the number 1.5
+     --> x.ron:3:30
+      |
+    3 | SecondShot(lines: 10, share: 1.5),
+      |                              ^^^
+      |
+      = help: write for instance `share: 1`
+    "#);
 }
 
 #[test]
