@@ -214,10 +214,13 @@ impl Run<'_> {
                         report.stages.push(part);
                     }
                     report.light = report.stages.last_mut().and_then(|stage| stage.light.take());
-                    report.repeats = Some(repeating.count);
                     report.time = repeating.time();
                     report.pilot = self.head.split.map(|split| split.pilot);
                     report.time.seconds += report.pilot.map_or(0.0, |pilot| pilot.time.seconds);
+                    let is_repeat = matches!(stage.action, Action::Repeat(_));
+                    if is_repeat || !repeating.is_single() {
+                        report.repeats = Some(repeating.count);
+                    }
                     if let Action::Repeat(repeat) = &stage.action {
                         self.warn(missed_target_warning(repeat, &report));
                     }

@@ -158,13 +158,13 @@ mod tests {
     #[test]
     fn derived_pipelines_are_valid_anywhere() {
         let subject = Subject::read(Path::new(BOX), 0.01).unwrap();
-        assert_eq!(subject.lines, Lines { local: 100_000, global: 200_000 });
+        assert_eq!(subject.lines, Lines { local: 130_435, global: 169_565 });
         let changes = Changes { direct: true, pictures: true, seed: 9, ..subject.changes() };
         let folder = tempfile::tempdir().unwrap();
         let derived = Pipeline::parse(&subject.derived(&changes), &folder.path().join("x.ron")).unwrap();
         assert_eq!(derived.seed, 9);
         assert_eq!(derived.stages[1].action, subject.pipeline.stages[1].action);
-        assert_eq!(derived.stages[2].action, Action::FirstShot(FirstShot { lines: 100_000 }));
+        assert_eq!(derived.stages[2].action, Action::FirstShot(FirstShot { lines: 130_435 }));
         let names: Vec<_> = derived.outputs().map(|o| o.path().display().to_string()).collect();
         assert_eq!(names, ["direct.npy", "patches.npy", "view.png", "view.exr"]);
     }
