@@ -61,8 +61,6 @@ struct Subject {
 /// A finished run.
 struct Outcome {
     table: Table,
-    /// Relative error that the run states, in the green band.
-    stated: f64,
     /// Time of the stages with light [s], and of the whole run.
     seconds: [f64; 2],
 }
@@ -81,25 +79,25 @@ impl Subject {
         let report = run_pipeline(&pipeline, &options).unwrap().report;
         let whole = start.elapsed().as_secs_f64();
         let light = report.stages.iter().filter(|stage| stage.light.is_some() || stage.lines.is_some());
-        let stated = report.stages.iter().rev().find_map(|stage| stage.light.as_ref()).unwrap();
         // The time of each stage, also of those in a `Solve`, whose pilot counts.
         let seconds = light.map(|stage| stage.time.seconds).sum();
         let table = Table::read(&out.join("patches.npy")).unwrap();
-        Outcome { table, stated: stated.relative_error[1], seconds: [seconds, whole] }
+        Outcome { table, seconds: [seconds, whole] }
     }
 }
 
-/// Returns the root mean square of the difference of the radiosity in the green band, over the mean of the second table,
-/// weighted by area.
-fn difference(a: &Table, b: &Table) -> f64 {
-    let (mut area, mut sum, mut squares) = (0.0, 0.0, 0.0);
+/// Returns the root mean squares of the difference of the radiosity in the green band and of the errors that the first table
+/// states, over the mean of the second table, weighted by area.
+fn errors(a: &Table, b: &Table) -> [f64; 2] {
+    let (mut area, mut sum, mut squares) = (0.0, 0.0, [0.0; 2]);
     for (a, b) in a.rows.iter().zip(&b.rows) {
         let difference = a.radiosity.y - b.radiosity.y;
         area += b.area;
         sum += b.area * b.radiosity.y;
-        squares += b.area * difference * difference;
+        squares[0] += b.area * difference * difference;
+        squares[1] += b.area * a.error.y * a.error.y;
     }
-    (squares * area).sqrt() / sum
+    squares.map(|squares| (squares * area).sqrt() / sum)
 }
 
 fn main() {
@@ -140,11 +138,10 @@ fn measure(name: &str, subject: &Subject, fewest: u64, steps: u32) {
         let mut curve = Vec::new();
         for step in 0..steps.max(1) {
             let lines = fewest * FACTOR.pow(step);
-            let Outcome { table, stated, seconds: [light, whole] } = subject.run(points, &stages(lines), 1);
-            let error = 100.0 * difference(&table, &reference);
+            let Outcome { table, seconds: [light, whole] } = subject.run(points, &stages(lines), 1);
+            let [error, stated] = errors(&table, &reference).map(|error| 100.0 * error);
             println!(
-                "{name:<14} {way:<21} {lines:>12} {error:>8.2} {:>8.2} {light:>9.2} {whole:>9.2} {:>12.1}",
-                100.0 * stated,
+                "{name:<14} {way:<21} {lines:>12} {error:>8.2} {stated:>8.2} {light:>9.2} {whole:>9.2} {:>12.1}",
                 error * error * light
             );
             curve.push((light, error));
