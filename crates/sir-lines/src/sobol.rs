@@ -9,7 +9,7 @@
 use crate::point::{Numbers, unit};
 use crate::stream::{Purpose, Stream, Streams};
 
-/// Number of coordinates with even points. Further ones are independent.
+/// Number of coordinates of a point. Further numbers of a line are independent.
 const DIMENSIONS: usize = 4;
 
 /// Number of binary digits of an index, and of a coordinate.

@@ -3,6 +3,8 @@
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
+use sir_radiosity::Points;
+
 use crate::error::Error;
 use crate::plan::save::{Output, Save};
 use crate::plan::sensors::Place;
@@ -15,7 +17,6 @@ use crate::text::record::{Body as _, Record as _, record};
 use crate::text::ron_tree;
 use crate::text::ron_tree::Value;
 use crate::units::Units;
-use sir_radiosity::Points;
 
 /// Maximum size of a pipeline file \[bytes\]: enough for thousands of outputs.
 const MAX_BYTES: u64 = 1 << 18;
