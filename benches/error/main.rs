@@ -51,6 +51,9 @@ fn solve(lines: u64) -> String {
     format!("Solve(lines: {lines})")
 }
 
+/// Name, color, and points of a curve: seconds and error.
+type Curve = (&'static str, RGBColor, Vec<(f64, f64)>);
+
 /// A scene, and where its runs are written.
 struct Subject {
     scene: PathBuf,
@@ -132,7 +135,7 @@ fn main() {
 fn measure(name: &str, subject: &Subject, fewest: u64, steps: u32) {
     let most = fewest * FACTOR.pow(steps.max(1) - 1);
     let reference = subject.run("Sobol", &solve(REFERENCE * most), 1_000_003).table;
-    let mut curves: Vec<(&str, RGBColor, Vec<(f64, f64)>)> = Vec::new();
+    let mut curves: Vec<Curve> = Vec::new();
     for (way, stages, color) in WAYS {
         let points = if way == "Solve" { "Sobol" } else { "Random" };
         let mut curve = Vec::new();
@@ -156,7 +159,7 @@ fn measure(name: &str, subject: &Subject, fewest: u64, steps: u32) {
 }
 
 /// Draws the errors over the seconds, both logarithmic.
-fn draw(path: &Path, title: &str, curves: &[(&str, RGBColor, Vec<(f64, f64)>)]) {
+fn draw(path: &Path, title: &str, curves: &[Curve]) {
     let points = || curves.iter().flat_map(|(_, _, points)| points);
     let range = |of: fn(&(f64, f64)) -> f64| {
         let values = || points().map(of);
