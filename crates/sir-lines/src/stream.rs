@@ -85,24 +85,22 @@ pub fn seed_of_repeat(seed: u64, repeat: u64) -> u64 {
 pub struct Stream(SplitMix64);
 
 impl Stream {
+    /// Draws 64 random bits.
+    #[inline]
+    pub(crate) fn word(&mut self) -> u64 {
+        self.0.next_u64()
+    }
+
     /// Draws a uniform number in `[0, 1)`: a multiple of 2⁻⁵³.
     #[inline]
     pub fn unit(&mut self) -> f64 {
-        unit(self.0.next_u64())
+        unit(self.word())
     }
 
     /// Draws a uniform point of the unit cube `[0, 1)^K`, coordinate by coordinate, as [`unit`](Self::unit) does.
     #[inline]
     pub fn point<const K: usize>(&mut self) -> [f64; K] {
         random_point(&mut self.0)
-    }
-}
-
-impl Stream {
-    /// Draws 64 random bits.
-    #[inline]
-    pub(crate) fn word(&mut self) -> u64 {
-        self.0.next_u64()
     }
 }
 

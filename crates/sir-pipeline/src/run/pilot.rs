@@ -43,6 +43,13 @@ struct Pilot<'m> {
     seed: u64,
 }
 
+impl Pilot<'_> {
+    /// Returns the number of all lines: a first shot, a second shot for each share above zero, and global lines for each.
+    fn lines(&self) -> u64 {
+        (self.shot + self.global) * SHARES.len() as u64
+    }
+}
+
 impl Run<'_> {
     /// Traces the pilot of a `Solve` with this number of lines, which this number of repeats share, and returns the split
     /// that follows.
@@ -64,9 +71,8 @@ impl Run<'_> {
         let [per_line, each] = GLOBAL_TIME;
         let needed = repeats as f64 * CROSSINGS * per_crossing;
         let mut split = Split::best(&trials, lines, per_line + each * crossings, needed.ceil() as u64);
-        let (shots, global) = (pilot.shot * SHARES.len() as u64, pilot.global * SHARES.len() as u64);
         let time = Time::of(watch.seconds());
-        split.pilot = PilotReport { lines: shots + global, share: split.share(), time };
+        split.pilot = PilotReport { lines: pilot.lines(), share: split.share(), time };
         self.progress.note(&split.message());
         Ok(split)
     }
@@ -80,9 +86,8 @@ impl Run<'_> {
             ShotSettings::new(model, lines, seed)
         };
         let deviation = |solution: &Solution| Deviation::of(model, inside, solution);
-        let total = pilot.shot * SHARES.len() as u64 + pilot.global * SHARES.len() as u64;
         let mut executor = self.executor_without_checkpoints();
-        executor.observer = Box::new(self.progress.part("Solve: pilot", total, &self.options.stop));
+        executor.observer = Box::new(self.progress.part("Solve: pilot", pilot.lines(), &self.options.stop));
         let first: Shot = executor.run::<FirstShot<'_>>(of_shot(), Start::Fresh(()))?.outcome;
         let after_first = deviation(&first.solution(model));
         let (mut trials, mut crossings) = (Vec::new(), 0.0);

@@ -17,7 +17,7 @@ use crate::error::Error;
 use crate::format::{duration, grouped};
 use crate::plan::{Action, Pipeline, Repeat, Sensors, Until};
 use crate::prepare::prepared::Prepared;
-use crate::progress::PAUSE;
+use crate::progress::{PAUSE, StageProgress};
 use crate::ranks::agree;
 use crate::report::lines::Facts;
 use crate::report::result::{
@@ -112,14 +112,7 @@ impl Run<'_> {
                 let (lines, stage) = (repeating.lines(action, repeat), action.name());
                 self.begin(place.0, (repeat, place.1), checkpoints);
                 let mut executor = self.executor(checkpoints);
-                executor.observer = Box::new(match is_single {
-                    true => self.progress.stage(stage, lines, &self.options.stop),
-                    false => self.progress.part(
-                        &format!("{}: {stage}", repeating.title()),
-                        lines,
-                        &self.options.stop,
-                    ),
-                });
+                executor.observer = Box::new(self.observer(&repeating, stage, lines));
                 executor.prior = Some(Box::new(|visitor| repeating.visit(visitor)));
                 let done = lighting.run(action, lines, seed, &mut executor, saved.take());
                 drop(executor);
@@ -147,6 +140,16 @@ impl Run<'_> {
         self.report(first, &mut repeating)
     }
 
+    /// Returns the observer of a stage with `total` lines: a stage of its own, or a part of a repeat.
+    fn observer(&self, repeating: &Repeating<'_>, stage: &str, total: u64) -> StageProgress {
+        match repeating.is_single() {
+            true => self.progress.stage(stage, total, &self.options.stop),
+            false => {
+                self.progress.part(&format!("{}: {stage}", repeating.title()), total, &self.options.stop)
+            }
+        }
+    }
+
     /// Measures at the sensors of a step in one repeat.
     fn measure(
         &mut self,
@@ -163,12 +166,7 @@ impl Run<'_> {
         let settings = sensors.settings().shared(repeating.share_rays);
         let mut executor = self.executor_without_checkpoints();
         let total = settings.rays * layout.sensors.len() as u64;
-        executor.observer = Box::new(match repeating.is_single() {
-            true => self.progress.stage("Sensors", total, &self.options.stop),
-            false => {
-                self.progress.part(&format!("{}: Sensors", repeating.title()), total, &self.options.stop)
-            }
-        });
+        executor.observer = Box::new(self.observer(repeating, "Sensors", total));
         // Each stage `Sensors` has independent random numbers.
         let seed = seed.wrapping_add((number as u64) << 48);
         let model = &self.prepared.model;
@@ -263,18 +261,11 @@ impl<'a> Repeating<'a> {
         let mut places = Vec::new();
         let mut repeat = None;
         for (number, stage) in pipeline.stages.iter().enumerate().skip(first) {
-            match &stage.action {
-                Action::Repeat(stage) => {
-                    repeat = Some(stage);
-                    let actions = stage.stages.iter().map(|stage| &stage.action);
-                    let actions = actions.flat_map(|action| parts_of(action, of_solve)).enumerate();
-                    places.extend(actions.map(|(part, action)| ((number, part), action)));
-                }
-                action => {
-                    let actions = parts_of(action, of_solve).iter().enumerate();
-                    places.extend(actions.map(|(part, action)| ((number, part), action)));
-                }
+            if let Action::Repeat(stage) = &stage.action {
+                repeat = Some(stage);
             }
+            let actions = stage.flat().flat_map(|stage| parts_of(&stage.action, of_solve)).enumerate();
+            places.extend(actions.map(|(part, action)| ((number, part), action)));
         }
         let (sharing, until, at_most) = match repeat {
             Some(repeat) => (None, repeat.until, repeat.at_most),
