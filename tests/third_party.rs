@@ -86,7 +86,8 @@ fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
         let settings = ShotSettings::new(model, local, seed);
         let shot = executor.run::<FirstShot<'_>>(settings, Start::Fresh(())).unwrap().outcome;
         let settings = BatchSettings::new(model, domain.clone(), global, seed);
-        let solution = executor.run::<Batches<'_>>(settings, Start::Fresh(shot)).unwrap().outcome.solution;
+        let solution =
+            executor.run::<Batches<'_>>(settings, Start::Fresh(shot)).unwrap().outcome.solution(model);
         let mut radiosity = vec![Rgb::ZERO; model.scene.triangles().len()];
         model.mesh.for_each_side(|t, _, side, id| {
             if side == Side::Front {

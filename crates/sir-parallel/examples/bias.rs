@@ -15,7 +15,8 @@ use sir_lines::Domain;
 use sir_mesh::Subdivision;
 use sir_parallel::{Executor, Start};
 use sir_radiosity::{
-    BatchSettings, Batches, FirstShot, Model, ReplicaSettings, Replicas, Shot, ShotSettings, Transported,
+    BatchSettings, Batches, FirstShot, Model, OneWorker, ReplicaSettings, Replicas, Shot, ShotSettings,
+    Transported,
 };
 
 /// Expected crossings of a patch by all lines together.
@@ -83,7 +84,7 @@ fn measure(model: &Model, reflectance: f64, workers: usize) -> Result<Row, Box<d
     let settings = BatchSettings::new(model, domain, lines, 1);
     let frozen = executor.run::<Batches<'_>>(settings, Start::Fresh(shot.clone()))?.outcome;
     let runs = [&published, &tail, &frozen];
-    let bias = runs.map(|run| bias(&shot, run, reflectance));
+    let bias = runs.map(|run| bias(model, &shot, run, reflectance));
     let noise = runs.map(|run| noise(model, &shot, run));
     Ok(Row { reflectance, workers, bias, noise })
 }
@@ -148,22 +149,25 @@ fn sphere(reflectance: f64) -> Result<Model, Box<dyn std::error::Error>> {
 }
 
 /// Returns the power that each patch received after the first shot, in quanta.
-fn indirect<'a>(shot: &'a Shot, run: &'a Transported) -> impl Iterator<Item = f64> + 'a {
-    let powers = run.received.power.iter().zip(&shot.received.power);
-    powers.map(|(all, direct)| (all.0[0] - direct.0[0]) as f64)
+fn indirect(model: &Model, shot: &Shot, run: &Transported) -> Vec<f64> {
+    let all = run.received(model, &OneWorker);
+    let powers = all.power.iter().zip(&shot.received.power);
+    powers.map(|(all, direct)| (all.0[0] - direct.0[0]) as f64).collect()
 }
 
 /// Returns the relative error of the total power received after the first shot.
-fn bias(shot: &Shot, run: &Transported, reflectance: f64) -> f64 {
-    indirect(shot, run).sum::<f64>() / (shot.balance.unshot.0[0] as f64 / (1.0 - reflectance)) - 1.0
+fn bias(model: &Model, shot: &Shot, run: &Transported, reflectance: f64) -> f64 {
+    indirect(model, shot, run).iter().sum::<f64>() / (shot.balance.unshot.0[0] as f64 / (1.0 - reflectance))
+        - 1.0
 }
 
 /// Returns the root mean square deviation of the power received per area, relative to its mean.
 fn noise(model: &Model, shot: &Shot, run: &Transported) -> f64 {
     let mut areas = Vec::new();
     model.mesh.for_each_side(|triangle, _, _, _| areas.push(model.mesh.patch_area(triangle)));
-    let mean = indirect(shot, run).sum::<f64>() / areas.iter().sum::<f64>();
-    let square = |(power, area): (f64, &f64)| (power / area / mean - 1.0).powi(2);
-    let sum: f64 = indirect(shot, run).zip(&areas).map(square).sum();
+    let powers = indirect(model, shot, run);
+    let mean = powers.iter().sum::<f64>() / areas.iter().sum::<f64>();
+    let square = |(power, area): (&f64, &f64)| (power / area / mean - 1.0).powi(2);
+    let sum: f64 = powers.iter().zip(&areas).map(square).sum();
     (sum / areas.len() as f64).sqrt()
 }

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut executor = Executor::default().watched_by(Tenths(0));
     let settings = BatchSettings::new(&model, Domain::hull(model.scene.vertices()), lines, seed);
     let run = executor.run::<Batches<'_>>(settings, Start::Fresh(shot))?;
-    let mean = run.outcome.solution.irradiance.iter().sum::<Rgb>() / model.mesh.side_count() as f64;
+    let mean = run.outcome.solution(&model).irradiance.iter().sum::<Rgb>() / model.mesh.side_count() as f64;
     println!(
         "mean irradiance {mean:.4}, exact [2, 5, 10], in {:.2} s and {} batches",
         run.time.total.as_secs_f64(),

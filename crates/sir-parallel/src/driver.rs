@@ -140,7 +140,7 @@ impl<S: Stage> State<S> {
             self.stage.visit_end(visitor);
         });
         let batches = self.stage.batches();
-        let outcome = self.stage.finish(self.totals)?;
+        let outcome = self.stage.finish(self.totals, &slices.threads())?;
         Ok(StageRun { outcome, time: slices.time(), batches })
     }
 }

@@ -80,4 +80,5 @@ pub use error::{CheckpointError, RunError};
 pub use executor::{Executor, Prior, cores};
 pub use observer::{NoProgress, Observer};
 pub use solver::{SideLight, Solved, Solver, SolverError};
+pub use threads::Threads;
 pub use time::StageTime;

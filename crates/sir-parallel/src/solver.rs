@@ -13,6 +13,7 @@ use thiserror::Error;
 use crate::driver::Start;
 use crate::error::RunError;
 use crate::executor::{Executor, cores};
+use crate::threads::Threads;
 
 /// Solver for the light in a scene: a first shot, an optional second shot, and multipath in batches. By default it uses
 /// all cores of this machine.
@@ -191,7 +192,8 @@ impl Solver {
             let domain = domain.unwrap_or_else(|| Domain::hull(model.scene.vertices()));
             let settings = BatchSettings::new(&model, domain, global, seed);
             let all = executor.run::<Batches<'_>>(settings, Start::Fresh(shot))?.outcome;
-            (all.solution, all.received)
+            let received = all.received(&model, &Threads(executor.threads));
+            (Solution::new(&model, &received, all.unit), received)
         };
         Ok(Solved { model, solution, received })
     }

@@ -13,9 +13,9 @@ pub(crate) const BLOCK: u64 = 1 << 10;
 /// Smallest number of lines in a block.
 const SMALLEST_BLOCK: u64 = 16;
 
-/// Number of threads. They are started anew for each task.
+/// A number of threads of this process. They are started anew for each task.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Threads(pub(crate) NonZeroUsize);
+pub struct Threads(pub NonZeroUsize);
 
 impl Workers for Threads {
     fn count(&self) -> usize {

@@ -27,10 +27,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let power: f64 = sources(&model.scene, &model.mesh).iter().map(|s| s.power.x).sum();
     let exact = power / (model.scene.total_area() * (1.0 - reflectance));
-    let sides = model.mesh.side_count() as f64;
-    let mean = done.solution.irradiance.iter().map(|e| e.x).sum::<f64>() / sides;
-    let square = done.solution.irradiance.iter().map(|e| (e.x - exact).powi(2)).sum::<f64>() / sides;
-    let error = done.solution.error.iter().map(|e| e.x * e.x).sum::<f64>() / sides;
+    let (sides, solution) = (model.mesh.side_count() as f64, done.solution(&model));
+    let mean = solution.irradiance.iter().map(|e| e.x).sum::<f64>() / sides;
+    let square = solution.irradiance.iter().map(|e| (e.x - exact).powi(2)).sum::<f64>() / sides;
+    let error = solution.error.iter().map(|e| e.x * e.x).sum::<f64>() / sides;
     println!("irradiance: mean {mean:.3} W/m², exact {exact:.3} W/m²");
     println!(
         "rms deviation of a patch: {:.2} %, its standard error: {:.2} %",

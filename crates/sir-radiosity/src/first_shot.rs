@@ -13,6 +13,7 @@ use crate::received::Received;
 use crate::shot::ShotSettings;
 use crate::sources::{FocusedSources, total_power};
 use crate::visitor::Visitor;
+use crate::workers::Workers;
 
 /// The first shot: lines from all light sources, in proportion to their power.
 pub type FirstShot<'m> = LocalShot<'m, ()>;
@@ -22,7 +23,11 @@ impl ShotInput for () {
     const KIND: u64 = 1;
     const PURPOSE: Purpose = Purpose::FIRST_SHOT;
 
-    fn sources(&self, settings: &ShotSettings<'_>) -> Result<ShotSources, SolveError> {
+    fn sources(
+        &self,
+        settings: &ShotSettings<'_>,
+        _workers: &dyn Workers,
+    ) -> Result<ShotSources, SolveError> {
         let ShotSettings { model, lines, .. } = settings;
         let sources = FocusedSources::new(model, lines.focus.as_ref(), lines.count);
         let total = total_power(&sources.sources)?;

@@ -42,7 +42,7 @@
 //! let (seed, lines) = (1, 100_000);
 //! let shot = run_stage::<FirstShot>(ShotSettings::new(&model, lines, seed), ())?;
 //! let settings = BatchSettings::new(&model, Domain::hull(model.scene.vertices()), lines, seed);
-//! let solution = run_stage::<Batches>(settings, shot)?.solution;
+//! let solution = run_stage::<Batches>(settings, shot)?.solution(&model);
 //!
 //! model.mesh.for_each_side(|triangle, _, _, side| {
 //!     let radiosity = solution.radiosity(&model, triangle, Side::Front, side);
@@ -81,6 +81,7 @@ mod totals;
 mod transported;
 mod view_factors;
 mod visitor;
+mod workers;
 
 pub use batches::{BatchSettings, Batches, crossings_per_patch};
 pub use build_accel::build_accel;
@@ -105,7 +106,7 @@ pub use sensors::{
 pub use shot::{Points, Shot, ShotSettings};
 pub use solution::Solution;
 pub use sources::{Source, emits, sources, total_power};
-pub use stage::{AnyOrder, Chain, Job, OneWorker, Stage, Workers, chain_units, run_stage, share};
+pub use stage::{AnyOrder, Chain, Stage, chain_units, run_stage, share};
 pub use totals::{Balance, Counts, StageTotals};
 pub use transported::{Transported, Walked};
 pub use view_factors::{
@@ -113,3 +114,4 @@ pub use view_factors::{
     ViewFactorSettings, ViewFactorTask, ViewFactors,
 };
 pub use visitor::Visitor;
+pub use workers::{Job, OneWorker, Workers};

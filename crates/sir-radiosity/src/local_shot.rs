@@ -13,10 +13,11 @@ use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
 use crate::shot::{Points, Shot, ShotSettings};
 use crate::sources::{FocusedSources, Source};
-use crate::stage::{AnyOrder, Stage, Workers};
+use crate::stage::{AnyOrder, Stage};
 use crate::tallies::{Counters, HEADROOM, PatchTallies, SquareUnit};
 use crate::totals::StageTotals;
 use crate::visitor::Visitor;
+use crate::workers::{BLOCK, Workers, map_sides};
 
 /// Number of rays that are generated at a time.
 const RAYS: usize = 1024;
@@ -62,7 +63,7 @@ pub(crate) trait ShotInput: Sync + Sized {
     /// # Errors
     ///
     /// If there is no light.
-    fn sources(&self, settings: &ShotSettings<'_>) -> Result<ShotSources, SolveError>;
+    fn sources(&self, settings: &ShotSettings<'_>, workers: &dyn Workers) -> Result<ShotSources, SolveError>;
 
     /// Visits the input.
     fn visit(&mut self, visitor: &mut dyn Visitor);
@@ -120,7 +121,7 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
     /// Distributes lines among sources in proportion to their power, so that all lines carry the same power; with a
     /// focus, all lines of sources in it, and all others. There are no lines if there are no sources.
     fn begin(settings: Self::Settings, input: I, workers: &dyn Workers) -> Result<Self, SolveError> {
-        let ShotSources { sources, sides, unit } = input.sources(&settings)?;
+        let ShotSources { sources, sides, unit } = input.sources(&settings, workers)?;
         let ShotSettings { model, lines, seed, points, .. } = settings;
         let weights = sources.weights();
         let FocusedSources { sources, density, .. } = sources;
@@ -224,24 +225,33 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
     }
 
     /// Adds what the lines have brought and what their sources have sent to the input.
-    fn finish(self, totals: StageTotals) -> Result<Shot, SolveError> {
+    fn finish(self, totals: StageTotals, workers: &dyn Workers) -> Result<Shot, SolveError> {
         let Self { input, model, sides, per_line, allocation, unit, tallies, .. } = self;
         let (mut received, mut sent) = input.into_power(model);
         let StageTotals { mut balance, counts } = totals;
         let lines = counts.lines.max(1) as f64;
-        model.mesh.for_each_side(|triangle, _, _, side| {
-            let power = tallies.power(side);
-            let reflected = power.scaled(model.reflectance(triangle, side));
-            balance.unshot += reflected;
-            balance.absorbed += power - reflected;
-            received.power[side.index()] += power;
-            // The number of lines is fixed, so the variance of a sum is binomial: Σw² − (Σw)²/N.
-            let (squares, variance) = (tallies.squares(side), &mut received.variance[side.index()]);
-            for (k, variance) in variance.iter_mut().enumerate() {
-                let power = power.0[k] as f64;
-                *variance += (squares[k] - power * power / lines).max(0.0) as f32;
+        let blocks = received.power.chunks_mut(BLOCK).zip(received.variance.chunks_mut(BLOCK));
+        let sums = map_sides(workers, &model.mesh, blocks, |sides, (powers, variances)| {
+            let (mut unshot, mut absorbed) = (Quanta::ZERO, Quanta::ZERO);
+            for (((triangle, side), sum), variance) in sides.iter().zip(powers).zip(variances) {
+                let power = tallies.power(side);
+                let reflected = power.scaled(model.reflectance(triangle, side));
+                unshot += reflected;
+                absorbed += power - reflected;
+                *sum += power;
+                // The number of lines is fixed, so the variance of a sum is binomial: Σw² − (Σw)²/N.
+                let squares = tallies.squares(side);
+                for (k, variance) in variance.iter_mut().enumerate() {
+                    let power = power.0[k] as f64;
+                    *variance += (squares[k] - power * power / lines).max(0.0) as f32;
+                }
             }
+            (unshot, absorbed)
         });
+        for (unshot, absorbed) in sums {
+            balance.unshot += unshot;
+            balance.absorbed += absorbed;
+        }
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: I::NAME });
         }

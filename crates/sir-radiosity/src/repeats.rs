@@ -13,7 +13,7 @@ use std::ops::AddAssign;
 use sir_lines::GlobalLines;
 use sir_mesh::SideId;
 
-use crate::counted::{Counted, common_scale, ratio};
+use crate::counted::{Counted, CountedPower, common_scale, ratio};
 use crate::focus_sides::FocusSides;
 use crate::model::Model;
 use crate::power::Quanta;
@@ -22,6 +22,7 @@ use crate::totals::{Balance, Counts};
 use crate::transported::Walked;
 use crate::visitor::Visitor;
 use crate::visitor::{from_word, to_word, visit_counts, visit_floats, visit_slice};
+use crate::workers::{BLOCK, Workers, map_sides};
 
 /// Smallest number of repeats for which errors are computed from their spread.
 pub const MIN_REPEATS: u64 = 8;
@@ -65,7 +66,7 @@ impl QuantaSum {
 pub struct Repeats {
     count: u64,
     sides: Vec<Sums>,
-    /// Sums of the variances that repeats state \[quanta²\], while they are too few for a spread.
+    /// Sums of the variances that repeats state \[quanta²\], while they are too few for a spread; empty if not needed.
     stated: Vec<[f32; 3]>,
     /// Domain of the lines that are counted, and their number in all repeats.
     lines: Option<(GlobalLines, u64)>,
@@ -89,6 +90,29 @@ struct Sums {
 }
 
 impl Sums {
+    /// Adds a repeat after `n` others.
+    fn add(&mut self, n: f64, power: Quanta, brought: CountedPower) {
+        let (power, crossings) = (power + brought.power, brought.crossings as f64);
+        for (sum, brought) in self.brought.iter_mut().zip(brought.power.0) {
+            *sum = (f64::from(*sum) + brought as f64) as f32;
+        }
+        if n > 0.0 {
+            // Welford (1962): deviations from the previous means.
+            let weight = n / (n + 1.0);
+            let of_crossings = crossings - f64::from(self.crossings) / n;
+            let square = of_crossings * of_crossings * weight;
+            self.crossing_squares = (f64::from(self.crossing_squares) + square) as f32;
+            for band in 0..3 {
+                let deviation = power.0[band] as f64 - self.power[band] / n;
+                let (square, product) = (&mut self.squares[band], &mut self.products[band]);
+                *square = (f64::from(*square) + deviation * deviation * weight) as f32;
+                *product = (f64::from(*product) + deviation * of_crossings * weight) as f32;
+            }
+        }
+        self.power.iter_mut().zip(power.0).for_each(|(sum, power)| *sum += power as f64);
+        self.crossings = (f64::from(self.crossings) + crossings) as f32;
+    }
+
     /// Returns the mean power of a crossing.
     fn per_crossing(&self, band: usize) -> f64 {
         if self.crossings > 0.0 { f64::from(self.brought[band]) / f64::from(self.crossings) } else { 0.0 }
@@ -119,6 +143,13 @@ impl Repeats {
         Self { count: 0, sides: vec![Sums::default(); sides], stated: vec![[0.0; 3]; sides], lines: None }
     }
 
+    /// Returns the sums over no repeats, of which there will be [`MIN_REPEATS`] at least. The errors that single repeats
+    /// state are not needed then. The errors of fewer are infinite.
+    #[must_use]
+    pub fn of_many(sides: usize) -> Self {
+        Self { stated: Vec::new(), ..Self::new(sides) }
+    }
+
     /// Returns the number of repeats so far.
     #[must_use]
     pub fn count(&self) -> u64 {
@@ -132,67 +163,57 @@ impl Repeats {
         self.count >= MIN_REPEATS
     }
 
-    /// Adds a repeat, and what its lines have brought if they were counted. Repeats must be added in the order of their
-    /// numbers, because sums are rounded.
+    /// Adds a repeat: the power that sides have received, and what counted lines have brought besides. Repeats must be
+    /// added in the order of their numbers, because sums are rounded.
     pub fn add(
         &mut self,
         model: &Model,
-        in_focus: &FocusSides,
         received: &Received,
         counted: Option<&Counted>,
+        workers: &dyn Workers,
     ) {
         let n = self.count as f64;
-        let Self { sides, lines, .. } = self;
-        model.mesh.for_each_side(|triangle, _, _, side| {
-            let (sums, mut power) = (&mut sides[side.index()], received.power[side.index()]);
-            let mut crossings = 0.0;
-            if let Some(counted) = counted {
-                let brought = counted.sides[side.index()];
-                power = power - counted.estimate(model, in_focus, triangle, side) + brought.power;
-                crossings = brought.crossings as f64;
-                for (sum, brought) in sums.brought.iter_mut().zip(brought.power.0) {
-                    *sum = (f64::from(*sum) + brought as f64) as f32;
-                }
+        map_sides(workers, &model.mesh, self.sides.chunks_mut(BLOCK), |sides, sums| {
+            for ((_, side), sums) in sides.iter().zip(sums) {
+                let brought = counted.map(|counted| counted.sides[side.index()]);
+                sums.add(n, received.power[side.index()], brought.unwrap_or_default());
             }
-            if n > 0.0 {
-                // Welford (1962): deviations from the previous means.
-                let weight = n / (n + 1.0);
-                let of_crossings = crossings - f64::from(sums.crossings) / n;
-                let square = of_crossings * of_crossings * weight;
-                sums.crossing_squares = (f64::from(sums.crossing_squares) + square) as f32;
-                for band in 0..3 {
-                    let deviation = power.0[band] as f64 - sums.power[band] / n;
-                    let (square, product) = (&mut sums.squares[band], &mut sums.products[band]);
-                    *square = (f64::from(*square) + deviation * deviation * weight) as f32;
-                    *product = (f64::from(*product) + deviation * of_crossings * weight) as f32;
-                }
-            }
-            sums.power.iter_mut().zip(power.0).for_each(|(sum, power)| *sum += power as f64);
-            sums.crossings = (f64::from(sums.crossings) + crossings) as f32;
         });
         if let Some(counted) = counted {
-            let before = lines.take().map_or(0, |(_, lines)| lines);
-            *lines = Some((counted.domain.clone(), before + counted.lines));
+            let before = self.lines.take().map_or(0, |(_, lines)| lines);
+            self.lines = Some((counted.domain.clone(), before + counted.lines));
         }
         self.count += 1;
         if self.have_spread() {
             self.stated = Vec::new();
-        } else {
-            let more = self.stated.iter_mut().zip(&received.variance);
-            more.for_each(|(sum, variance)| {
-                sum.iter_mut().zip(variance).for_each(|(sum, more)| *sum += more)
-            });
+        }
+        if self.stated.is_empty() {
+            return;
+        }
+        let mut add = |variance: &[[f32; 3]]| {
+            for (sum, variance) in self.stated.iter_mut().zip(variance) {
+                sum.iter_mut().zip(variance).for_each(|(sum, more)| *sum += more);
+            }
+        };
+        match counted {
+            Some(counted) => {
+                let mut all = received.clone();
+                counted.add_to(&mut all, model, workers);
+                add(&all.variance);
+            }
+            None => add(&received.variance),
         }
     }
 
-    /// Calls `visit` for every side with its area, the mean power of all repeats \[quanta\], and the variance of the mean
-    /// \[quanta²\].
-    fn for_each_mean(
+    /// Calls `visit` for every side, in blocks of sides, with its area, the mean power of all repeats \[quanta\], and the
+    /// variance of the mean \[quanta²\]. Returns the results of all blocks in order.
+    fn map_means<T: Default + Send>(
         &self,
         model: &Model,
         in_focus: &FocusSides,
-        mut visit: impl FnMut(SideId, f64, [f64; 3], [f32; 3]),
-    ) {
+        workers: &dyn Workers,
+        visit: impl Fn(&mut T, SideId, f64, [f64; 3], [f32; 3]) + Sync,
+    ) -> Vec<T> {
         let count = self.count.max(1) as f64;
         let forecast = self.lines.as_ref().map(|(domain, lines)| domain.forecast(*lines));
         let factor = |sums: &Sums, area: f64| {
@@ -200,57 +221,65 @@ impl Repeats {
             ratio(expected, f64::from(sums.crossings))
         };
         let brought = |sums: &Sums| sums.brought.map(f64::from);
-        let scale = common_scale(model, in_focus, |triangle, side| {
+        let scale = common_scale(model, workers, in_focus, |triangle, side| {
             let sums = &self.sides[side.index()];
             (brought(sums), factor(sums, model.area(triangle, side)))
         });
-        model.mesh.for_each_side(|triangle, _, _, side| {
-            let (sums, area) = (&self.sides[side.index()], model.area(triangle, side));
-            let is_counted = in_focus.contains(side) && self.lines.is_some();
-            let factor = if is_counted { factor(sums, area) } else { 1.0 };
-            let mean = [0, 1, 2].map(|band| {
-                let factor = if is_counted { factor * scale[band] } else { 1.0 };
-                (sums.power[band] + (factor - 1.0) * brought(sums)[band]) / count
-            });
-            let variance = match self.have_spread() {
-                true => sums.variance(self.count, is_counted),
-                false => self.stated[side.index()].map(|sum| (f64::from(sum) / (count * count)) as f32),
-            };
-            visit(side, area, mean, variance);
-        });
+        map_sides(workers, &model.mesh, self.sides.chunks(BLOCK), |sides, sums| {
+            let mut result = T::default();
+            for ((triangle, side), sums) in sides.iter().zip(sums) {
+                let area = model.area(triangle, side);
+                let is_counted = in_focus.contains(side) && self.lines.is_some();
+                let factor = if is_counted { factor(sums, area) } else { 1.0 };
+                let mean = [0, 1, 2].map(|band| {
+                    let factor = if is_counted { factor * scale[band] } else { 1.0 };
+                    (sums.power[band] + (factor - 1.0) * brought(sums)[band]) / count
+                });
+                let variance = match self.have_spread() {
+                    true => sums.variance(self.count, is_counted),
+                    false => self.stated.get(side.index()).map_or([f32::INFINITY; 3], |stated| {
+                        stated.map(|sum| (f64::from(sum) / (count * count)) as f32)
+                    }),
+                };
+                visit(&mut result, side, area, mean, variance);
+            }
+            result
+        })
     }
 
     /// Returns the mean of all repeats, to the nearest quantum, with the variance of the mean.
     #[must_use]
-    pub fn mean(&self, model: &Model, in_focus: &FocusSides) -> Received {
-        let mut received = Received {
-            power: Vec::with_capacity(self.sides.len()),
-            variance: Vec::with_capacity(self.sides.len()),
-        };
-        self.for_each_mean(model, in_focus, |_, _, mean, variance| {
-            received.power.push(Quanta(mean.map(|mean| mean.round() as i64)));
-            received.variance.push(variance);
+    pub fn mean(&self, model: &Model, in_focus: &FocusSides, workers: &dyn Workers) -> Received {
+        type Block = (Vec<Quanta>, Vec<[f32; 3]>);
+        let blocks = self.map_means(model, in_focus, workers, |block: &mut Block, _, _, mean, variance| {
+            block.0.push(Quanta(mean.map(|mean| mean.round() as i64)));
+            block.1.push(variance);
         });
-        received
+        let (power, variance): (Vec<_>, Vec<_>) = blocks.into_iter().unzip();
+        Received { power: power.concat(), variance: variance.concat() }
     }
 
     /// Returns the relative error of the mean irradiance, per band: root of the area-weighted mean square of the standard
     /// errors, over the area-weighted mean, over the sides in the focus. Zero in a band without light.
     #[must_use]
-    pub fn relative_error(&self, model: &Model, in_focus: &FocusSides) -> [f64; 3] {
-        let (mut all, mut power, mut squares) = (0.0, [0.0; 3], [0.0; 3]);
-        self.for_each_mean(model, in_focus, |side, area, mean, variance| {
-            if in_focus.contains(side) && area > 0.0 {
-                all += area;
-                for band in 0..3 {
-                    power[band] += mean[band];
-                    squares[band] += f64::from(variance[band]) / area;
+    pub fn relative_error(&self, model: &Model, in_focus: &FocusSides, workers: &dyn Workers) -> [f64; 3] {
+        type Block = (f64, [f64; 3], [f64; 3]);
+        let blocks =
+            self.map_means(model, in_focus, workers, |block: &mut Block, side, area, mean, variance| {
+                if in_focus.contains(side) && area > 0.0 {
+                    block.0 += area;
+                    for band in 0..3 {
+                        block.1[band] += mean[band];
+                        block.2[band] += f64::from(variance[band]) / area;
+                    }
                 }
-            }
-        });
-        std::array::from_fn(
-            |band| if power[band] > 0.0 { (squares[band] * all).sqrt() / power[band] } else { 0.0 },
-        )
+            });
+        let all: f64 = blocks.iter().map(|block| block.0).sum();
+        std::array::from_fn(|band| {
+            let power: f64 = blocks.iter().map(|block| block.1[band]).sum();
+            let squares: f64 = blocks.iter().map(|block| block.2[band]).sum();
+            if power > 0.0 { (squares * all).sqrt() / power } else { 0.0 }
+        })
     }
 
     /// Visits the sums. `domain` is that of the lines that are counted.
@@ -349,12 +378,12 @@ mod tests {
     use std::sync::LazyLock;
 
     use glam::DVec3;
-    use sir_geom::{Material, Rgb, SceneBuilder, TriangleId};
+    use sir_geom::{Material, Rgb, SceneBuilder};
     use sir_lines::{Domain, Purpose, Streams};
     use sir_mesh::Subdivision;
 
     use super::*;
-    use crate::counted::CountedPower;
+    use crate::workers::OneWorker;
 
     /// A single triangle, which is a single side.
     static MODEL: LazyLock<Model> = LazyLock::new(|| {
@@ -371,12 +400,12 @@ mod tests {
 
     fn of(all: impl IntoIterator<Item = Received>) -> Repeats {
         let mut repeats = Repeats::new(1);
-        all.into_iter().for_each(|one| repeats.add(&MODEL, &FocusSides::all(), &one, None));
+        all.into_iter().for_each(|one| repeats.add(&MODEL, &one, None, &OneWorker));
         repeats
     }
 
     fn mean(repeats: &Repeats) -> Received {
-        repeats.mean(&MODEL, &FocusSides::all())
+        repeats.mean(&MODEL, &FocusSides::all(), &OneWorker)
     }
 
     #[test]
@@ -413,7 +442,7 @@ mod tests {
     fn pooled_ratios_are_unbiased_and_their_errors_honest() {
         let domain = GlobalLines::from(Domain::hull(MODEL.scene.vertices()));
         let (area, repeats) = (MODEL.scene.total_area(), 16u32);
-        let in_focus = FocusSides::all();
+        let nothing = Received::nothing(1);
         let per_line = domain.forecast(1).crossings(area);
         for (expected, spread) in [(0.5, 0.9), (2.0, 0.9), (10.0, 0.9), (10.0, 0.0)] {
             let lines = (expected / per_line).round() as u64;
@@ -432,11 +461,10 @@ mod tests {
                         product *= stream.unit();
                     }
                     let power = Quanta([power as i64; 3]);
-                    let sides = vec![CountedPower { power, crossings }];
-                    let counted = Counted { domain: domain.clone(), lines, sides, scale: [1.0; 3] };
-                    let estimate = counted.estimate(&MODEL, &in_focus, TriangleId(0), SideId(0));
-                    let one = Received { power: vec![estimate], variance: vec![[0.0; 3]] };
-                    all.add(&MODEL, &in_focus, &one, Some(&counted));
+                    let sides = vec![CountedPower { power, crossings, variance: [0.0; 3] }];
+                    let focus_sides = FocusSides::all();
+                    let counted = Counted { domain: domain.clone(), lines, focus_sides, sides };
+                    all.add(&MODEL, &nothing, Some(&counted), &OneWorker);
                 }
                 // Without the common scale, which would undo the correction of a single side.
                 let sums = &all.sides[0];

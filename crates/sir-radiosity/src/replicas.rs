@@ -27,12 +27,12 @@ use crate::power::{PowerUnit, Quanta, visit_quanta};
 use crate::received::Received;
 use crate::segments::{End, Segment};
 use crate::shot::Shot;
-use crate::solution::Solution;
-use crate::stage::{Chain, Stage, Workers, chain_units, share};
+use crate::stage::{Chain, Stage, chain_units, share};
 use crate::tallies::{Counters, PatchTallies, SquareUnit, SquareUnits, WorkerTallies};
 use crate::totals::{Balance, StageTotals};
 use crate::transported::{Transported, Walked};
 use crate::visitor::Visitor;
+use crate::workers::Workers;
 
 /// Settings of a multipath transport.
 #[derive(Clone, Debug)]
@@ -119,7 +119,7 @@ impl<'m> Stage for Replicas<'m> {
     fn begin(settings: Self::Settings, shot: Shot, workers: &dyn Workers) -> Result<Self, SolveError> {
         let model = settings.model;
         let forecast = settings.domain.forecast(settings.lines.saturating_sub(settings.tail));
-        let unshot = shot.unshot(model);
+        let unshot = shot.unshot(model, workers);
         let mut shares = Vec::with_capacity(model.mesh.side_count());
         let (mut largest, mut most) = ([0.0; 3], 0.0);
         model.mesh.for_each_side(|triangle, _, _, side| {
@@ -203,24 +203,15 @@ impl<'m> Stage for Replicas<'m> {
         self.settings.replicas
     }
 
-    fn finish(self, totals: StageTotals) -> Result<Transported, SolveError> {
-        let Self { settings, mut received, tallies, unit, .. } = self;
+    fn finish(self, totals: StageTotals, _workers: &dyn Workers) -> Result<Transported, SolveError> {
+        let Self { mut received, tallies, unit, .. } = self;
         let StageTotals { balance, counts } = totals;
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "multipath" });
         }
         tallies.add_to(&mut received);
-        drop(tallies);
-        let solution = Solution::new(settings.model, &received, unit);
-        Ok(Transported {
-            solution,
-            received,
-            unit,
-            balance,
-            counts,
-            counted: None,
-            walked: Walked::default(),
-        })
+        let walked = Walked::default();
+        Ok(Transported { uncounted: received, counted: None, unit, balance, counts, walked })
     }
 }
 

@@ -8,7 +8,7 @@
 //! By default, the ratio of the power of the brightest patches to the power of all sources is that of the lines of this
 //! shot to the lines of the first shot. A line of this shot then carries as much power as a line of the first shot.
 
-use sir_geom::{Rgb, Side};
+use sir_geom::{Rgb, Side, TriangleId};
 use sir_lines::Purpose;
 use sir_mesh::{PatchId, SideId};
 
@@ -23,6 +23,7 @@ use crate::shot::{Shot, ShotSettings};
 use crate::sources::{FocusedSources, Source};
 use crate::totals::{Balance, Counts};
 use crate::visitor::{Visitor, visit_counts};
+use crate::workers::{BLOCK, Sides, Workers, map_blocks, map_sides, no_items};
 
 /// The second shot: lines from the brightest patches; with the focus of the first shot, from the brightest patches in
 /// it. There are no lines if nothing reflects.
@@ -33,13 +34,15 @@ impl ShotInput for Shot {
     const KIND: u64 = 4;
     const PURPOSE: Purpose = Purpose::SECOND_SHOT;
 
-    fn sources(&self, settings: &ShotSettings<'_>) -> Result<ShotSources, SolveError> {
+    fn sources(&self, settings: &ShotSettings<'_>, workers: &dyn Workers) -> Result<ShotSources, SolveError> {
         let ShotSettings { model, lines, reflected_share, .. } = settings;
-        let unshot = self.unshot(model);
+        let unshot = self.unshot(model, workers);
         let focus = lines.focus.as_ref();
         let in_focus = FocusSides::of(model, focus);
         let total = match reflected_share {
-            Some(share) => share * held(model, &unshot, &in_focus),
+            // All of it, whatever the rounding of sums.
+            Some(1.0) => f64::INFINITY,
+            Some(share) => share * held(model, &unshot, &in_focus, workers),
             None => {
                 let of_first = |focus| FocusedSources::new(model, Some(focus), self.counts.lines);
                 let share = focus.map_or(1.0, |focus| of_first(focus).inner_share());
@@ -47,8 +50,8 @@ impl ShotInput for Shot {
                 self.balance.emitted.total() * ratio * share
             }
         };
-        let bright = brightest(model, &unshot, &in_focus, total);
-        let (sources, sides) = sources_of(model, self, &unshot, &bright);
+        let bright = brightest(model, &unshot, &in_focus, total, workers);
+        let (sources, sides) = sources_of(model, self, &unshot, &bright, workers);
         Ok(ShotSources { sources: FocusedSources::plain(sources), sides, unit: self.unit })
     }
 
@@ -81,58 +84,77 @@ impl ShotInput for Shot {
 }
 
 /// Returns the patches of the bright sides as sources of the power that they still have to send, with the side of each.
-fn sources_of(model: &Model, shot: &Shot, unshot: &[Quanta], bright: &[bool]) -> (Vec<Source>, Vec<SideId>) {
-    let (mut sources, mut sides) = (Vec::new(), Vec::new());
-    for triangle in model.scene.triangle_ids() {
-        let (corners, front) = (model.scene.corners(triangle), model.scene.normal(triangle));
-        let patches = model.mesh.patches_of(triangle);
-        // A flat polygon that is one patch has several triangles.
-        let part = model.scene.area(triangle) / (patches.len() as f64 * model.mesh.patch_area(triangle));
-        for patch in patches.map(PatchId) {
-            for (side, normal) in [(Side::Front, front), (Side::Back, -front)] {
-                let Some(id) = model.mesh.side_of(triangle, patch, side) else { continue };
-                if bright[id.index()] {
-                    let corners = model.mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
-                    let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
-                    let emitter = Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
-                    sources.push(Source { emitter, power });
-                    sides.push(id);
+fn sources_of(
+    model: &Model,
+    shot: &Shot,
+    unshot: &[Quanta],
+    bright: &[bool],
+    workers: &dyn Workers,
+) -> (Vec<Source>, Vec<SideId>) {
+    let blocks = map_blocks(workers, model.scene.triangles().len(), no_items(), |triangles, ()| {
+        let (mut sources, mut sides) = (Vec::new(), Vec::new());
+        for triangle in triangles.map(TriangleId::new) {
+            let (corners, front) = (model.scene.corners(triangle), model.scene.normal(triangle));
+            let patches = model.mesh.patches_of(triangle);
+            // A flat polygon that is one patch has several triangles.
+            let part = model.scene.area(triangle) / (patches.len() as f64 * model.mesh.patch_area(triangle));
+            for patch in patches.map(PatchId) {
+                for (side, normal) in [(Side::Front, front), (Side::Back, -front)] {
+                    let Some(id) = model.mesh.side_of(triangle, patch, side) else { continue };
+                    if bright[id.index()] {
+                        let corners = model.mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
+                        let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
+                        let emitter =
+                            Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
+                        sources.push(Source { emitter, power });
+                        sides.push(id);
+                    }
                 }
             }
         }
-    }
-    (sources, sides)
+        (sources, sides)
+    });
+    let (sources, sides): (Vec<_>, Vec<_>) = blocks.into_iter().unzip();
+    (sources.concat(), sides.concat())
 }
 
 /// Returns the power that the sides in the focus hold together.
-fn held(model: &Model, unshot: &[Quanta], in_focus: &FocusSides) -> f64 {
-    let mut held = 0.0;
-    model.mesh.for_each_side(|_, _, _, side| {
-        if in_focus.contains(side) {
-            held += unshot[side.index()].total().max(0.0);
-        }
-    });
-    held
+fn held(model: &Model, unshot: &[Quanta], in_focus: &FocusSides, workers: &dyn Workers) -> f64 {
+    let of_block = |sides: Sides<'_>, unshot: &[Quanta]| {
+        let sides = sides.iter().zip(unshot).filter(|((_, side), _)| in_focus.contains(*side));
+        sides.map(|(_, unshot)| unshot.total().max(0.0)).sum::<f64>()
+    };
+    map_sides(workers, &model.mesh, unshot.chunks(BLOCK), of_block).into_iter().sum()
 }
 
 /// Returns, per side, true if it is one of the brightest sides in the focus that hold `total` together. If all sides
 /// together hold less, all that hold power are bright.
-fn brightest(model: &Model, unshot: &[Quanta], in_focus: &FocusSides, total: f64) -> Vec<bool> {
-    let mut sides = Vec::new();
-    model.mesh.for_each_side(|triangle, _, _, side| {
-        let power = unshot[side.index()].total();
-        if power > 0.0 && in_focus.contains(side) {
-            sides.push((power / model.area(triangle, side), power, side));
-        }
+fn brightest(
+    model: &Model,
+    unshot: &[Quanta],
+    in_focus: &FocusSides,
+    total: f64,
+    workers: &dyn Workers,
+) -> Vec<bool> {
+    let holds = |side: SideId| unshot[side.index()].total() > 0.0 && in_focus.contains(side);
+    let mut bright: Vec<bool> = (0..unshot.len()).map(|side| holds(SideId::new(side))).collect();
+    if total == f64::INFINITY {
+        return bright;
+    }
+    let sides = map_sides(workers, &model.mesh, no_items(), |sides, ()| {
+        let sides = sides.iter().filter(|(_, side)| bright[side.index()]);
+        let with_radiosity = |(triangle, side): (TriangleId, SideId)| {
+            let power = unshot[side.index()].total();
+            (power / model.area(triangle, side), power, side)
+        };
+        sides.map(with_radiosity).collect::<Vec<_>>()
     });
+    let mut sides = sides.concat();
     sides.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)));
-    let (mut bright, mut held) = (vec![false; unshot.len()], 0.0);
+    let mut held = 0.0;
     for (_, power, side) in sides {
-        if held >= total {
-            break;
-        }
+        bright[side.index()] = held < total;
         held += power;
-        bright[side.index()] = true;
     }
     bright
 }

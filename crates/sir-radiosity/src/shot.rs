@@ -8,6 +8,7 @@ use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
 use crate::solution::Solution;
 use crate::totals::{Balance, Counts};
+use crate::workers::{BLOCK, Workers, map_sides};
 
 /// Points of the lines of a shot: where each begins on its source, and its direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,11 +84,12 @@ impl Shot {
     /// Returns the power that each side reflects and has not sent, indexed by [`SideId`]. By chance it is slightly
     /// negative for some sides that have sent all of it.
     #[must_use]
-    pub fn unshot(&self, model: &Model) -> Vec<Quanta> {
-        let mut unshot = Vec::with_capacity(model.mesh.side_count());
-        model.mesh.for_each_side(|triangle, _, _, side| {
-            let reflectance = model.reflectance(triangle, side);
-            unshot.push(self.received.power[side.index()].scaled(reflectance));
+    pub fn unshot(&self, model: &Model, workers: &dyn Workers) -> Vec<Quanta> {
+        let mut unshot = vec![Quanta::ZERO; model.mesh.side_count()];
+        map_sides(workers, &model.mesh, unshot.chunks_mut(BLOCK), |sides, unshot| {
+            for ((triangle, side), unshot) in sides.iter().zip(unshot) {
+                *unshot = self.received.power[side.index()].scaled(model.reflectance(triangle, side));
+            }
         });
         for &(side, sent) in &self.sent {
             unshot[side.index()] = unshot[side.index()] - sent;

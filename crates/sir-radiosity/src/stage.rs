@@ -10,6 +10,7 @@ use std::ops::Range;
 use crate::error::SolveError;
 use crate::totals::StageTotals;
 use crate::visitor::Visitor;
+use crate::workers::{OneWorker, Workers};
 
 /// A stage of lines: a shot, a transport, a measurement.
 ///
@@ -100,7 +101,7 @@ pub trait Stage: Sync + Sized {
     /// # Errors
     ///
     /// If a tally overflowed.
-    fn finish(self, totals: StageTotals) -> Result<Self::Outcome, SolveError>;
+    fn finish(self, totals: StageTotals, workers: &dyn Workers) -> Result<Self::Outcome, SolveError>;
 }
 
 /// State of a chain of lines, which are traced in order.
@@ -115,47 +116,6 @@ pub struct AnyOrder;
 
 impl Chain for AnyOrder {
     fn visit(&mut self, _visitor: &mut dyn Visitor) {}
-}
-
-/// A job for one of the [`Workers`].
-pub type Job<'a> = Box<dyn FnOnce() + Send + 'a>;
-
-/// The threads of this process, for work other than lines.
-pub trait Workers: Sync {
-    /// Returns the number of workers: at least 1.
-    fn count(&self) -> usize;
-
-    /// Runs all jobs, concurrently if there are several workers.
-    fn run(&self, jobs: Vec<Job<'_>>);
-}
-
-/// A single worker: the calling thread.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct OneWorker;
-
-impl Workers for OneWorker {
-    fn count(&self) -> usize {
-        1
-    }
-
-    fn run(&self, jobs: Vec<Job<'_>>) {
-        jobs.into_iter().for_each(|job| job());
-    }
-}
-
-/// Applies a function to all parts, one job each, and returns the results in order.
-pub(crate) fn map_parts<P: Send, T: Send>(
-    workers: &dyn Workers,
-    parts: impl Iterator<Item = P>,
-    function: impl Fn(P) -> T + Sync,
-) -> Vec<T> {
-    let mut parts: Vec<(Option<P>, Option<T>)> = parts.map(|part| (Some(part), None)).collect();
-    let function = &function;
-    let jobs = parts
-        .iter_mut()
-        .map(|(part, result)| -> Job<'_> { Box::new(move || *result = part.take().map(function)) });
-    workers.run(jobs.collect());
-    parts.into_iter().filter_map(|(_, result)| result).collect()
 }
 
 /// Runs a stage from its beginning to its end on the calling thread.
@@ -178,7 +138,7 @@ pub fn run_stage<S: Stage>(settings: S::Settings, input: S::Input) -> Result<S::
             }
         }
         if !stage.advance(&OneWorker) {
-            return stage.finish(totals);
+            return stage.finish(totals, &OneWorker);
         }
     }
 }
@@ -216,11 +176,5 @@ mod tests {
                 assert_eq!(next, lines);
             }
         }
-    }
-
-    #[test]
-    fn parts_keep_their_order() {
-        let doubled = map_parts(&OneWorker, 0..7, |k| 2 * k);
-        assert_eq!(doubled, [0, 2, 4, 6, 8, 10, 12]);
     }
 }

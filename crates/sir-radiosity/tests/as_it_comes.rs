@@ -7,7 +7,7 @@ mod common;
 use common::{Estimate, batches, gray, received, runs, scene, shoot};
 use glam::{DQuat, DVec3};
 use sir_geom::shapes::{Facing, cuboid, quad};
-use sir_geom::{Material, MaterialId, SceneBuilder, Side, Sides};
+use sir_geom::{Material, MaterialId, Rgb, SceneBuilder, Side, Sides};
 use sir_mesh::Subdivision;
 use sir_radiosity::{Model, Solution};
 
@@ -121,7 +121,7 @@ fn a_decal_covers_what_is_below_and_changes_nothing_else() {
         let model = model(b, Subdivision::MaxEdge(0.36));
         let shot = shoot(&model, 200_000, 2);
         assert!(shot.balance.closes());
-        let solution = batches(&model, shot, 400_000, 2).solution;
+        let solution = batches(&model, shot, 400_000, 2).solution(&model);
         let (mut seen, mut area) = (0.0, 0.0);
         model.mesh.for_each_side(|triangle, patch, _, side| {
             let corners = model.scene.corners(triangle);
@@ -188,15 +188,20 @@ fn a_wall_of_one_sheet_lets_nothing_through() {
                 assert!(shot.balance.closes());
                 let run = batches(&model, shot, 600_000, 3);
                 assert!(run.balance.closes());
+                let solution = run.solution(&model);
                 let mut lit = 0;
                 model.mesh.for_each_side(|triangle, _, side, id| {
                     let material = model.scene.triangle(triangle).material;
                     // The front of the sheet faces the lamp.
                     let dark = material == halves[1] || material == sheet && side == Side::Back;
                     if dark {
-                        assert_eq!(run.received.power[id.index()].0, [0; 3], "{sides:?} {beyond} {triangle}");
+                        assert_eq!(
+                            solution.irradiance[id.index()],
+                            Rgb::ZERO,
+                            "{sides:?} {beyond} {triangle}"
+                        );
                     } else if material == sheet {
-                        lit += i32::from(run.received.power[id.index()].0 != [0; 3]);
+                        lit += i32::from(solution.irradiance[id.index()] != Rgb::ZERO);
                     }
                 });
                 assert!(lit > 0);
@@ -227,7 +232,7 @@ fn furnished(scale: f64, offset: DVec3) -> Model {
 fn solve(model: &Model) -> Solution {
     let shot = shoot(model, 100_000, 11);
     assert!(shot.balance.closes());
-    batches(model, shot, 200_000, 11).solution
+    batches(model, shot, 200_000, 11).solution(model)
 }
 
 /// Returns the mean deviation of the irradiances from those of another solution, weighted by area and relative to the
@@ -319,14 +324,14 @@ fn a_room_on_a_wide_ground_is_as_tight_as_one_without() {
             for seed in 1..=8 {
                 let run = batches(&model, shoot(&model, lines, seed), 2_000_000, seed);
                 assert_eq!(run.balance.escaped.0, [0; 3]);
-                let mut inside = 0.0;
+                let (mut inside, solution) = (0.0, run.solution(&model));
                 model.mesh.for_each_side(|triangle, _, side, id| {
                     let material = model.scene.triangle(triangle).material;
                     if material == outside || side == Side::Back {
-                        assert_eq!(run.received.power[id.index()].0, [0; 3], "{triangle} {side:?}");
+                        assert_eq!(solution.irradiance[id.index()], Rgb::ZERO, "{triangle} {side:?}");
                     } else {
                         let area = model.mesh.patch_area(triangle);
-                        inside += area * run.solution.irradiance[id.index()].x / 59.0;
+                        inside += area * solution.irradiance[id.index()].x / 59.0;
                     }
                 });
                 radiosity.push(m + rho * inside);

@@ -125,9 +125,10 @@ fn a_furnished_room_looks_the_same_in_all_domains() {
             }
             let (mut squares, mut terms) = (Rgb::ZERO, 0.0);
             for (a, b) in these.iter().zip(those) {
+                let [a, b] = [a, b].map(|run| run.solution(&model));
                 for (side, &direct) in direct.iter().enumerate() {
                     let square = |v: Rgb| v * v;
-                    let [a, b] = [a, b].map(|run| (run.solution.irradiance[side], run.solution.error[side]));
+                    let [a, b] = [&a, &b].map(|run| (run.irradiance[side], run.error[side]));
                     // Both runs have the same direct light and share its error.
                     let variance = square(a.1) + square(b.1) - 2.0 * square(direct);
                     squares += square(a.0 - b.0) / variance;

@@ -83,7 +83,7 @@ fn errors_of_many_patches_are_honest() {
         [("furnace", furnace(Subdivision::Patches(600))), ("lamp", lamp(Subdivision::Patches(600)))]
     {
         for (way, transport) in TRANSPORTS {
-            let run = |seed| transport(&model, shoot(&model, LINES, seed), LINES, seed).solution;
+            let run = |seed| transport(&model, shoot(&model, LINES, seed), LINES, seed).solution(&model);
             let runs: Vec<_> = (1..=40).map(run).collect();
             assert_honest(&format!("{what}, {way}"), &runs, [1.0, 1.0 + inherited(way)], 0.03);
         }
@@ -100,7 +100,7 @@ fn errors_of_few_patches_are_not_too_small() {
     let least = f64::sqrt(1.0 - f) / (1.0 + rho * f);
     for (what, model) in [("furnace", furnace(Subdivision::PerFace)), ("lamp", lamp(Subdivision::PerFace))] {
         for (way, transport) in TRANSPORTS {
-            let run = |seed| transport(&model, shoot(&model, LINES, seed), LINES, seed).solution;
+            let run = |seed| transport(&model, shoot(&model, LINES, seed), LINES, seed).solution(&model);
             let runs: Vec<_> = (1..=150).map(run).collect();
             assert_honest(&format!("{what} of six patches, {way}"), &runs, [least, 1.0], 0.08);
         }
@@ -113,7 +113,7 @@ fn errors_of_few_patches_are_not_too_small() {
 fn noise_of_the_first_shot_that_is_reflected_can_be_left_out() {
     let model = lamp(Subdivision::Patches(600));
     for (way, transport) in TRANSPORTS {
-        let run = |seed| transport(&model, shoot(&model, 5_000, seed), 50_000, seed).solution;
+        let run = |seed| transport(&model, shoot(&model, 5_000, seed), 50_000, seed).solution(&model);
         let runs: Vec<_> = (1..=40).map(run).collect();
         assert_honest(
             &format!("lamp with a short first shot, {way}"),

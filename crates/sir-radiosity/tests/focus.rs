@@ -130,11 +130,11 @@ fn a_furnace_on_a_wide_ground() {
             let shot = shoot(&model, LINES, focus, seed);
             let done = batches(&model, shot, LINES, through.clone(), seed);
             assert!(done.balance.closes());
-            means.push(of_material(&model, &done.solution.irradiance, &done.solution.error, 0).0);
+            let solution = done.solution(&model);
+            means.push(of_material(&model, &solution.irradiance, &solution.error, 0).0);
             model.mesh.for_each_side(|triangle, _, _, side| {
                 if model.scene.triangle(triangle).material.index() == 0 {
-                    let [value, error] =
-                        [done.solution.irradiance[side.index()], done.solution.error[side.index()]];
+                    let [value, error] = [solution.irradiance[side.index()], solution.error[side.index()]];
                     squares += ((value.x - exact) / error.x).powi(2);
                     stated += error.x;
                     count += 1.0;

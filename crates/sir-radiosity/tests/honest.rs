@@ -15,7 +15,8 @@ use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::{Domain, seed_of_repeat};
 use sir_mesh::Subdivision;
 use sir_radiosity::{
-    FocusSides, MIN_REPEATS, Model, PowerUnit, Received, Repeats, ReplicaSettings, Solution, Transported,
+    FocusSides, MIN_REPEATS, Model, OneWorker, PowerUnit, Received, Repeats, ReplicaSettings, Solution,
+    Transported,
 };
 
 const SEEDS: u64 = 200;
@@ -83,7 +84,7 @@ impl Exact {
 
     fn batches(&self, per_patch: u64, seed: u64) -> Outcome {
         let all = self.transported(per_patch, seed);
-        (all.received, all.unit)
+        (all.received(&self.model, &OneWorker), all.unit)
     }
 
     fn transported(&self, per_patch: u64, seed: u64) -> Transported {
@@ -103,7 +104,7 @@ impl Exact {
             ..ReplicaSettings::new(&self.model, Domain::hull(self.model.scene.vertices()), lines, seed)
         };
         let all = replicas(shot, settings);
-        (all.received, all.unit)
+        (all.uncounted, all.unit)
     }
 
     /// Returns the mean of the smallest number of repeats for which errors are computed from their spread.
@@ -112,11 +113,11 @@ impl Exact {
         let mut unit = None;
         for repeat in 0..MIN_REPEATS {
             let all = self.transported(24, seed_of_repeat(seed, repeat));
-            repeats.add(&self.model, &FocusSides::all(), &all.received, all.counted.as_ref());
+            repeats.add(&self.model, &all.uncounted, all.counted.as_ref(), &OneWorker);
             unit = Some(all.unit);
         }
         assert!(repeats.have_spread());
-        (repeats.mean(&self.model, &FocusSides::all()), unit.unwrap())
+        (repeats.mean(&self.model, &FocusSides::all(), &OneWorker), unit.unwrap())
     }
 
     /// Checks one way to light the scene. If the stated errors are correct, 5 % of the deviations exceed `quantile`,

@@ -252,7 +252,7 @@ fn a_furnace_with_a_point_light() {
     b.add_light(point(DVec3::new(0.5, 0.5, 0.4), power / (4.0 * PI), Spread::Isotropic));
     let model = model(b, Subdivision::Patches(200));
     let shot = shoot(&model, 100_000, 3);
-    let solution = batches(&model, shot, 400_000, 3).solution;
+    let solution = batches(&model, shot, 400_000, 3).solution(&model);
     let (mut area, mut sum) = (0.0, 0.0);
     model.mesh.for_each_side(|triangle, _, _, side| {
         let a = model.mesh.patch_area(triangle);

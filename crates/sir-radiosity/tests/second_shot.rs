@@ -12,7 +12,7 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder, Side, Sides};
 use sir_mesh::Subdivision;
-use sir_radiosity::{Model, Quanta};
+use sir_radiosity::{Model, OneWorker, Quanta};
 
 /// Returns a room with a lamp close to its ceiling, and a sheet that reflects from both sides.
 fn room(subdivision: Subdivision) -> Model {
@@ -48,17 +48,17 @@ fn power_is_kept_to_the_quantum() {
         let model = room(subdivision);
         let first = shoot(&model, 40_000, 1);
         let second = shoot_again(&model, &first, 10_000, 1);
-        assert_eq!(sum(&first.unshot(&model)), first.balance.unshot);
+        assert_eq!(sum(&first.unshot(&model, &OneWorker)), first.balance.unshot);
         let left = first.balance.unshot - second.balance.emitted + second.balance.unshot;
         // The power reflected of both shots together is rounded once, not twice.
-        let rounding = (sum(&second.unshot(&model)) - left).0.map(i64::abs);
+        let rounding = (sum(&second.unshot(&model, &OneWorker)) - left).0.map(i64::abs);
         assert!(rounding.iter().all(|r| *r <= model.mesh.side_count() as i64), "{rounding:?}");
         // A quarter of the lines for a quarter of the power, except for the last patch.
         let share = second.balance.emitted.0[0] as f64 / first.balance.emitted.0[0] as f64;
         assert!(share > 0.2, "{share}");
         // The power sent is the power held, within one line.
         let lines = 2 * second.balance.emitted.0[0] / 10_000;
-        let least = second.unshot(&model).iter().map(|q| q.0[0]).min().unwrap();
+        let least = second.unshot(&model, &OneWorker).iter().map(|q| q.0[0]).min().unwrap();
         assert!(least > -lines, "{least} {lines}");
     }
 }
@@ -73,7 +73,7 @@ fn light_is_the_same_with_less_noise() {
         let run = |twice: bool, seed| {
             let first = shoot(&model, if twice { 40_000 } else { 50_000 }, seed);
             let shot = if twice { shoot_again(&model, &first, 10_000, seed) } else { first };
-            transport(&model, shot, 50_000, seed).solution
+            transport(&model, shot, 50_000, seed).solution(&model)
         };
         let [once, twice] =
             [false, true].map(|twice| (1..=RUNS).map(|seed| run(twice, seed)).collect::<Vec<_>>());

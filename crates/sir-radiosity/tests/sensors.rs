@@ -374,7 +374,7 @@ fn errors_of_patches_are_passed_on() {
         let runs: Vec<Measurement> = (1..=100)
             .map(|seed| {
                 let run = batches(&model, shoot(&model, 20_000, seed), 20_000, seed);
-                Gatherer::new(&model, &run.solution, RAYS, seed).measure(0, &sensor)
+                Gatherer::new(&model, &run.solution(&model), RAYS, seed).measure(0, &sensor)
             })
             .collect();
         let rms = rms_of_deviations(&runs);

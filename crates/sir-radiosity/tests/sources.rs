@@ -33,7 +33,7 @@ fn room(exitance: f64) -> Model {
 fn results_are_in_proportion_to_power() {
     let results = |exitance: f64| {
         let model = room(exitance);
-        let solution = batches(&model, shoot(&model, 10_000, 1), 10_000, 2).solution;
+        let solution = batches(&model, shoot(&model, 10_000, 1), 10_000, 2).solution(&model);
         let gatherer = Gatherer::new(&model, &solution, SensorSettings::new(1024, 0.0), 3);
         let sensor = Sensor::new(DVec3::new(0.5, 0.5, 0.1), DVec3::Z).unwrap();
         let measured = gatherer.measure(0, &sensor);

@@ -105,7 +105,8 @@ fn sensors_see_the_pattern() {
     let model = complementary_cube(Subdivision::MaxArea(0.02));
     let run = common::batches(&model, common::shoot(&model, 2_000_000, 1), 2_000_000, 1);
     let settings = sir_radiosity::SensorSettings::new(8192, 0.0);
-    let sensors = sir_radiosity::Gatherer::new(&model, &run.solution, settings, 1);
+    let solution = run.solution(&model);
+    let sensors = sir_radiosity::Gatherer::new(&model, &solution, settings, 1);
     for (number, direction) in [DVec3::X, DVec3::new(1.0, -2.0, 0.5)].into_iter().enumerate() {
         let sensor = sir_radiosity::Sensor::new(DVec3::new(0.3, 0.6, 0.45), direction).unwrap();
         let measured = sensors.measure(number as u64, &sensor);

@@ -50,17 +50,18 @@ fn a_furnace_with_partitions_that_have_gaps() {
         let runs: Vec<Vec<f64>> = (1..=16)
             .map(|seed| {
                 let run = transport(&model, shoot(&model, 300_000, seed), 300_000, seed);
+                let solution = run.solution(&model);
                 // Walls, and both sides of the partitions with covered area.
                 let (mut sums, mut areas) = ([0.0; 5], [0.0; 5]);
                 model.mesh.for_each_side(|t, patch, side, id| {
                     let material = model.scene.triangle(t).material.index();
                     let area = model.mesh.covered_area(t, patch);
                     if material == 3 {
-                        assert_eq!((area, run.solution.irradiance[id.index()]), (0.0, Rgb::ZERO));
+                        assert_eq!((area, solution.irradiance[id.index()]), (0.0, Rgb::ZERO));
                         return;
                     }
                     let place = 2 * material - material.min(1) + usize::from(side == sir_geom::Side::Back);
-                    sums[place] += area * run.solution.irradiance[id.index()].x;
+                    sums[place] += area * solution.irradiance[id.index()].x;
                     areas[place] += area;
                 });
                 assert!(

@@ -36,7 +36,7 @@ fn count(model: &Model, settings: ViewFactorSettings) -> ViewFactors {
         stage.trace(0, &mut AnyOrder, stage.round(), &mut totals);
         assert_eq!(totals.counts.lines, stage.round().end - stage.round().start);
         if !stage.advance(&OneWorker) {
-            return stage.finish(totals).unwrap();
+            return stage.finish(totals, &OneWorker).unwrap();
         }
     }
 }

@@ -72,8 +72,8 @@ pub(crate) fn solve(
     let second = ShotSettings::new(model, lines / 10, seed);
     let shot = executor.run::<SecondShot<'_>>(second, Start::Fresh(shot))?.outcome;
     let transport = BatchSettings::new(model, Domain::hull(model.scene.vertices()), lines / 2, seed);
-    let all = executor.run::<Batches<'_>>(transport, Start::Fresh(shot))?.outcome.solution;
-    Ok(Light { direct, all })
+    let all = executor.run::<Batches<'_>>(transport, Start::Fresh(shot))?.outcome;
+    Ok(Light { direct, all: all.solution(model) })
 }
 
 /// Mean light of the front of a surface.

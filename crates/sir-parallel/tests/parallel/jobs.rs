@@ -171,12 +171,14 @@ impl Job {
             }
             Self::Batches | Self::FocusedBatches => {
                 let start = start(room.shot.clone(), saved);
-                executor.run::<Batches<'_>>(self.batches(room), start).map(Outcome::of_transport)
+                executor
+                    .run::<Batches<'_>>(self.batches(room), start)
+                    .map(|run| Outcome::of_transport(room, run))
             }
             Self::Multipath { replicas, tail } => {
                 let start = start(room.shot.clone(), saved);
                 let settings = Self::settings(room, replicas, tail);
-                executor.run::<Replicas<'_>>(settings, start).map(Outcome::of_transport)
+                executor.run::<Replicas<'_>>(settings, start).map(|run| Outcome::of_transport(room, run))
             }
         }
     }
@@ -197,11 +199,11 @@ impl Job {
             Self::FocusedShot => Outcome::of_shot(by_hand::<FirstShot<'_>>(room.focused_shot(), ())),
             Self::SecondShot => Outcome::of_shot(by_hand::<SecondShot<'_>>(shot, room.shot.clone())),
             Self::Batches | Self::FocusedBatches => {
-                Outcome::of_transport(by_hand::<Batches<'_>>(self.batches(room), room.shot.clone()))
+                Outcome::of_transport(room, by_hand::<Batches<'_>>(self.batches(room), room.shot.clone()))
             }
             Self::Multipath { replicas, tail } => {
                 let settings = Self::settings(room, replicas, tail);
-                Outcome::of_transport(by_hand::<Replicas<'_>>(settings, room.shot.clone()))
+                Outcome::of_transport(room, by_hand::<Replicas<'_>>(settings, room.shot.clone()))
             }
         }
     }
@@ -228,7 +230,7 @@ fn by_hand<S: Stage>(settings: S::Settings, input: S::Input) -> StageRun<S::Outc
         }
     }
     let batches = stage.batches();
-    StageRun { outcome: stage.finish(totals).unwrap(), time: StageTime::default(), batches }
+    StageRun { outcome: stage.finish(totals, &OneWorker).unwrap(), time: StageTime::default(), batches }
 }
 
 impl Outcome {
@@ -237,8 +239,9 @@ impl Outcome {
         Self { received, quantum: unit.quantum(), balance, counts, walked: Walked::default(), batches, sent }
     }
 
-    fn of_transport(StageRun { outcome, batches, .. }: StageRun<Transported>) -> Self {
-        let Transported { received, unit, balance, counts, walked, .. } = outcome;
+    fn of_transport(room: &Room, StageRun { outcome, batches, .. }: StageRun<Transported>) -> Self {
+        let received = outcome.received(&room.model, &OneWorker);
+        let Transported { unit, balance, counts, walked, .. } = outcome;
         Self { received, quantum: unit.quantum(), balance, counts, walked, batches, sent: Vec::new() }
     }
 

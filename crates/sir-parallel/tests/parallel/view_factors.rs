@@ -28,7 +28,7 @@ fn by_hand(grouping: &Grouping) -> ViewFactors {
         rounds += 1;
         if !stage.advance(&OneWorker) {
             assert!(rounds > 3);
-            return stage.finish(totals).unwrap();
+            return stage.finish(totals, &OneWorker).unwrap();
         }
     }
 }

@@ -48,7 +48,7 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
                 let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
                 let stage = FirstShot::begin(settings, (), &OneWorker)?;
                 let (rate, totals) = try_stage(&stage, lines);
-                shot = Some(stage.finish(totals)?);
+                shot = Some(stage.finish(totals, &OneWorker)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::SecondShot(plan::SecondShot { lines, share }) => {

@@ -1,12 +1,10 @@
 //! Light of a run, and the stages with lines that add to it.
 
-use std::borrow::Cow;
-
 use sir_lines::{Focus, GlobalLines, LocalLines};
 use sir_parallel::{Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
     Counted, FirstShot, Model, Points, PowerUnit, Received, SecondShot, Shot, ShotSettings, Solution,
-    Transported, Walked,
+    Transported, Walked, Workers,
 };
 
 use crate::plan::{Action, DomainKind};
@@ -117,29 +115,21 @@ impl<'m> Lighting<'m> {
         Done { facts, unit, time }
     }
 
-    /// Returns the power received so far, or `None` if no stage has run.
-    pub(crate) fn received(&self) -> Option<&Received> {
+    /// Returns the power received so far, and what counted lines have brought besides; `None` if no stage has run.
+    pub(crate) fn received(&self) -> Option<(&Received, Option<&Counted>)> {
         match &self.light {
             Light::None => None,
-            Light::Direct(shot) => Some(&shot.received),
-            Light::All(all) => Some(&all.received),
-        }
-    }
-
-    /// Returns what counted lines have brought of it, if the last stage had any.
-    pub(crate) fn counted(&self) -> Option<&Counted> {
-        match &self.light {
-            Light::All(all) => all.counted.as_ref(),
-            _ => None,
+            Light::Direct(shot) => Some((&shot.received, None)),
+            Light::All(all) => Some((&all.uncounted, all.counted.as_ref())),
         }
     }
 
     /// Returns the result so far; `None` if no stage has run.
-    pub(crate) fn solution(&self) -> Option<Cow<'_, Solution>> {
+    pub(crate) fn solution(&self, workers: &dyn Workers) -> Option<Solution> {
         match &self.light {
             Light::None => None,
-            Light::Direct(shot) => Some(Cow::Owned(shot.solution(self.model))),
-            Light::All(all) => Some(Cow::Borrowed(&all.solution)),
+            Light::Direct(shot) => Some(shot.solution(self.model)),
+            Light::All(all) => Some(Solution::new(self.model, &all.received(self.model, workers), all.unit)),
         }
     }
 }

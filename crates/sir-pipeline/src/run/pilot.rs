@@ -17,11 +17,13 @@ use crate::run::sharing::CROSSINGS;
 use crate::run::split::{Split, Trial};
 use crate::stopwatch::Stopwatch;
 
-/// Lines of each shot of the pilot, as a share of all lines.
-const PILOT_SHOT: f64 = 1.0 / 64.0;
+/// Lines of each shot of the pilot: a share of all lines, but at least a number, up to a larger share.
+const PILOT_SHARE: f64 = 1.0 / 256.0;
+const PILOT_LINES: f64 = 8000.0;
+const MAX_PILOT_SHARE: f64 = 1.0 / 64.0;
 
-/// Crossings of a typical patch by the global lines of the pilot, and the largest share of all lines for them.
-const PILOT_CROSSINGS: (f64, f64) = (8.0, 1.0 / 64.0);
+/// Crossings of a typical patch by the global lines of the pilot, if there are no fewer lines in a shot.
+const PILOT_CROSSINGS: f64 = 8.0;
 
 /// Shares of the reflected light that a second shot may send, of which the pilot tries each.
 const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
@@ -58,12 +60,12 @@ impl Run<'_> {
         let (model, focus) = (&self.prepared.model, self.prepared.focus);
         let domain = DomainKind::Hull.lines_around(&model.scene, focus);
         let per_crossing = lines as f64 / crossings_per_patch(model, &domain, lines);
-        let (crossings, most) = PILOT_CROSSINGS;
+        let shot = (PILOT_SHARE * lines as f64).max(PILOT_LINES.min(MAX_PILOT_SHARE * lines as f64)).ceil();
         let pilot = Pilot {
             model,
             domain,
-            shot: (PILOT_SHOT * lines as f64).ceil() as u64,
-            global: (crossings * per_crossing).min(most * lines as f64).ceil() as u64,
+            shot: shot as u64,
+            global: (PILOT_CROSSINGS * per_crossing).ceil().min(shot) as u64,
             seed: seed_of_repeat(self.head.report.seed, PILOT_REPEAT),
         };
         let traced = self.trials(&pilot);
@@ -87,6 +89,7 @@ impl Run<'_> {
         };
         let deviation = |solution: &Solution| Deviation::of(model, inside, solution);
         let mut executor = self.executor_without_checkpoints();
+        let threads = self.threads();
         executor.observer = Box::new(self.progress.part("Solve: pilot", pilot.lines(), &self.options.stop));
         let first: Shot = executor.run::<FirstShot<'_>>(of_shot(), Start::Fresh(()))?.outcome;
         let after_first = deviation(&first.solution(model));
@@ -101,7 +104,7 @@ impl Run<'_> {
             let settings = BatchSettings { model, domain: domain.clone(), lines: global, seed };
             let all: Transported = executor.run::<Batches<'_>>(settings, Start::Fresh(both))?.outcome;
             crossings = all.counts.crossings as f64 / all.counts.lines.max(1) as f64;
-            let after_all = deviation(&all.solution);
+            let after_all = deviation(&Solution::new(model, &all.received(model, &threads), all.unit));
             let of_lines = |lines: u64, after: &Deviation, before: &Deviation| {
                 lines as f64 * after.relative_variance_beyond(before, &after_all)
             };

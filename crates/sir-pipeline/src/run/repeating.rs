@@ -7,10 +7,10 @@
 use std::time::{Duration, Instant};
 
 use sir_lines::seed_of_repeat;
-use sir_parallel::{Checkpoints, Communicator, Saved, StageTime, Start};
+use sir_parallel::{Checkpoints, Communicator, Saved, StageTime, Start, Threads};
 use sir_radiosity::{
-    Points, PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, SensorStage, SensorTask, Solution,
-    Visitor, share,
+    MIN_REPEATS, Points, PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, SensorStage, SensorTask,
+    Solution, Visitor, share,
 };
 
 use crate::error::Error;
@@ -28,7 +28,7 @@ use crate::run::execute::Run;
 use crate::run::lighting::{Done, Lighting};
 use crate::run::reach::{dark_warning, few_lines_warning};
 use crate::run::sharing::{SHARED, Sharing};
-use crate::run::stages::unshot_warning;
+use crate::run::stages::{large_error_warning, unshot_warning};
 use crate::stopwatch::Stopwatch;
 
 /// A stage that is run in every repeat.
@@ -100,7 +100,7 @@ impl Run<'_> {
         if !is_single {
             self.progress.note(&repeating.announcement());
         }
-        let mut last_message = Instant::now();
+        let (threads, mut last_message) = (self.threads(), Instant::now());
         loop {
             let seed = seed_of_repeat(self.head.report.seed, repeat);
             for number in begun..repeating.steps.len() {
@@ -117,10 +117,10 @@ impl Run<'_> {
                 let done = lighting.run(action, lines, seed, &mut executor, saved.take());
                 drop(executor);
                 if let Some(done) = agree(self.comm, done.map_err(Error::from))? {
-                    repeating.add(number, done, &lighting);
+                    repeating.add(number, done, &lighting, &threads);
                 }
             }
-            repeating.end_repeat();
+            repeating.end_repeat(&threads);
             if !repeating.wants_more(self.comm) {
                 break;
             }
@@ -160,7 +160,9 @@ impl Run<'_> {
         seed: u64,
     ) -> Result<(), Error> {
         let (number, _) = repeating.steps[step].place;
-        let (Some(layout), Some(solution)) = (self.prepared.layouts.get(&number), lighting.solution()) else {
+        let (Some(layout), Some(solution)) =
+            (self.prepared.layouts.get(&number), lighting.solution(&self.threads()))
+        else {
             return Ok(());
         };
         let settings = sensors.settings().shared(repeating.share_rays);
@@ -184,7 +186,7 @@ impl Run<'_> {
 
     /// Reports all stages from number `first` on, and writes their files.
     fn report(&mut self, first: usize, repeating: &mut Repeating<'_>) -> Result<(), Error> {
-        let mut solution = None;
+        let (threads, mut solution) = (self.threads(), None);
         for (number, stage) in self.pipeline.stages.iter().enumerate().skip(first) {
             let watch = Stopwatch::start();
             let mut report = StageReport::of(stage.action.name(), Time::of(0.0));
@@ -206,7 +208,7 @@ impl Run<'_> {
                 }
                 Action::Repeat(_) | Action::Solve(_) => {
                     for step in steps {
-                        let (part, light) = repeating.report(step);
+                        let (part, light) = repeating.report(step, &threads);
                         self.warn_of_lines(repeating.steps[step].action, &part, light.as_ref());
                         solution = light.or(solution);
                         report.stages.push(part);
@@ -227,7 +229,7 @@ impl Run<'_> {
                     for step in steps {
                         // The previous solution is no longer needed, and takes much memory.
                         drop(solution.take());
-                        let (part, light) = repeating.report(step);
+                        let (part, light) = repeating.report(step, &threads);
                         self.warn_of_lines(&stage.action, &part, light.as_ref());
                         (report, solution) = (part, light);
                         if !repeating.is_single() {
@@ -240,6 +242,8 @@ impl Run<'_> {
         }
         if let Some(last) = self.head.report.stages.iter_mut().rev().find(|stage| stage.light.is_some()) {
             last.convergence.clone_from(&repeating.convergence);
+            let warning = last.light.as_ref().and_then(large_error_warning);
+            self.warn(warning.into_iter().collect());
         }
         Ok(())
     }
@@ -278,6 +282,10 @@ impl<'a> Repeating<'a> {
         let most = at_most.unwrap_or(u64::MAX).min(SHARED);
         let share_rays = if let Until::Times(times) = until { times.min(most) } else { most };
         let sides = prepared.model.mesh.side_count();
+        let sums = || match until {
+            Until::Times(MIN_REPEATS..) if at_most.is_none() => Repeats::of_many(sides),
+            _ => Repeats::new(sides),
+        };
         let mut steps = Vec::new();
         for (i, &(place, action)) in places.iter().enumerate() {
             let has_lines = action.lines() > 0;
@@ -294,7 +302,7 @@ impl<'a> Repeating<'a> {
                 batches: 0,
                 time: StageTime::default(),
                 domain: None,
-                light: (has_lines && is_used).then(|| Repeats::new(sides)),
+                light: (has_lines && is_used).then(sums),
                 measured: measured.map(RepeatedMeasurements::new),
             });
         }
@@ -375,7 +383,7 @@ impl<'a> Repeating<'a> {
     }
 
     /// Adds the outcome of a stage of lines of a repeat.
-    fn add(&mut self, step: usize, done: Done, lighting: &Lighting<'_>) {
+    fn add(&mut self, step: usize, done: Done, lighting: &Lighting<'_>, threads: &Threads) {
         let Done { facts: Facts { balance, counts, batches, walked, domain }, unit, time } = done;
         self.unit = Some(unit);
         let step = &mut self.steps[step];
@@ -383,14 +391,13 @@ impl<'a> Repeating<'a> {
         step.batches += batches;
         step.time += time;
         step.domain = domain;
-        let Prepared { model, inside, .. } = self.prepared;
-        if let (Some(sums), Some(received)) = (&mut step.light, lighting.received()) {
-            sums.add(model, inside, received, lighting.counted());
+        if let (Some(sums), Some((received, counted))) = (&mut step.light, lighting.received()) {
+            sums.add(&self.prepared.model, received, counted, threads);
         }
     }
 
     /// Closes a repeat, and computes the error of the mean if it is needed or comes from the spread.
-    fn end_repeat(&mut self) {
+    fn end_repeat(&mut self, threads: &Threads) {
         self.count += 1;
         let Prepared { model, inside, .. } = self.prepared;
         let Some(light) = self.steps.iter().rev().find_map(|step| step.light.as_ref()) else { return };
@@ -398,7 +405,7 @@ impl<'a> Repeating<'a> {
         if !is_target && !light.have_spread() {
             return;
         }
-        let relative_error = light.relative_error(model, inside);
+        let relative_error = light.relative_error(model, inside, threads);
         self.error = Some(relative_error.into_iter().fold(0.0, f64::max));
         if light.have_spread() {
             let lines = self.steps.iter().map(|step| step.totals.counts().lines).sum();
@@ -466,7 +473,7 @@ impl<'a> Repeating<'a> {
     }
 
     /// Returns the report of a step with lines, and the mean of the light after it, if that is used. Frees the sums.
-    fn report(&mut self, number: usize) -> (StageReport, Option<Solution>) {
+    fn report(&mut self, number: usize, threads: &Threads) -> (StageReport, Option<Solution>) {
         let Prepared { model, inside, .. } = self.prepared;
         let before = self.steps[..=number].iter().map(|step| step.totals.counts().lines).sum();
         let (count, unit) = (self.count, self.unit.unwrap_or_else(|| PowerUnit::for_total(1.0, 0.0)));
@@ -479,7 +486,7 @@ impl<'a> Repeating<'a> {
         let Some(light) = step.light.take() else { return (report, None) };
         let (from, samples) =
             if light.have_spread() { (ErrorsFrom::Spread, count) } else { (ErrorsFrom::Lines, before) };
-        let mean = light.mean(model, inside);
+        let mean = light.mean(model, inside, threads);
         drop(light);
         let solution = Solution::new(model, &mean, unit);
         let errors = ErrorsReport { from, samples };

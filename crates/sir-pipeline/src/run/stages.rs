@@ -2,14 +2,16 @@
 
 use std::sync::atomic::Ordering::Relaxed;
 
-use sir_parallel::{Checkpoints, Executor, RunError, Saved, cores};
+use sir_parallel::{Checkpoints, Executor, RunError, Saved, Threads, cores};
 use sir_radiosity::{Measurement, Solution};
 
 use crate::error::Error;
 use crate::plan::{Action, Output, Sensors};
 use crate::prepare::prepared::Prepared;
 use crate::ranks::agree;
-use crate::report::result::{BalanceReport, LinesReport, OutputReport, StageReport, Time};
+use crate::report::result::{
+    BalanceReport, ErrorsFrom, LightReport, LinesReport, OutputReport, StageReport, Time,
+};
 use crate::report::sensors::SensorsReport;
 use crate::run::execute::Run;
 use crate::run::save::save;
@@ -57,12 +59,17 @@ impl Run<'_> {
         executor
     }
 
+    /// Returns the threads of this rank.
+    pub(crate) fn threads(&self) -> Threads {
+        Threads(self.options.threads.unwrap_or_else(cores))
+    }
+
     /// Returns an executor without checkpoints.
     pub(crate) fn executor_without_checkpoints<'c>(&self) -> Executor<'c>
     where
         Self: 'c,
     {
-        let mut executor = Executor::new(self.options.threads.unwrap_or_else(cores));
+        let mut executor = Executor::new(self.threads().0);
         executor.comm = self.comm;
         executor
     }
@@ -106,7 +113,7 @@ impl Run<'_> {
     /// Writes outputs until the run is asked to stop.
     fn write(&self, solution: &Solution, outputs: &[Output]) -> Result<Vec<OutputReport>, Error> {
         let mut reports = Vec::new();
-        let threads = self.options.threads.unwrap_or_else(cores).get();
+        let threads = self.threads().0.get();
         save(self.prepared, solution, outputs, &self.directory, threads, self.progress, &mut |report| {
             reports.push(report);
             !self.options.stop.load(Relaxed)
@@ -116,6 +123,22 @@ impl Run<'_> {
         }
         Ok(reports)
     }
+}
+
+/// Relative error above which the errors themselves are uncertain: rare lines bring much of the light then.
+const LARGE_ERROR: f64 = 0.1;
+
+/// Returns a warning if the errors are too large to be known well. Errors of single lines have a warning of their own.
+pub(crate) fn large_error_warning(light: &LightReport) -> Option<String> {
+    let error = light.relative_error.into_iter().fold(0.0, f64::max);
+    (light.errors.from == ErrorsFrom::Spread && error > LARGE_ERROR).then(|| {
+        format!(
+            "the relative error of a patch is {:.0} %; errors above {:.0} % are themselves uncertain; use more lines or fewer \
+             patches",
+            100.0 * error,
+            100.0 * LARGE_ERROR
+        )
+    })
 }
 
 /// Returns a warning if the unshot power is so large that the result is visibly wrong.

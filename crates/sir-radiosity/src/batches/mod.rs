@@ -28,7 +28,6 @@
 //!   their light is absorbed. So nothing is left out, however few lines meet a surface, or however often light is
 //!   reflected.
 
-mod estimator;
 mod patch_sizes;
 mod schedule;
 mod side_range;

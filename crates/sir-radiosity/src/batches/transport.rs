@@ -5,13 +5,13 @@ use std::ops::Range;
 use sir_lines::{GlobalLines, Purpose, Streams};
 use sir_mesh::SideId;
 
-use crate::batches::estimator;
 use crate::batches::patch_sizes::PatchSizes;
 use crate::batches::schedule::Schedule;
 use crate::batches::side_range::SideRange;
 use crate::batches::side_state::SideState;
 use crate::batches::sums::{BatchSums, FocusSums};
 use crate::batches::walks::Walks;
+use crate::counted::Counted;
 use crate::error::SolveError;
 use crate::focus_sides::FocusSides;
 use crate::global;
@@ -20,12 +20,12 @@ use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
 use crate::segments::{End, Segment};
 use crate::shot::Shot;
-use crate::solution::Solution;
-use crate::stage::{AnyOrder, Stage, Workers, map_parts};
+use crate::stage::{AnyOrder, Stage};
 use crate::tallies::{Counters, PatchTallies, SquareUnit, SquareUnits, WorkerTallies};
 use crate::totals::{Balance, StageTotals};
 use crate::transported::{Transported, Walked};
 use crate::visitor::Visitor;
+use crate::workers::{BLOCK, Sides, Workers, map_sides};
 
 /// Settings of a transport in batches.
 #[derive(Clone, Debug)]
@@ -82,9 +82,11 @@ impl<'m> Batches<'m> {
         unit: PowerUnit,
         tallies: PatchTallies,
         (source, reflected_share): (FocusSums, f64),
+        workers: &dyn Workers,
     ) -> Self {
         let BatchSettings { model, domain, lines, seed } = settings;
-        let lines_per_crossing = PatchSizes::of(model, &focus_sides).lines_per_crossing(&domain, lines);
+        let lines_per_crossing =
+            PatchSizes::of(model, &focus_sides, workers).lines_per_crossing(&domain, lines);
         let schedule = Schedule::new(lines, lines_per_crossing, &domain, source, reflected_share);
         let purpose = Purpose::GLOBAL;
         let offset = Streams::new(seed, Purpose::ALLOCATION).line(purpose.0 - Purpose::FIRST_SHOT.0).unit();
@@ -110,54 +112,64 @@ impl<'m> Batches<'m> {
         }
     }
 
-    /// Divides the sides into at most `count` ranges.
-    fn ranges(&mut self, count: usize) -> impl Iterator<Item = SideRange<'_>> {
-        let Self { model, ref domain, ref focus_sides, ref tallies, ref mut states, schedule, .. } = *self;
-        let size = states.len().div_ceil(count.max(1)).max(1);
-        states.chunks_mut(size).enumerate().map(move |(i, states)| {
-            let first = (i * size) as u32;
-            SideRange { model, domain, focus_sides, tallies, schedule, first, states }
+    /// Applies a function to blocks of sides and their states, and returns the results in order.
+    fn map_states<T: Send>(
+        &mut self,
+        workers: &dyn Workers,
+        function: impl Fn(SideRange<'_>, &mut [SideState]) -> T + Sync,
+    ) -> Vec<T> {
+        let Self { model, domain, focus_sides, tallies, states, schedule, .. } = self;
+        map_sides(workers, &model.mesh, states.chunks_mut(BLOCK), |sides, states| {
+            function(SideRange { model, domain, focus_sides, tallies, schedule, sides }, states)
         })
     }
 
     /// Sets the power that all sides send with each line of the batch that begins.
     fn open(&mut self, workers: &dyn Workers) {
-        map_parts(workers, self.ranges(workers.count()), |mut sides| sides.open());
+        self.map_states(workers, |sides, states| sides.open(states));
     }
 
     /// Prepares random walks with the power that is unshot when all lines are traced. Returns false if there is none.
-    fn begin_walks(&mut self) -> bool {
+    fn begin_walks(&mut self, workers: &dyn Workers) -> bool {
         let Self { model, ref domain, ref states, ref schedule, seed, .. } = *self;
-        let amount = states.iter().map(|state| state.unshot.amount()).sum();
         let forecast = domain.forecast(schedule.lines());
-        let mut crossings = 0.0;
-        model.mesh.for_each_side(|triangle, _, _, side| {
-            crossings += forecast.crossings(model.area(triangle, side))
+        let sums = map_sides(workers, &model.mesh, states.chunks(BLOCK), |sides, states| {
+            let amount: f64 = states.iter().map(|state| state.unshot.amount()).sum();
+            let crossings = |(triangle, side)| forecast.crossings(model.area(triangle, side));
+            [amount, sides.iter().map(crossings).sum()]
         });
+        let [amount, crossings] = [0, 1].map(|k| sums.iter().map(|sums| sums[k]).sum());
         let count = schedule.walks(amount, crossings);
         if count > 0 {
             let unshot = |side: SideId| states[side.index()].unshot;
-            self.walks = Some(Walks::new(model, unshot, count, seed, Purpose::WALKS));
+            self.walks = Some(Walks::new(model, unshot, count, seed, workers));
         }
         self.walks.is_some()
     }
 
     /// Adds the power that walks have brought to that of the shots.
-    fn end_walks(&mut self, walks: &Walks) {
+    fn end_walks(&mut self, walks: &Walks, workers: &dyn Workers) {
         self.walked = Walked { walks: walks.count(), power: self.schedule.sums().unshot.all };
         let Self { model, ref tallies, ref mut direct, .. } = *self;
-        let (mut all, mut all_reflected) = (Quanta::ZERO, Quanta::ZERO);
-        model.mesh.for_each_side(|triangle, _, _, side| {
-            let (power, _) = tallies.take(side);
-            let reflected = power.scaled(model.reflectance(triangle, side));
-            all += power;
-            all_reflected += reflected;
-            direct.power[side.index()] += power;
-            for (variance, more) in direct.variance[side.index()].iter_mut().zip(walks.variance(power)) {
-                *variance += more as f32;
+        let blocks = direct.power.chunks_mut(BLOCK).zip(direct.variance.chunks_mut(BLOCK));
+        let sums = map_sides(workers, &model.mesh, blocks, |sides, (powers, variances)| {
+            let (mut reflected, mut absorbed) = (Quanta::ZERO, Quanta::ZERO);
+            for (((triangle, side), sum), variance) in sides.iter().zip(powers).zip(variances) {
+                let (power, _) = tallies.take(side);
+                let of_side = power.scaled(model.reflectance(triangle, side));
+                reflected += of_side;
+                absorbed += power - of_side;
+                *sum += power;
+                for (variance, more) in variance.iter_mut().zip(walks.variance(power)) {
+                    *variance += more as f32;
+                }
             }
+            (reflected, absorbed)
         });
-        (self.reflected_walks, self.absorbed_walks) = (all_reflected, all - all_reflected);
+        for (reflected, absorbed) in sums {
+            self.reflected_walks += reflected;
+            self.absorbed_walks += absorbed;
+        }
     }
 }
 
@@ -177,30 +189,42 @@ impl<'m> Stage for Batches<'m> {
     fn begin(settings: Self::Settings, shot: Shot, workers: &dyn Workers) -> Result<Self, SolveError> {
         let BatchSettings { model, ref domain, lines, .. } = settings;
         let focus_sides = FocusSides::of(model, domain.focus());
-        let unshot = shot.unshot(model);
+        let unshot = shot.unshot(model, workers);
         let Shot { received: direct, unit, balance, .. } = shot;
         let (forecast, heavy) = (domain.forecast(lines), f64::from(domain.weight()));
-        let mut source = FocusSums::default();
         // Outside the focus and in it: the number of lines that cross a side, and the power that they bring.
-        let (mut most, mut brightest) = ([0.0; 2], [[0.0; 3]; 2]);
-        model.mesh.for_each_side(|triangle, _, _, side| {
-            let reflectance = model.reflectance(triangle, side);
-            let unshot = unshot[side.index()];
-            let in_focus = focus_sides.contains(side);
-            source.add(unshot, in_focus);
-            let crossings = forecast.crossings(model.area(triangle, side));
-            let weight = if in_focus { 1.0 } else { heavy };
-            // There are fewer lines than their total weight, and each crosses the side at most once.
-            let crossed = if in_focus { crossings } else { crossings.min(lines as f64) };
-            let (most, brightest) = (&mut most[usize::from(in_focus)], &mut brightest[usize::from(in_focus)]);
-            *most = f64::max(*most, crossed);
-            for band in 0..3 {
-                // All light that the side reflects, if the surfaces it sees are as bright, over all its crossings.
-                let share = weight * (unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings);
-                // NaN for a patch without covered area; `max` ignores it.
-                brightest[band] = f64::max(brightest[band], share);
+        let of_block = |sides: Sides<'_>, unshot: &[Quanta]| {
+            let mut source = FocusSums::default();
+            let (mut most, mut brightest) = ([0.0; 2], [[0.0; 3]; 2]);
+            for ((triangle, side), &unshot) in sides.iter().zip(unshot) {
+                let reflectance = model.reflectance(triangle, side);
+                let in_focus = focus_sides.contains(side);
+                source.add(unshot, in_focus);
+                let crossings = forecast.crossings(model.area(triangle, side));
+                let weight = if in_focus { 1.0 } else { heavy };
+                // There are fewer lines than their total weight, and each crosses the side at most once.
+                let crossed = if in_focus { crossings } else { crossings.min(lines as f64) };
+                let (most, brightest) =
+                    (&mut most[usize::from(in_focus)], &mut brightest[usize::from(in_focus)]);
+                *most = f64::max(*most, crossed);
+                for band in 0..3 {
+                    // All light that the side reflects, if the surfaces it sees are as bright, over all its crossings.
+                    let share = weight * (unshot.0[band] as f64 / (1.0 - reflectance[band]) / crossings);
+                    // NaN for a patch without covered area; `max` ignores it.
+                    brightest[band] = f64::max(brightest[band], share);
+                }
             }
-        });
+            (source, most, brightest)
+        };
+        let mut source = FocusSums::default();
+        let (mut most, mut brightest) = ([0.0; 2], [[0.0; 3]; 2]);
+        for (of_block, crossed, bright) in map_sides(workers, &model.mesh, unshot.chunks(BLOCK), of_block) {
+            source += of_block;
+            for part in 0..2 {
+                most[part] = f64::max(most[part], crossed[part]);
+                brightest[part] = [0, 1, 2].map(|band| f64::max(brightest[part][band], bright[part][band]));
+            }
+        }
         // Sides in the focus and outside send power to each other, each with the weight of the line.
         let [outer, inner] = brightest;
         let brightest = [
@@ -212,7 +236,8 @@ impl<'m> Stage for Batches<'m> {
             SquareUnits { inside: of_part(1), outside: of_part(0), in_focus: focus_sides.clone() };
         let tallies = PatchTallies::new(model.mesh.side_count(), workers.count(), 1, units_of_squares);
         let reflected_share = balance.unshot.total() / balance.emitted.total().max(1.0);
-        let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (source, reflected_share));
+        let mut stage =
+            Self::new(settings, focus_sides, direct, unit, tallies, (source, reflected_share), workers);
         for (state, unshot) in stage.states.iter_mut().zip(unshot) {
             (state.unshot, state.source) = (unshot, unshot.0.map(|q| q as f32));
         }
@@ -232,10 +257,11 @@ impl<'m> Stage for Batches<'m> {
         let units_of_squares = SquareUnits::restore(focus_sides.clone(), visitor);
         let tallies = PatchTallies::new(sides, workers.count(), 1, units_of_squares);
         let direct = Received::nothing(sides);
-        let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, (FocusSums::default(), 0.0));
+        let source = (FocusSums::default(), 0.0);
+        let mut stage = Self::new(settings, focus_sides, direct, unit, tallies, source, workers);
         stage.visit_after_units(visitor);
         if stage.schedule.is_over() {
-            stage.begin_walks();
+            stage.begin_walks(workers);
         }
         Ok(stage)
     }
@@ -282,18 +308,18 @@ impl<'m> Stage for Batches<'m> {
 
     fn advance(&mut self, workers: &dyn Workers) -> bool {
         if let Some(walks) = self.walks.take() {
-            self.end_walks(&walks);
+            self.end_walks(&walks, workers);
             return false;
         }
         let mut sums = BatchSums::default();
-        map_parts(workers, self.ranges(workers.count()), |mut sides| sides.close())
+        self.map_states(workers, |sides, states| sides.close(states))
             .into_iter()
             .for_each(|part| sums += part);
         if self.schedule.advance(sums) {
             self.open(workers);
             return true;
         }
-        self.begin_walks()
+        self.begin_walks(workers)
     }
 
     fn visit_end(&mut self, visitor: &mut dyn Visitor) {
@@ -310,13 +336,12 @@ impl<'m> Stage for Batches<'m> {
         self.schedule.number() + 1
     }
 
-    fn finish(self, totals: StageTotals) -> Result<Transported, SolveError> {
-        let Self { model, domain, focus_sides, mut direct, tallies, states, unit, schedule, .. } = self;
+    fn finish(mut self, totals: StageTotals, workers: &dyn Workers) -> Result<Transported, SolveError> {
         let StageTotals { balance: Balance { emitted: sent_by_walks, blocked, escaped, .. }, counts } =
             totals;
-        let BatchSums { unshot, absorbed, .. } = schedule.sums();
+        let BatchSums { unshot, absorbed, .. } = self.schedule.sums();
         let balance = Balance {
-            emitted: schedule.source(),
+            emitted: self.schedule.source(),
             absorbed: absorbed + self.absorbed_walks,
             blocked,
             escaped,
@@ -325,19 +350,10 @@ impl<'m> Stage for Batches<'m> {
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "multipath" });
         }
-        let counted = estimator::counted(model, domain, schedule.lines(), &focus_sides, states);
-        estimator::add_to(&mut direct, model, &counted, &focus_sides, &tallies);
-        drop(tallies);
-        let solution = Solution::new(model, &direct, unit);
-        Ok(Transported {
-            solution,
-            received: direct,
-            counted: Some(counted),
-            unit,
-            balance,
-            counts,
-            walked: self.walked,
-        })
+        let sides = self.map_states(workers, |sides, states| sides.counted(states)).concat();
+        let Self { domain, focus_sides, direct, unit, schedule, walked, .. } = self;
+        let counted = Some(Counted { domain, lines: schedule.lines(), focus_sides, sides });
+        Ok(Transported { uncounted: direct, counted, unit, balance, counts, walked })
     }
 }
 

@@ -23,6 +23,7 @@ use crate::model::Model;
 use crate::power::Quanta;
 use crate::tallies::WorkerTallies;
 use crate::totals::StageTotals;
+use crate::workers::{Workers, map_sides, no_items};
 
 /// Number of walks that are traced together.
 const WALKS: u64 = 1024;
@@ -68,14 +69,16 @@ impl Walks {
     /// Returns `count` walks that start with the unshot power, indexed by [`SideId`].
     pub(super) fn new(
         model: &Model,
-        unshot: impl Fn(SideId) -> Quanta,
+        unshot: impl Fn(SideId) -> Quanta + Sync,
         count: u64,
         seed: u64,
-        purpose: Purpose,
+        workers: &dyn Workers,
     ) -> Self {
-        let mesh = &model.mesh;
-        let weights: Vec<f64> =
-            (0..mesh.side_count()).map(|side| unshot(SideId::new(side)).amount()).collect();
+        let (mesh, purpose) = (&model.mesh, Purpose::WALKS);
+        let weights = map_sides(workers, mesh, no_items(), |sides, ()| {
+            sides.iter().map(|(_, side)| unshot(side).amount()).collect::<Vec<f64>>()
+        });
+        let weights = weights.concat();
         let total: f64 = weights.iter().sum();
         let offset = Streams::new(seed, Purpose::ALLOCATION).line(purpose.0).unit();
         let allocation = Allocation::new(&weights, count, offset);

@@ -9,9 +9,10 @@ use crate::sensors::gatherer::Gatherer;
 use crate::sensors::measurement::Measurement;
 use crate::sensors::sensor::{Sensor, SensorSettings};
 use crate::solution::Solution;
-use crate::stage::{AnyOrder, Stage, Workers};
+use crate::stage::{AnyOrder, Stage};
 use crate::totals::StageTotals;
 use crate::visitor::Visitor;
+use crate::workers::Workers;
 
 /// Input of the measurement.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +116,7 @@ impl<'s> Stage for SensorStage<'s> {
         self.visit_round(visitor);
     }
 
-    fn finish(self, _totals: StageTotals) -> Result<Vec<Measurement>, SolveError> {
+    fn finish(self, _totals: StageTotals, _workers: &dyn Workers) -> Result<Vec<Measurement>, SolveError> {
         let bits = |slot: Slot| slot.map(AtomicU64::into_inner);
         Ok(self.measured.into_iter().map(|slot| Measurement::from_bits(bits(slot))).collect())
     }

@@ -11,11 +11,12 @@ use crate::emitter::point_on_surface;
 use crate::error::SolveError;
 use crate::grouping::{Grouping, active_area};
 use crate::model::Model;
-use crate::stage::{AnyOrder, Stage, Workers};
+use crate::stage::{AnyOrder, Stage};
 use crate::totals::StageTotals;
 use crate::view_factors::effort::{Next, ViewFactorSettings};
 use crate::view_factors::table::ViewFactors;
 use crate::visitor::Visitor;
+use crate::workers::Workers;
 
 /// Largest number of groups. The tables grow with its square.
 pub const MAX_GROUPS: usize = 4096;
@@ -227,7 +228,7 @@ impl<'m> Stage for ViewFactorLines<'m> {
     }
 
     /// Returns the view factors counted in all rounds.
-    fn finish(self, _totals: StageTotals) -> Result<ViewFactors, SolveError> {
+    fn finish(self, _totals: StageTotals, _workers: &dyn Workers) -> Result<ViewFactors, SolveError> {
         Ok(ViewFactors {
             names: self.grouping.names().to_vec(),
             areas: self.grouping.areas(&self.model.scene, &self.model.mesh),

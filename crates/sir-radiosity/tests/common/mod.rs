@@ -88,7 +88,7 @@ pub(crate) fn shoot(model: &Model, lines: u64, seed: u64) -> Shot {
     stage.trace(0, &mut AnyOrder, 0..lines / 2, &mut totals);
     stage.trace(1, &mut AnyOrder, lines / 2..lines, &mut totals);
     assert!(!stage.advance(&TwoWorkers));
-    stage.finish(totals).unwrap()
+    stage.finish(totals, &TwoWorkers).unwrap()
 }
 
 /// Two workers: tallies are allocated for both, jobs are run one after the other.
@@ -156,11 +156,12 @@ pub(crate) fn domains(model: &Model) -> [Domain; 3] {
 pub(crate) fn radiosities(model: &Model, run: &Transported) -> Vec<Rgb> {
     let materials = model.scene.materials().len();
     let (mut sums, mut areas) = (vec![Rgb::ZERO; materials], vec![0.0; materials]);
+    let solution = run.solution(model);
     model.mesh.for_each_side(|triangle, _, side, id| {
         if side == Side::Front {
             let (m, area) =
                 (model.scene.triangle(triangle).material.index(), model.mesh.patch_area(triangle));
-            sums[m] += run.solution.radiosity(model, triangle, side, id) * area;
+            sums[m] += solution.radiosity(model, triangle, side, id) * area;
             areas[m] += area;
         }
     });
