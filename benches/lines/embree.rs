@@ -1,14 +1,18 @@
-//! Embree 3 as a reference. It is loaded at run time, so that neither building nor running this benchmark requires it.
+//! Embree 4 or 3 as a reference. It is loaded at run time, so that neither building nor running this benchmark requires it.
 #![allow(unsafe_code, reason = "Embree has a C interface")]
 
-use std::ffi::{c_char, c_int, c_uint, c_void};
+use std::cell::UnsafeCell;
+use std::ffi::{OsString, c_char, c_int, c_uint, c_void};
 use std::mem::{ManuallyDrop, offset_of};
 
 use libloading::Library;
 use sir::geom::{Line, Scene};
 
-/// File names of the library, as in Debian's `libembree3-3` and in other distributions.
-const NAMES: [&str; 2] = ["libembree3.so.3", "libembree3.so"];
+/// Environment variable with the path of the library.
+const PATH: &str = "EMBREE_LIBRARY";
+
+/// File names of the library, as in Debian's `libembree4-4` and `libembree3-3`, and in other distributions.
+const NAMES: [&str; 4] = ["libembree4.so.4", "libembree4.so", "libembree3.so.3", "libembree3.so"];
 
 const TRIANGLE: c_int = 0;
 const INDEX_BUFFER: c_int = 0;
@@ -46,6 +50,8 @@ pub(crate) struct RayHit {
     triangle: c_uint,
     geometry: c_uint,
     instance: c_uint,
+    /// Only in version 4.
+    instance_primitive: c_uint,
 }
 
 impl RayHit {
@@ -66,6 +72,7 @@ impl RayHit {
             triangle: INVALID,
             geometry: INVALID,
             instance: INVALID,
+            instance_primitive: INVALID,
         }
     }
 
@@ -75,15 +82,33 @@ impl RayHit {
     }
 }
 
-/// `RTCIntersectContext`, followed by our own data.
+/// `RTCIntersectContext` of version 3.
 #[repr(C)]
-struct Context {
+struct Context3 {
     flags: c_int,
     filter: Option<Filter>,
     instance: c_uint,
     /// Only some builds of Embree have and read this field.
     min_width: f32,
-    found: Vec<Found>,
+}
+
+/// `RTCRayQueryContext` of version 4.
+#[repr(C)]
+struct Context4 {
+    instance: c_uint,
+    instance_primitive: c_uint,
+}
+
+/// `RTCIntersectArguments` of version 4.
+#[repr(C)]
+struct Arguments4 {
+    flags: c_int,
+    features: c_uint,
+    context: *mut Context4,
+    filter: Option<Filter>,
+    intersect: *mut c_void,
+    /// Only some builds of Embree have and read this field.
+    min_width: f32,
 }
 
 /// Crossing recorded by the filter function, with the data needed to find the patch.
@@ -99,8 +124,8 @@ pub(crate) struct Found {
 #[repr(C)]
 struct FilterArguments {
     valid: *mut c_int,
-    user: *mut c_void,
-    context: *mut Context,
+    user: *mut Vec<Found>,
+    context: *mut c_void,
     ray: *const f32,
     hit: *const f32,
     n: c_uint,
@@ -111,14 +136,14 @@ type Filter = unsafe extern "C" fn(*const FilterArguments);
 /// Records a hit and rejects it, so that traversal continues.
 unsafe extern "C" fn note(arguments: *const FilterArguments) {
     // SAFETY: Embree calls this with N = 1 for `rtcIntersect1`, where ray and hit are laid out as in `RayHit`, and with
-    // the context that was passed to it.
+    // the user data of the geometry, which nothing else accesses during a search.
     unsafe {
         let arguments = &*arguments;
         let (ray, hit) = (arguments.ray, arguments.hit);
         let field = |offset: usize| offset / size_of::<f32>();
         let direction = ray.add(field(offset_of!(RayHit, direction)));
         let towards: f32 = (0..3).map(|k| *hit.add(k) * *direction.add(k)).sum();
-        (*arguments.context).found.push(Found {
+        (*arguments.user).push(Found {
             t: *ray.add(field(offset_of!(RayHit, far))),
             triangle: (*hit.add(5)).to_bits(),
             point: [*hit.add(3), *hit.add(4)],
@@ -136,14 +161,25 @@ struct Functions {
     new_geometry: unsafe extern "C" fn(Handle, c_int) -> Handle,
     new_buffer: unsafe extern "C" fn(Handle, c_int, c_uint, c_int, usize, usize) -> *mut c_void,
     set_filter: unsafe extern "C" fn(Handle, Filter),
+    set_user_data: unsafe extern "C" fn(Handle, *mut Vec<Found>),
     commit_geometry: unsafe extern "C" fn(Handle),
     attach_geometry: unsafe extern "C" fn(Handle, Handle) -> c_uint,
     release_geometry: unsafe extern "C" fn(Handle),
     commit_scene: unsafe extern "C" fn(Handle),
-    intersect1: unsafe extern "C" fn(Handle, *mut Context, *mut RayHit),
-    intersect1m: unsafe extern "C" fn(Handle, *mut Context, *mut RayHit, c_uint, usize),
+    intersect: Intersect,
     release_scene: unsafe extern "C" fn(Handle),
     release_device: unsafe extern "C" fn(Handle),
+}
+
+/// Searches, which differ between the versions.
+enum Intersect {
+    Version3 {
+        one: unsafe extern "C" fn(Handle, *mut Context3, *mut RayHit),
+        many: unsafe extern "C" fn(Handle, *mut Context3, *mut RayHit, c_uint, usize),
+    },
+    Version4 {
+        one: unsafe extern "C" fn(Handle, *mut RayHit, *mut Arguments4),
+    },
 }
 
 /// Embree library, with a device that uses one thread.
@@ -158,7 +194,11 @@ impl Embree {
     /// Loads the library, or returns the reason why it cannot be loaded.
     pub(crate) fn load() -> Result<Self, String> {
         let mut reason = String::new();
-        for name in NAMES {
+        let names = match std::env::var_os(PATH) {
+            Some(path) => vec![path],
+            None => NAMES.map(OsString::from).to_vec(),
+        };
+        for name in names {
             // SAFETY: the initializers of Embree have no preconditions.
             match unsafe { Library::new(name) } {
                 Ok(library) => return Self::from_library(library).map_err(|e| e.to_string()),
@@ -169,8 +209,12 @@ impl Embree {
     }
 
     fn from_library(library: Library) -> Result<Self, libloading::Error> {
-        // SAFETY: names and types are those of rtcore_*.h of version 3.13.
+        // SAFETY: names and types are those of rtcore_*.h of versions 3.13 and 4.4. Streams are only in version 3.
         unsafe {
+            let intersect = match library.get(b"rtcIntersect1M") {
+                Ok(many) => Intersect::Version3 { one: *library.get(b"rtcIntersect1")?, many: *many },
+                Err(_) => Intersect::Version4 { one: *library.get(b"rtcIntersect1")? },
+            };
             let functions = Functions {
                 new_device: *library.get(b"rtcNewDevice")?,
                 new_scene: *library.get(b"rtcNewScene")?,
@@ -178,12 +222,12 @@ impl Embree {
                 new_geometry: *library.get(b"rtcNewGeometry")?,
                 new_buffer: *library.get(b"rtcSetNewGeometryBuffer")?,
                 set_filter: *library.get(b"rtcSetGeometryIntersectFilterFunction")?,
+                set_user_data: *library.get(b"rtcSetGeometryUserData")?,
                 commit_geometry: *library.get(b"rtcCommitGeometry")?,
                 attach_geometry: *library.get(b"rtcAttachGeometry")?,
                 release_geometry: *library.get(b"rtcReleaseGeometry")?,
                 commit_scene: *library.get(b"rtcCommitScene")?,
-                intersect1: *library.get(b"rtcIntersect1")?,
-                intersect1m: *library.get(b"rtcIntersect1M")?,
+                intersect,
                 release_scene: *library.get(b"rtcReleaseScene")?,
                 release_device: *library.get(b"rtcReleaseDevice")?,
             };
@@ -193,9 +237,18 @@ impl Embree {
         }
     }
 
+    /// Returns the version of the library.
+    pub(crate) fn version(&self) -> u32 {
+        match self.functions.intersect {
+            Intersect::Version3 { .. } => 3,
+            Intersect::Version4 { .. } => 4,
+        }
+    }
+
     /// Builds an acceleration structure for a scene. If `all_hits` is set, a filter function records all hits.
     pub(crate) fn scene(&self, scene: &Scene, quality: Quality, all_hits: bool) -> Peer<'_> {
         let f = &self.functions;
+        let found = Box::new(UnsafeCell::new(Vec::new()));
         let (vertices, triangles) = (scene.vertices(), scene.triangles());
         // SAFETY: buffers that Embree creates are at least as long as requested; all handles come from Embree.
         let handle = unsafe {
@@ -214,6 +267,7 @@ impl Embree {
             }
             if all_hits {
                 (f.set_filter)(geometry, note);
+                (f.set_user_data)(geometry, found.get());
             }
             (f.commit_geometry)(geometry);
             (f.attach_geometry)(handle, geometry);
@@ -221,7 +275,7 @@ impl Embree {
             (f.commit_scene)(handle);
             handle
         };
-        Peer { embree: self, handle }
+        Peer { embree: self, handle, found }
     }
 }
 
@@ -236,58 +290,79 @@ impl Drop for Embree {
 pub(crate) struct Peer<'e> {
     embree: &'e Embree,
     handle: Handle,
+    /// Hits that the filter function records.
+    found: Box<UnsafeCell<Vec<Found>>>,
+}
+
+impl Context3 {
+    fn new(coherent: bool) -> Self {
+        Self { flags: c_int::from(coherent), filter: None, instance: INVALID, min_width: 0.0 }
+    }
 }
 
 impl Peer<'_> {
-    fn context(coherent: bool) -> Context {
-        Context {
-            flags: c_int::from(coherent),
-            filter: None,
-            instance: INVALID,
-            min_width: 0.0,
-            found: Vec::new(),
+    /// Finds the closest hits of rays, one by one, or all hits if a filter function records them. `visit` gets each ray
+    /// after its search.
+    fn search(&self, rays: &[RayHit], mut visit: impl FnMut(RayHit)) {
+        // SAFETY: the scene is committed; context, arguments and ray have the layouts that Embree expects.
+        match self.embree.functions.intersect {
+            Intersect::Version3 { one, .. } => {
+                let mut context = Context3::new(false);
+                for ray in rays {
+                    let mut ray = *ray;
+                    unsafe { one(self.handle, &raw mut context, &raw mut ray) };
+                    visit(ray);
+                }
+            }
+            Intersect::Version4 { one } => {
+                let mut context = Context4 { instance: INVALID, instance_primitive: INVALID };
+                let mut arguments = Arguments4 {
+                    flags: 0,
+                    features: u32::MAX,
+                    context: &raw mut context,
+                    filter: None,
+                    intersect: std::ptr::null_mut(),
+                    min_width: 0.0,
+                };
+                for ray in rays {
+                    let mut ray = *ray;
+                    unsafe { one(self.handle, &raw mut ray, &raw mut arguments) };
+                    visit(ray);
+                }
+            }
         }
     }
 
     /// Finds closest hits, ray by ray.
     pub(crate) fn closest(&self, rays: &[RayHit], mut visit: impl FnMut(Option<u32>)) {
-        let mut context = Self::context(false);
-        for ray in rays {
-            let mut ray = *ray;
-            // SAFETY: the scene is committed; context and ray have the layout that Embree expects.
-            unsafe { (self.embree.functions.intersect1)(self.handle, &raw mut context, &raw mut ray) };
-            visit(ray.triangle());
-        }
+        self.search(rays, |ray| visit(ray.triangle()));
     }
 
-    /// Finds closest hits of streams of coherent rays.
-    pub(crate) fn closest_streams(&self, rays: &[RayHit], mut visit: impl FnMut(Option<u32>)) {
-        let mut context = Self::context(true);
+    /// Finds closest hits of streams of coherent rays. Returns false if this version has no streams.
+    pub(crate) fn closest_streams(&self, rays: &[RayHit], mut visit: impl FnMut(Option<u32>)) -> bool {
+        let Intersect::Version3 { many, .. } = self.embree.functions.intersect else { return false };
+        let mut context = Context3::new(true);
         let mut stream = Vec::new();
         for rays in rays.chunks(256) {
             stream.clear();
             stream.extend_from_slice(rays);
             let (count, stride) = (stream.len() as c_uint, size_of::<RayHit>());
-            // SAFETY: as above; the stream has `count` rays.
-            unsafe {
-                let first = stream.as_mut_ptr();
-                (self.embree.functions.intersect1m)(self.handle, &raw mut context, first, count, stride);
-            }
+            // SAFETY: as in `search`; the stream has `count` rays.
+            unsafe { many(self.handle, &raw mut context, stream.as_mut_ptr(), count, stride) };
             stream.iter().for_each(|ray| visit(ray.triangle()));
         }
+        true
     }
 
     /// Finds all hits in order along each line, line by line.
     pub(crate) fn all_hits(&self, lines: &[RayHit], mut visit: impl FnMut(&[Found])) {
-        let mut context = Self::context(false);
-        for line in lines {
-            let mut line = *line;
-            context.found.clear();
-            // SAFETY: as above; the filter function writes to the context and to nothing else.
-            unsafe { (self.embree.functions.intersect1)(self.handle, &raw mut context, &raw mut line) };
-            context.found.sort_unstable_by(|a, b| a.t.total_cmp(&b.t));
-            visit(&context.found);
-        }
+        self.search(lines, |_| {
+            // SAFETY: the filter function is the only other user of the hits, and no search runs now.
+            let found = unsafe { &mut *self.found.get() };
+            found.sort_unstable_by(|a, b| a.t.total_cmp(&b.t));
+            visit(found);
+            found.clear();
+        });
     }
 }
 

@@ -1,5 +1,6 @@
-//! Benchmark of line tracing, compared with Embree 3 if it is installed (Debian: `libembree3-3`): the same triangles
-//! and rays, on one thread, in interleaved rounds.
+//! Benchmark of line tracing, compared with Embree 4 or 3 if it is installed (Debian: `libembree4-4` or `libembree3-3`), or
+//! with the library that the environment variable `EMBREE_LIBRARY` names: the same triangles and rays, on one thread, in
+//! interleaved rounds.
 //!
 //! ```text
 //! cargo bench --bench lines                        # all available scenes
@@ -62,9 +63,12 @@ fn main() {
     let embree = Embree::load();
     if let Err(reason) = &embree {
         println!("no comparison with Embree, because it cannot be loaded ({reason});");
-        println!("on Debian, install it with `apt-get install libembree3-3`\n");
+        println!("install a package such as Debian's libembree4-4, or name the library in EMBREE_LIBRARY\n");
     }
     let embree = embree.ok();
+    if let Some(embree) = &embree {
+        println!("Compared with Embree {}.", embree.version());
+    }
     println!("One thread, {} lines, median of {} interleaved rounds.", options.lines, options.rounds);
     println!(
         "{:<16} {:<34} {:>10} {:>10} {:>7}  agreement",
@@ -190,13 +194,18 @@ fn compare_closest(
     });
     let (mut sum1, mut sum2) = (0u64, 0u64);
     let mut they = || peer.closest(&theirs, |triangle| sum1 += u64::from(triangle.unwrap_or(0)));
-    let mut streams = || peer.closest_streams(&theirs, |triangle| sum2 += u64::from(triangle.unwrap_or(0)));
+    let mut has_streams = false;
+    let mut streams = || {
+        has_streams = peer.closest_streams(&theirs, |triangle| sum2 += u64::from(triangle.unwrap_or(0)));
+    };
     let times = by_turns(rounds, &mut [&mut we, &mut they, &mut streams]);
     let n = rays.len() as f64;
     let agreement = format!("{:.3} % of the triangles", 100.0 * same as f64 / n);
     row(name, what, (n, n), &times[..2], &agreement);
     // Embree traces coherent rays faster as streams. These rays have the order in which a pipeline generates them.
-    row(name, &format!("{what}, its streams"), (n, n), &[times[0], times[2]], "");
+    if has_streams {
+        row(name, &format!("{what}, its streams"), (n, n), &[times[0], times[2]], "");
+    }
 }
 
 fn compare_all(name: &str, model: &Model, lines: u64, peer: Option<&Peer<'_>>, rounds: usize) {

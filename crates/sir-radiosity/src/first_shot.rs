@@ -5,6 +5,7 @@
 use sir_lines::Purpose;
 use sir_mesh::SideId;
 
+use crate::emitter::Emitter;
 use crate::error::SolveError;
 use crate::local_shot::{LocalShot, ShotInput, ShotSources};
 use crate::model::Model;
@@ -16,9 +17,9 @@ use crate::visitor::Visitor;
 use crate::workers::Workers;
 
 /// The first shot: lines from all light sources, in proportion to their power.
-pub type FirstShot<'m> = LocalShot<'m, ()>;
+pub type FirstShot<'m> = LocalShot<'m, (), Emitter>;
 
-impl ShotInput for () {
+impl ShotInput<Emitter> for () {
     const NAME: &'static str = "first shot";
     const KIND: u64 = 1;
     const PURPOSE: Purpose = Purpose::FIRST_SHOT;
@@ -27,13 +28,16 @@ impl ShotInput for () {
         &self,
         settings: &ShotSettings<'_>,
         _workers: &dyn Workers,
-    ) -> Result<ShotSources, SolveError> {
+    ) -> Result<ShotSources<Emitter>, SolveError> {
         let ShotSettings { model, lines, .. } = settings;
         let sources = FocusedSources::new(model, lines.focus.as_ref(), lines.count);
         let total = total_power(&sources.sources)?;
         let reflectance = model.mesh.largest_reflectance(&model.scene);
         let unit = PowerUnit::for_total(total.max_element(), reflectance);
-        Ok(ShotSources { sources, sides: Vec::new(), unit })
+        let (weights, density) = (sources.weights(), sources.density);
+        let (sources, powers) =
+            sources.sources.into_iter().map(|source| (source.emitter, source.power)).unzip();
+        Ok(ShotSources { sources, powers, weights, density, sides: Vec::new(), unit })
     }
 
     fn visit(&mut self, _visitor: &mut dyn Visitor) {}

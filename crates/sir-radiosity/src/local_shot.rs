@@ -3,16 +3,18 @@
 use std::ops::Range;
 
 use sir_accel::Ray;
-use sir_lines::{Allocation, Purpose, SobolPoints, Streams};
+use sir_geom::Rgb;
+use sir_lines::{Allocation, Numbers, Purpose, SobolPoints, Streams};
 use sir_mesh::SideId;
 
+use crate::emitter::Emitter;
 use crate::error::SolveError;
 use crate::global::PREFETCH_DISTANCE;
 use crate::model::Model;
+use crate::patch_side::PatchSide;
 use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
 use crate::shot::{Points, Shot, ShotSettings};
-use crate::sources::{FocusedSources, Source};
 use crate::stage::{AnyOrder, Stage};
 use crate::tallies::{Counters, HEADROOM, PatchTallies, SquareUnit};
 use crate::totals::StageTotals;
@@ -27,10 +29,10 @@ const COPIES: usize = 2;
 
 /// A first shot, which starts from nothing, or a second shot, which starts from the outcome of the first.
 #[derive(Debug)]
-pub struct LocalShot<'m, I> {
+pub struct LocalShot<'m, I, S> {
     input: I,
     model: &'m Model,
-    sources: Vec<Source>,
+    sources: Vec<S>,
     /// Side to which each source belongs; empty in a first shot.
     sides: Vec<SideId>,
     /// Power of one line of each source.
@@ -49,8 +51,28 @@ enum LineNumbers {
     Sobol(Box<SobolPoints>),
 }
 
+/// A source of lines.
+pub trait LineSource: Sync {
+    /// Returns the ray that belongs to the numbers of a line.
+    fn ray(&self, model: &Model, numbers: &mut impl Numbers) -> Ray;
+}
+
+impl LineSource for Emitter {
+    #[inline]
+    fn ray(&self, model: &Model, numbers: &mut impl Numbers) -> Ray {
+        self.ray(&model.scene, numbers)
+    }
+}
+
+impl LineSource for PatchSide {
+    #[inline]
+    fn ray(&self, model: &Model, numbers: &mut impl Numbers) -> Ray {
+        self.emitter(model).ray(&model.scene, numbers)
+    }
+}
+
 /// Starting point of a shot, from which the sources of its lines follow.
-pub(crate) trait ShotInput: Sync + Sized {
+pub(crate) trait ShotInput<S>: Sync + Sized {
     /// Name of the shot.
     const NAME: &'static str;
     /// Number that identifies the shot among the stages.
@@ -63,7 +85,11 @@ pub(crate) trait ShotInput: Sync + Sized {
     /// # Errors
     ///
     /// If there is no light.
-    fn sources(&self, settings: &ShotSettings<'_>, workers: &dyn Workers) -> Result<ShotSources, SolveError>;
+    fn sources(
+        &self,
+        settings: &ShotSettings<'_>,
+        workers: &dyn Workers,
+    ) -> Result<ShotSources<S>, SolveError>;
 
     /// Visits the input.
     fn visit(&mut self, visitor: &mut dyn Visitor);
@@ -76,16 +102,22 @@ pub(crate) trait ShotInput: Sync + Sized {
 }
 
 /// Sources of the lines of a shot.
-pub(crate) struct ShotSources {
+pub(crate) struct ShotSources<S> {
     /// The sources, all of which emit.
-    pub(crate) sources: FocusedSources,
+    pub(crate) sources: Vec<S>,
+    /// Power of each source \[W\].
+    pub(crate) powers: Vec<Rgb>,
+    /// Weights \[W\] in proportion to the number of lines of each source.
+    pub(crate) weights: Vec<f64>,
+    /// Ratio of lines per power in the focus to lines per power elsewhere.
+    pub(crate) density: f64,
     /// Side to which each source belongs; empty in a first shot.
     pub(crate) sides: Vec<SideId>,
     /// Size of a quantum.
     pub(crate) unit: PowerUnit,
 }
 
-impl<I> LocalShot<'_, I> {
+impl<I, S: LineSource> LocalShot<'_, I, S> {
     /// Returns the input of the shot, without the results of its lines.
     #[must_use]
     pub fn into_input(self) -> I {
@@ -100,42 +132,44 @@ impl<I> LocalShot<'_, I> {
 
     /// Returns the ray of a line of a source.
     fn ray_of(&self, source: usize, index: u64) -> Ray {
-        let (emitter, scene) = (&self.sources[source].emitter, &self.model.scene);
+        let (source, model) = (&self.sources[source], self.model);
         match &self.numbers {
-            LineNumbers::Random(streams) => emitter.ray(scene, &mut streams.line(index)),
-            LineNumbers::Sobol(points) => emitter.ray(scene, &mut points.line(index)),
+            LineNumbers::Random(streams) => source.ray(model, &mut streams.line(index)),
+            LineNumbers::Sobol(points) => source.ray(model, &mut points.line(index)),
         }
     }
 }
 
-impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
+impl<'m, I: ShotInput<S>, S: LineSource> Stage for LocalShot<'m, I, S> {
     type Settings = ShotSettings<'m>;
     type Input = I;
     type Outcome = Shot;
     type Chain = AnyOrder;
 
     fn identity(settings: &Self::Settings) -> Vec<u64> {
-        settings.identity(I::KIND)
+        settings.identity(<I as ShotInput<S>>::KIND)
     }
 
     /// Distributes lines among sources in proportion to their power, so that all lines carry the same power; with a
     /// focus, all lines of sources in it, and all others. There are no lines if there are no sources.
     fn begin(settings: Self::Settings, input: I, workers: &dyn Workers) -> Result<Self, SolveError> {
-        let ShotSources { sources, sides, unit } = input.sources(&settings, workers)?;
+        let ShotSources { sources, powers, weights, density, sides, unit } =
+            input.sources(&settings, workers)?;
         let ShotSettings { model, lines, seed, points, .. } = settings;
-        let weights = sources.weights();
-        let FocusedSources { sources, density, .. } = sources;
         let lines = if sources.is_empty() { 0 } else { lines.count };
         // A line carries ΣΦ/N in the color of its source, and less in the focus, where there are more lines.
         let line = weights.iter().sum::<f64>() / lines.max(1) as f64;
-        let quanta = |(source, weight): (&Source, _)| unit.quanta(source.power * (line / weight));
-        let per_line: Vec<Quanta> = sources.iter().zip(&weights).map(quanta).collect();
-        let offset =
-            Streams::new(seed, Purpose::ALLOCATION).line(I::PURPOSE.0 - Purpose::FIRST_SHOT.0).unit();
+        let quanta = |(power, weight): (Rgb, &f64)| unit.quanta(power * (line / weight));
+        let per_line: Vec<Quanta> = powers.into_iter().zip(&weights).map(quanta).collect();
+        let offset = Streams::new(seed, Purpose::ALLOCATION)
+            .line(<I as ShotInput<S>>::PURPOSE.0 - Purpose::FIRST_SHOT.0)
+            .unit();
         let allocation = Allocation::new(&weights, lines, offset);
         let numbers = match points {
-            Points::Random => LineNumbers::Random(Streams::new(seed, I::PURPOSE)),
-            Points::Sobol => LineNumbers::Sobol(Box::new(SobolPoints::new(seed, I::PURPOSE))),
+            Points::Random => LineNumbers::Random(Streams::new(seed, <I as ShotInput<S>>::PURPOSE)),
+            Points::Sobol => {
+                LineNumbers::Sobol(Box::new(SobolPoints::new(seed, <I as ShotInput<S>>::PURPOSE)))
+            }
         };
         // No line brings more than this. Lines in a focus may bring much less, so squares then need precision, not
         // headroom.
@@ -152,7 +186,7 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
         workers: &dyn Workers,
         visitor: &mut dyn Visitor,
     ) -> Result<Self, SolveError> {
-        let input = I::restore(settings.model, visitor);
+        let input = <I as ShotInput<S>>::restore(settings.model, visitor);
         let mut stage = Self::begin(settings, input, workers)?;
         stage.visit_round(visitor);
         Ok(stage)
@@ -226,7 +260,9 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
 
     /// Adds what the lines have brought and what their sources have sent to the input.
     fn finish(self, totals: StageTotals, workers: &dyn Workers) -> Result<Shot, SolveError> {
-        let Self { input, model, sides, per_line, allocation, unit, tallies, .. } = self;
+        let Self { input, model, sources, sides, per_line, allocation, unit, tallies, .. } = self;
+        // The memory of sources and tallies is needed for what follows.
+        drop(sources);
         let (mut received, mut sent) = input.into_power(model);
         let StageTotals { mut balance, counts } = totals;
         let lines = counts.lines.max(1) as f64;
@@ -253,8 +289,10 @@ impl<'m, I: ShotInput> Stage for LocalShot<'m, I> {
             balance.absorbed += absorbed;
         }
         if !balance.closes() {
-            return Err(SolveError::Unbalanced { stage: I::NAME });
+            return Err(SolveError::Unbalanced { stage: <I as ShotInput<S>>::NAME });
         }
+        drop(tallies);
+        sent.reserve_exact(sides.len());
         for (source, side) in sides.into_iter().enumerate() {
             let power = per_line[source].times(allocation.count(source) as i64);
             match sent.last_mut() {

@@ -12,29 +12,33 @@ use sir_geom::{Rgb, Side, TriangleId};
 use sir_lines::Purpose;
 use sir_mesh::{PatchId, SideId};
 
-use crate::emitter::Emitter;
 use crate::error::SolveError;
 use crate::focus_sides::FocusSides;
 use crate::local_shot::{LocalShot, ShotInput, ShotSources};
 use crate::model::Model;
+use crate::patch_side::PatchSide;
 use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
 use crate::shot::{Shot, ShotSettings};
-use crate::sources::{FocusedSources, Source};
+use crate::sources::FocusedSources;
 use crate::totals::{Balance, Counts};
 use crate::visitor::{Visitor, visit_counts};
 use crate::workers::{BLOCK, Sides, Workers, map_blocks, map_sides, no_items};
 
 /// The second shot: lines from the brightest patches; with the focus of the first shot, from the brightest patches in
 /// it. There are no lines if nothing reflects.
-pub type SecondShot<'m> = LocalShot<'m, Shot>;
+pub type SecondShot<'m> = LocalShot<'m, Shot, PatchSide>;
 
-impl ShotInput for Shot {
+impl ShotInput<PatchSide> for Shot {
     const NAME: &'static str = "second shot";
     const KIND: u64 = 4;
     const PURPOSE: Purpose = Purpose::SECOND_SHOT;
 
-    fn sources(&self, settings: &ShotSettings<'_>, workers: &dyn Workers) -> Result<ShotSources, SolveError> {
+    fn sources(
+        &self,
+        settings: &ShotSettings<'_>,
+        workers: &dyn Workers,
+    ) -> Result<ShotSources<PatchSide>, SolveError> {
         let ShotSettings { model, lines, reflected_share, .. } = settings;
         let unshot = self.unshot(model, workers);
         let focus = lines.focus.as_ref();
@@ -51,8 +55,12 @@ impl ShotInput for Shot {
             }
         };
         let bright = brightest(model, &unshot, &in_focus, total, workers);
-        let (sources, sides) = sources_of(model, self, &unshot, &bright, workers);
-        Ok(ShotSources { sources: FocusedSources::plain(sources), sides, unit: self.unit })
+        let blocks = bright_sides(model, self, &unshot, &bright, workers);
+        let all = || blocks.iter().flatten();
+        let (sources, sides) = all().map(|bright| (bright.place, bright.id)).unzip();
+        let powers: Vec<Rgb> = all().map(|bright| bright.power).collect();
+        let weights = powers.iter().map(|power| power.element_sum()).collect();
+        Ok(ShotSources { sources, powers, weights, density: 1.0, sides, unit: self.unit })
     }
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
@@ -83,39 +91,40 @@ impl ShotInput for Shot {
     }
 }
 
-/// Returns the patches of the bright sides as sources of the power that they still have to send, with the side of each.
-fn sources_of(
+/// A bright side, or the part of it in one triangle.
+struct BrightSide {
+    place: PatchSide,
+    id: SideId,
+    /// Power that it still has to send \[W\].
+    power: Rgb,
+}
+
+/// Returns the bright sides, in blocks.
+fn bright_sides(
     model: &Model,
     shot: &Shot,
     unshot: &[Quanta],
     bright: &[bool],
     workers: &dyn Workers,
-) -> (Vec<Source>, Vec<SideId>) {
-    let blocks = map_blocks(workers, model.scene.triangles().len(), no_items(), |triangles, ()| {
-        let (mut sources, mut sides) = (Vec::new(), Vec::new());
+) -> Vec<Vec<BrightSide>> {
+    map_blocks(workers, model.scene.triangles().len(), no_items(), |triangles, ()| {
+        let mut sources = Vec::new();
         for triangle in triangles.map(TriangleId::new) {
-            let (corners, front) = (model.scene.corners(triangle), model.scene.normal(triangle));
             let patches = model.mesh.patches_of(triangle);
             // A flat polygon that is one patch has several triangles.
             let part = model.scene.area(triangle) / (patches.len() as f64 * model.mesh.patch_area(triangle));
             for patch in patches.map(PatchId) {
-                for (side, normal) in [(Side::Front, front), (Side::Back, -front)] {
+                for side in [Side::Front, Side::Back] {
                     let Some(id) = model.mesh.side_of(triangle, patch, side) else { continue };
                     if bright[id.index()] {
-                        let corners = model.mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
                         let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
-                        let emitter =
-                            Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
-                        sources.push(Source { emitter, power });
-                        sides.push(id);
+                        sources.push(BrightSide { place: PatchSide { triangle, patch, side }, id, power });
                     }
                 }
             }
         }
-        (sources, sides)
-    });
-    let (sources, sides): (Vec<_>, Vec<_>) = blocks.into_iter().unzip();
-    (sources.concat(), sides.concat())
+        sources
+    })
 }
 
 /// Returns the power that the sides in the focus hold together.

@@ -7,10 +7,20 @@ use sir_radiosity::{Model, Quanta, Repeats};
 use crate::error::Error;
 use crate::format::bytes;
 use crate::memory;
-use crate::plan::{Output, Pipeline, Stage};
+use crate::plan::{Action, Output, Pipeline, Stage};
 use crate::prepare::cameras::chosen_camera;
 use crate::progress::Progress;
 use crate::run::save::{is_denoised, settings};
+
+/// Bytes per side for its power and the variance of it.
+const POWER_BYTES: usize = size_of::<Quanta>() + size_of::<[f32; 3]>();
+
+/// Bytes per side while lines are traced. In a second shot: power, two tally records of 64 bytes, a source. In batches: power,
+/// one record, the state of the side (72 bytes), and what lines have brought to it (48 bytes).
+const LINES_BYTES: usize = POWER_BYTES + 64 + 72 + 48;
+
+/// Bytes of the program itself and of its buffers, of which copies of tallies for several threads are the largest.
+const PROGRAM_BYTES: usize = 32 << 20;
 
 /// Bytes per side of the display mesh of images and lit meshes: measured on two million sides, rounded up.
 const DISPLAY_BYTES: usize = 200;
@@ -35,15 +45,14 @@ pub(super) fn needed_besides_model(memory: &[(&'static str, usize)]) -> usize {
 pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
     let Model { scene, mesh, accel } = model;
     let sides = mesh.side_count();
-    // Power and its variance; in the first shot two tally records of 64 bytes, later one, and less than 64 bytes for
-    // the unshot power.
-    let tracing = size_of::<Quanta>() + size_of::<[f32; 3]>() + 2 * 64;
     let solution = 2 * size_of::<Rgb>();
     // The light is summed over repeats wherever it is shown or measured.
     let has_lines = |stage: &Stage| stage.action.lines() > 0;
     let stages = pipeline.stages.iter().zip(pipeline.stages.iter().skip(1).map(Some).chain([None]));
     let used = stages.filter(|(stage, next)| has_lines(stage) && !next.is_some_and(has_lines)).count();
-    let tracing = tracing + used * Repeats::BYTES_PER_SIDE;
+    // The pilot of a `Solve` keeps its first shot, before anything is summed.
+    let pilot = usize::from(pipeline.flat_stages().any(|stage| matches!(stage.action, Action::Solve(_))));
+    let tracing = LINES_BYTES + (pilot * POWER_BYTES).max(used * Repeats::BYTES_PER_SIDE);
     let shown = pipeline.outputs().any(|o| !matches!(o, Output::Table(_)));
     // EXR images need a display mesh of standard errors, too.
     let measured =
@@ -75,5 +84,5 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     ];
     // The last two parts are not needed at the same time.
     let [scene, patches, accel, light, display] = [0, 1, 2, 3, 4].map(|i: usize| memory[i].1);
-    (memory, scene + patches + accel + light.max(display))
+    (memory, PROGRAM_BYTES + scene + patches + accel + light.max(display))
 }

@@ -64,9 +64,9 @@ impl SideRange<'_> {
         sums
     }
 
-    /// Returns what the lines of all batches have brought to these sides.
-    pub(super) fn counted(&self, states: &[SideState]) -> Vec<CountedPower> {
-        let of = |((_, side), state): ((_, _), &SideState)| {
+    /// Computes what the lines of all batches have brought to these sides.
+    pub(super) fn count(&self, states: &[SideState], counted: &mut [CountedPower]) {
+        for (((_, side), state), counted) in self.sides.iter().zip(states).zip(counted) {
             let SideState { brought, crossings, .. } = *state;
             let (squares, lines) = (self.tallies.squares(side), crossings as f64);
             let is_ratio = self.focus_sides.contains(side) && crossings >= 2;
@@ -77,8 +77,7 @@ impl SideRange<'_> {
                     false => square as f32,
                 }
             });
-            CountedPower { power: brought, crossings, variance }
-        };
-        self.sides.iter().zip(states).map(of).collect()
+            *counted = CountedPower { power: brought, crossings, variance };
+        }
     }
 }

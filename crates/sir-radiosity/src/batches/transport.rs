@@ -11,7 +11,7 @@ use crate::batches::side_range::SideRange;
 use crate::batches::side_state::SideState;
 use crate::batches::sums::{BatchSums, FocusSums};
 use crate::batches::walks::Walks;
-use crate::counted::Counted;
+use crate::counted::{Counted, CountedPower};
 use crate::error::SolveError;
 use crate::focus_sides::FocusSides;
 use crate::global;
@@ -190,7 +190,8 @@ impl<'m> Stage for Batches<'m> {
         let BatchSettings { model, ref domain, lines, .. } = settings;
         let focus_sides = FocusSides::of(model, domain.focus());
         let unshot = shot.unshot(model, workers);
-        let Shot { received: direct, unit, balance, .. } = shot;
+        let Shot { received: direct, unit, balance, sent, .. } = shot;
+        drop(sent);
         let (forecast, heavy) = (domain.forecast(lines), f64::from(domain.weight()));
         // Outside the focus and in it: the number of lines that cross a side, and the power that they bring.
         let of_block = |sides: Sides<'_>, unshot: &[Quanta]| {
@@ -336,7 +337,7 @@ impl<'m> Stage for Batches<'m> {
         self.schedule.number() + 1
     }
 
-    fn finish(mut self, totals: StageTotals, workers: &dyn Workers) -> Result<Transported, SolveError> {
+    fn finish(self, totals: StageTotals, workers: &dyn Workers) -> Result<Transported, SolveError> {
         let StageTotals { balance: Balance { emitted: sent_by_walks, blocked, escaped, .. }, counts } =
             totals;
         let BatchSums { unshot, absorbed, .. } = self.schedule.sums();
@@ -350,7 +351,12 @@ impl<'m> Stage for Batches<'m> {
         if !balance.closes() {
             return Err(SolveError::Unbalanced { stage: "multipath" });
         }
-        let sides = self.map_states(workers, |sides, states| sides.counted(states)).concat();
+        let mut sides = vec![CountedPower::default(); self.states.len()];
+        let Self { model, domain, focus_sides, tallies, states, schedule, .. } = &self;
+        let blocks = states.chunks(BLOCK).zip(sides.chunks_mut(BLOCK));
+        map_sides(workers, &model.mesh, blocks, |sides, (states, counted)| {
+            SideRange { model, domain, focus_sides, tallies, schedule, sides }.count(states, counted);
+        });
         let Self { domain, focus_sides, direct, unit, schedule, walked, .. } = self;
         let counted = Some(Counted { domain, lines: schedule.lines(), focus_sides, sides });
         Ok(Transported { uncounted: direct, counted, unit, balance, counts, walked })

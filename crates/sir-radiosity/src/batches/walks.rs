@@ -12,14 +12,13 @@ use std::collections::HashMap;
 
 use std::ops::Range;
 
-use glam::DVec3;
 use sir_accel::{Hit, Ray};
-use sir_geom::{Line, Rgb, Side, TriangleId};
-use sir_lines::{Allocation, Purpose, Stream, Streams, cosine_direction};
-use sir_mesh::{PatchId, SideId};
+use sir_geom::{Rgb, TriangleId};
+use sir_lines::{Allocation, Purpose, Stream, Streams};
+use sir_mesh::SideId;
 
-use crate::emitter::point_on_surface;
 use crate::model::Model;
+use crate::patch_side::PatchSide;
 use crate::power::Quanta;
 use crate::tallies::WorkerTallies;
 use crate::totals::StageTotals;
@@ -28,21 +27,12 @@ use crate::workers::{Workers, map_sides, no_items};
 /// Number of walks that are traced together.
 const WALKS: u64 = 1024;
 
-/// Side of a patch at which a walk starts or goes on.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// A triangle of the patch.
-    triangle: TriangleId,
-    patch: PatchId,
-    side: Side,
-}
-
 /// Walks that start at one side.
 #[derive(Clone, Copy, Debug)]
 struct Start {
     /// End of the numbers of these walks, exclusive.
     end: u64,
-    place: Place,
+    place: PatchSide,
     /// Power of each walk.
     power: Quanta,
 }
@@ -98,7 +88,7 @@ impl Walks {
                 squares[band] += walks as f64 * amount * amount;
                 amounts[band] += walks as f64 * amount;
             }
-            starts.push(Start { end, place: Place { triangle, patch, side }, power });
+            starts.push(Start { end, place: PatchSide { triangle, patch, side }, power });
         });
         let mean =
             [0, 1, 2].map(|band| if amounts[band] > 0.0 { squares[band] / amounts[band] } else { 0.0 });
@@ -160,7 +150,7 @@ impl Walks {
                         reflected(walk.power, model.reflectance(hit.triangle, side), &mut walk.stream)
                     {
                         let patch = model.mesh.patch_at(hit.triangle, hit.point);
-                        let place = Place { triangle: hit.triangle, patch, side: hit.side };
+                        let place = PatchSide { triangle: hit.triangle, patch, side: hit.side };
                         rays.push(self.ray(model, place, &mut walk.stream));
                         going.push(Walk { power, ..walk });
                     }
@@ -170,21 +160,11 @@ impl Walks {
     }
 
     /// Returns a ray from a random point of a patch.
-    fn ray(&self, model: &Model, place: Place, stream: &mut Stream) -> Ray {
-        let Place { triangle, patch, side } = place;
-        let scene = &model.scene;
-        let triangle = match self.merged.get(&patch.0) {
-            Some(triangles) => one_of(triangles, |t| scene.area(t), stream.unit()),
-            None => triangle,
-        };
-        let corners = scene.corners(triangle);
-        let part: [DVec3; 3] = model.mesh.patch_corners(triangle, patch).map(|corner| corner.point(corners));
-        let origin = point_on_surface(scene, triangle, part, stream);
-        let normal = match side {
-            Side::Front => scene.normal(triangle),
-            Side::Back => -scene.normal(triangle),
-        };
-        Ray::leaving(Line { origin, direction: cosine_direction(normal, stream.point()) }, triangle)
+    fn ray(&self, model: &Model, mut place: PatchSide, stream: &mut Stream) -> Ray {
+        if let Some(triangles) = self.merged.get(&place.patch.0) {
+            place.triangle = one_of(triangles, |t| model.scene.area(t), stream.unit());
+        }
+        place.emitter(model).ray(&model.scene, stream)
     }
 }
 
