@@ -47,7 +47,7 @@ impl Room {
     }
 
     /// Returns the text of a pipeline. Writes the scene to the folder.
-    pub(crate) fn pipeline(&self, lines: u64, seed: u64, folder: &Path) -> String {
+    pub(crate) fn pipeline(&self, lines: u64, rays: u64, seed: u64, folder: &Path) -> String {
         let path = match &self.scene {
             Scene::File(path) => path.clone(),
             Scene::Surfaces(surfaces) => surfaces.write(folder),
@@ -60,7 +60,7 @@ impl Room {
         for Sensor { name, position: [x, y, z], direction: [a, b, c], .. } in &self.sensors {
             write!(
                 text,
-                "Sensors(name: {name:?}, rays: 1024, at: Points([(position: ({x}, {y}, {z}), direction: ({a}, {b}, {c}))])),"
+                "Sensors(name: {name:?}, rays: {rays}, at: Points([(position: ({x}, {y}, {z}), direction: ({a}, {b}, {c}))])),"
             )
             .unwrap();
         }
@@ -146,7 +146,7 @@ pub(crate) fn rooms() -> Vec<Room> {
     let up = [0.0, 1.0, 0.0];
     let mut rooms = Vec::new();
     let focus = "Focus(min: (0, 0, 0), max: (5, 2.8, 6)),";
-    for (name, focus, lines) in [("sunlit", "", 4_000_000), ("sunlit, Focus", focus, 200_000)] {
+    for (name, focus, lines) in [("sunlit", "", 4_000_000), ("sunlit, Focus", focus, 1_000_000)] {
         let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/sir-pipeline/tests/data");
         rooms.push(Room {
             name,
@@ -226,7 +226,7 @@ fn behind_a_hole() -> Room {
         name: "hole",
         scene: Scene::Surfaces(rooms),
         stages: "Subdivide(patches: 600)".into(),
-        lines: 2_000_000,
+        lines: 8_000_000,
         sensors: vec![
             sensor("bright", [2.0, 0.8, 2.0], [0.0, 1.0, 0.0], None),
             sensor("dark", [5.5, 0.8, 2.0], [0.0, 1.0, 0.0], None),

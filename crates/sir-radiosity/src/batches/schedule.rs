@@ -127,21 +127,23 @@ impl Schedule {
     }
 
     /// Returns the number of random walks that send on the unshot power, whose amount over all sides is `amount`.
-    /// `crossings` is the expected number of crossings of all sides by all lines.
+    /// `crossings` is the expected number of crossings of the sides in the focus by all lines.
     ///
-    /// Lines know the power `P/n` of a typical one of `n` patches up to `P/n` times the root of `n/crossings`, if the
-    /// light is uneven. A walk brings `amount/walks` to each of the patches on its way, of which there are `1/(1−r)`
-    /// on average.
+    /// Of the power `P` received in the focus, lines know the part `P/n` of a typical one of `n` patches up to `P/n` times
+    /// the root of `n/crossings`, if the light is uneven. A walk brings `amount/walks` to each of the patches on its way, of
+    /// which there are at most `1/(1−ρ)` on average. All walks are taken to start in the focus.
     pub(super) fn walks(&self, amount: f64, crossings: f64) -> u64 {
-        let (sent, reflected) = (self.sums.sent.all.total(), self.sums.reflected.all.total());
         if amount == 0.0 {
             return 0;
         }
-        if sent <= 0.0 {
+        let FocusSums { all, in_focus } = self.sums.reflected;
+        let (reflected, in_focus) = (all.total(), in_focus.total());
+        if in_focus <= 0.0 {
             return self.lines;
         }
-        let rays = 1.0 / (1.0 - (reflected / sent).clamp(0.0, 0.999));
-        let share = amount / sent;
+        let received = reflected + self.sums.absorbed.total();
+        let share = amount / (received * in_focus / reflected);
+        let rays = 1.0 / (1.0 - (reflected / received).clamp(0.0, 0.999));
         let walks = share * share * rays * crossings / WALK_VARIANCE;
         let (fewest, share) = MIN_WALKS;
         (walks as u64).clamp(fewest.min(self.lines.div_ceil(share)), self.lines)
@@ -213,5 +215,35 @@ impl Schedule {
             }
         }
         visitor.same(&mut absorbed.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use sir_lines::Domain;
+
+    use super::*;
+
+    /// Power that leaves an open scene brings nothing to its surfaces, so it must not count among what lines know.
+    #[test]
+    fn the_number_of_walks_follows_from_the_power_received_in_the_focus() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let domain = GlobalLines::from(Domain::hull(&corners));
+        let walks = |sent: i64, in_focus: i64| {
+            let mut schedule = Schedule::new(1_000_000, 100.0, &domain, FocusSums::default(), 0.5);
+            let quanta = |power| Quanta([power; 3]);
+            let sums = &mut schedule.sums;
+            sums.sent = FocusSums { all: quanta(sent), in_focus: quanta(0) };
+            sums.reflected = FocusSums { all: quanta(500_000), in_focus: quanta(in_focus) };
+            sums.absorbed = quanta(500_000);
+            schedule.walks(3.0 * 10_000.0, 1e7)
+        };
+        let closed = walks(1_000_000, 500_000);
+        // A hundredth of the power is unshot, half of it is reflected: 10⁻⁴ · 2 · 10⁷/(1/2).
+        assert_eq!(closed, 4000);
+        assert_eq!(walks(1_000_000_000, 500_000), closed);
+        assert_eq!(walks(1_000_000, 250_000), 4 * closed);
+        assert_eq!(walks(1_000_000, 0), 1_000_000);
     }
 }

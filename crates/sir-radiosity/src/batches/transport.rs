@@ -131,12 +131,13 @@ impl<'m> Batches<'m> {
 
     /// Prepares random walks with the power that is unshot when all lines are traced. Returns false if there is none.
     fn begin_walks(&mut self, workers: &dyn Workers) -> bool {
-        let Self { model, ref domain, ref states, ref schedule, seed, .. } = *self;
+        let Self { model, ref domain, ref focus_sides, ref states, ref schedule, seed, .. } = *self;
         let forecast = domain.forecast(schedule.lines());
         let sums = map_sides(workers, &model.mesh, states.chunks(BLOCK), |sides, states| {
             let amount: f64 = states.iter().map(|state| state.unshot.amount()).sum();
+            let in_focus = sides.iter().filter(|(_, side)| focus_sides.contains(*side));
             let crossings = |(triangle, side)| forecast.crossings(model.area(triangle, side));
-            [amount, sides.iter().map(crossings).sum()]
+            [amount, in_focus.map(crossings).sum()]
         });
         let [amount, crossings] = [0, 1].map(|k| sums.iter().map(|sums| sums[k]).sum());
         let count = schedule.walks(amount, crossings);
