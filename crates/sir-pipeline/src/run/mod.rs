@@ -11,6 +11,7 @@ mod lighting;
 pub(crate) mod lock;
 mod pilot;
 mod reach;
+mod repeat_sums;
 mod repeating;
 pub(crate) mod resume;
 pub(crate) mod save;

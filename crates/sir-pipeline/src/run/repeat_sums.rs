@@ -1,0 +1,360 @@
+//! Sums over the repeats of a run: what each stage has brought, and how many repeats there are and should be.
+
+use std::time::{Duration, Instant};
+
+use sir_parallel::{Communicator, StageTime, Threads};
+use sir_radiosity::{
+    MIN_REPEATS, PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, Solution, Visitor, share,
+};
+
+use crate::format::{duration, grouped};
+use crate::plan::{Action, Pipeline, Until};
+use crate::prepare::prepared::Prepared;
+use crate::report::lines::Facts;
+use crate::report::result::{
+    Convergence, DomainReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, StageReport, Time,
+};
+use crate::run::lighting::{Done, Lighting};
+use crate::run::sharing::{SHARED, Sharing};
+
+/// A stage that is run in every repeat.
+pub(super) struct Step<'a> {
+    /// Number of the stage in the pipeline, and in a `Repeat` or `Solve`.
+    pub(super) place: (usize, usize),
+    pub(super) action: &'a Action,
+    totals: RepeatedTotals,
+    batches: u64,
+    pub(super) time: StageTime,
+    domain: Option<DomainReport>,
+    /// Sums of the light after this stage, if it is shown or measured.
+    light: Option<Repeats>,
+    /// Sums of the measurements of this stage.
+    pub(super) measured: Option<RepeatedMeasurements>,
+}
+
+/// Sums over all repeats so far. A checkpoint has them in addition to the state of the current stage.
+pub(super) struct RepeatSums<'a> {
+    prepared: &'a Prepared,
+    pub(super) steps: Vec<Step<'a>>,
+    until: Until,
+    at_most: Option<u64>,
+    /// How the repeats share the lines that the pipeline states; `None` if each has all of them.
+    pub(super) sharing: Option<Sharing>,
+    /// Number of repeats that share the rays of sensors.
+    pub(super) share_rays: u64,
+    /// Number of finished repeats.
+    pub(super) count: u64,
+    /// Size of a quantum, after a stage has run.
+    unit: Option<PowerUnit>,
+    /// Relative error of the mean in the worst band, if it is known.
+    error: Option<f64>,
+    pub(super) convergence: Vec<Convergence>,
+    /// Time spent before `since`.
+    spent: Duration,
+    since: Instant,
+}
+
+impl<'a> RepeatSums<'a> {
+    /// Returns the sums over no repeats of the stages from number `first` on. A `Solve` has the stages `of_solve`.
+    pub(super) fn new(
+        pipeline: &'a Pipeline,
+        prepared: &'a Prepared,
+        first: usize,
+        of_solve: &'a [Action],
+    ) -> Self {
+        let mut places = Vec::new();
+        let mut repeat = None;
+        for (number, stage) in pipeline.stages.iter().enumerate().skip(first) {
+            if let Action::Repeat(stage) = &stage.action {
+                repeat = Some(stage);
+            }
+            let actions = stage.flat().flat_map(|stage| parts_of(&stage.action, of_solve)).enumerate();
+            places.extend(actions.map(|(part, action)| ((number, part), action)));
+        }
+        let (sharing, until, at_most) = match repeat {
+            Some(repeat) => (None, repeat.until, repeat.at_most),
+            None => {
+                let sharing = Sharing::of(places.iter().map(|(_, action)| *action), prepared);
+                (Some(sharing), Until::Times(sharing.repeats), None)
+            }
+        };
+        // The number of repeats may not be known, or be large.
+        let most = at_most.unwrap_or(u64::MAX).min(SHARED);
+        let share_rays = if let Until::Times(times) = until { times.min(most) } else { most };
+        let sides = prepared.model.mesh.side_count();
+        let sums = || match until {
+            Until::Times(MIN_REPEATS..) if at_most.is_none() => Repeats::of_many(sides),
+            _ => Repeats::new(sides),
+        };
+        let mut steps = Vec::new();
+        for (i, &(place, action)) in places.iter().enumerate() {
+            let has_lines = action.lines() > 0;
+            let is_used = places.get(i + 1).is_none_or(|(_, next)| next.lines() == 0);
+            let measured = match action {
+                Action::Save(_) => continue,
+                Action::Sensors(_) => prepared.layouts.get(&place.0).map(|layout| layout.sensors.len()),
+                _ => None,
+            };
+            steps.push(Step {
+                place,
+                action,
+                totals: RepeatedTotals::default(),
+                batches: 0,
+                time: StageTime::default(),
+                domain: None,
+                light: (has_lines && is_used).then(sums),
+                measured: measured.map(RepeatedMeasurements::new),
+            });
+        }
+        Self {
+            prepared,
+            steps,
+            until,
+            at_most,
+            sharing,
+            share_rays,
+            count: 0,
+            unit: None,
+            error: None,
+            convergence: Vec::new(),
+            spent: Duration::ZERO,
+            since: Instant::now(),
+        }
+    }
+
+    /// True if the stages are run once, as the pipeline states them.
+    pub(super) fn is_single(&self) -> bool {
+        self.until == Until::Times(1)
+    }
+
+    /// Returns the index of the step at a place.
+    pub(super) fn step_at(&self, place: (usize, usize)) -> usize {
+        self.steps.iter().position(|step| step.place == place).unwrap_or(0)
+    }
+
+    /// Returns the steps of a stage.
+    pub(super) fn steps_of(&self, number: usize) -> std::ops::Range<usize> {
+        let start = self.steps.partition_point(|step| step.place.0 < number);
+        start..self.steps.partition_point(|step| step.place.0 <= number)
+    }
+
+    /// Returns the number of lines of a stage in a repeat.
+    pub(super) fn lines(&self, action: &Action, repeat: u64) -> u64 {
+        match self.sharing {
+            Some(Sharing { repeats, .. }) => {
+                let lines = share(action.lines(), repeat, repeats);
+                lines.end - lines.start
+            }
+            None => action.lines(),
+        }
+    }
+
+    /// Visits the state that a resumed run needs.
+    pub(super) fn visit(&mut self, visitor: &mut dyn Visitor) {
+        let mut words = [self.elapsed().as_micros() as i64, self.count as i64, self.convergence.len() as i64];
+        visitor.same(&mut words);
+        (self.spent, self.since) = (Duration::from_micros(words[0] as u64), Instant::now());
+        self.count = words[1] as u64;
+        self.convergence.resize(words[2] as usize, Convergence::default());
+        self.convergence.iter_mut().for_each(|point| point.visit(visitor));
+        let Prepared { model, focus, .. } = self.prepared;
+        for Step { action, totals, batches, time, light, measured, .. } in &mut self.steps {
+            totals.visit(visitor);
+            let mut word = [*batches as i64];
+            visitor.same(&mut word);
+            *batches = word[0] as u64;
+            time.visit(visitor);
+            if let Some(light) = light {
+                let domain = || match action {
+                    Action::Multipath(multipath) => Some(multipath.domain.lines_around(&model.scene, *focus)),
+                    _ => None,
+                };
+                light.visit(domain, visitor);
+            }
+            if let Some(measured) = measured {
+                measured.visit(visitor);
+            }
+        }
+    }
+
+    /// Returns the time of all repeats so far, including that before the run was resumed.
+    pub(super) fn elapsed(&self) -> Duration {
+        self.spent + self.since.elapsed()
+    }
+
+    /// Adds the outcome of a stage of lines of a repeat.
+    pub(super) fn add(&mut self, step: usize, done: Done, lighting: &Lighting<'_>, threads: &Threads) {
+        let Done { facts: Facts { balance, counts, batches, walked, domain }, unit, time } = done;
+        self.unit = Some(unit);
+        let step = &mut self.steps[step];
+        step.totals.add(&balance, counts, walked);
+        step.batches += batches;
+        step.time += time;
+        step.domain = domain;
+        if let (Some(sums), Some((received, counted))) = (&mut step.light, lighting.received()) {
+            sums.add(&self.prepared.model, received, counted, threads);
+        }
+    }
+
+    /// Closes a repeat, and computes the error of the mean if it is needed or comes from the spread.
+    pub(super) fn end_repeat(&mut self, threads: &Threads) {
+        self.count += 1;
+        let Prepared { model, inside, .. } = self.prepared;
+        let Some(light) = self.steps.iter().rev().find_map(|step| step.light.as_ref()) else { return };
+        let is_target = matches!(self.until, Until::RelativeError(_));
+        if !is_target && !light.have_spread() {
+            return;
+        }
+        let relative_error = light.relative_error(model, inside, threads);
+        self.error = Some(relative_error.into_iter().fold(0.0, f64::max));
+        if light.have_spread() {
+            let lines = self.steps.iter().map(|step| step.totals.counts().lines).sum();
+            let time = Time::of(self.elapsed().as_secs_f64());
+            self.convergence.push(Convergence { repeats: self.count, lines, relative_error, time });
+        }
+    }
+
+    /// Returns true if another repeat should run. Rank 0 decides, because clocks differ.
+    pub(super) fn wants_more(&self, comm: &dyn Communicator) -> bool {
+        let wanted = self.until.wants_more(self.count, self.error, self.elapsed().as_secs_f64());
+        let allowed = self.at_most.is_none_or(|most| self.count < most);
+        let mut decision = [i64::from(wanted && allowed)];
+        comm.broadcast(&mut decision);
+        decision[0] > 0
+    }
+
+    /// Returns the expected total number of repeats, if it can be estimated.
+    fn expected_repeats(&self) -> Option<f64> {
+        let done = self.count as f64;
+        let (error, seconds) = (self.error, self.elapsed().as_secs_f64());
+        let wanted = match self.until {
+            Until::Times(times) => Some(times as f64),
+            // The error falls with the square root of the number of repeats.
+            Until::RelativeError(target) => {
+                error.map(|error| (done * (error / target) * (error / target)).ceil())
+            }
+            Until::Seconds(budget) => (done > 0.0).then(|| (done * budget / seconds).floor()),
+        };
+        let most = self.at_most.map_or(f64::INFINITY, |most| most as f64);
+        wanted.map(|wanted| wanted.max(done + 1.0).min(most))
+    }
+
+    /// Returns a line about what is repeated.
+    pub(super) fn announcement(&self) -> String {
+        let with_lines = || self.steps.iter().filter(|step| step.action.lines() > 0);
+        if let Some(Sharing { repeats, .. }) = self.sharing {
+            let stages = with_lines()
+                .map(|step| format!("{}: {} lines", step.action.name(), grouped(step.action.lines())));
+            return format!("{}; in {repeats} repeats", stages.collect::<Vec<_>>().join(", "));
+        }
+        let lines = with_lines().map(|step| step.action.lines()).sum();
+        format!("Repeat: {} lines each time", grouped(lines))
+    }
+
+    /// Returns the title of the current repeat: its number, the error and its target, and the remaining time.
+    pub(super) fn title(&self) -> String {
+        let mut title = format!("Repeat {}", self.count + 1);
+        let expected = self.expected_repeats();
+        if let (Until::Times(_), Some(times)) = (self.until, expected) {
+            title += &format!(" of {times}");
+        }
+        match (self.until, self.error) {
+            (Until::RelativeError(target), Some(error)) => {
+                title += &format!(", relative error {:.3} % (target {} %)", 100.0 * error, 100.0 * target);
+            }
+            (_, Some(error)) => title += &format!(", relative error {:.2} %", 100.0 * error),
+            _ => {}
+        }
+        if let (Some(expected), 1..) = (expected, self.count) {
+            let spent = self.elapsed().as_secs_f64();
+            title += &format!(", {} left", duration((expected / self.count as f64 - 1.0).max(0.0) * spent));
+        }
+        title
+    }
+
+    /// Returns the report of a step with lines, and the mean of the light after it, if that is used. Frees the sums.
+    pub(super) fn report(&mut self, number: usize, threads: &Threads) -> (StageReport, Option<Solution>) {
+        let Prepared { model, inside, .. } = self.prepared;
+        let before = self.steps[..=number].iter().map(|step| step.totals.counts().lines).sum();
+        let (count, unit) = (self.count, self.unit.unwrap_or_else(|| PowerUnit::for_total(1.0, 0.0)));
+        let step = &mut self.steps[number];
+        let (balance, counts, walked) =
+            (step.totals.mean_balance(count), step.totals.counts(), step.totals.mean_walked(count));
+        let facts = Facts { balance, counts, batches: step.batches, walked, domain: step.domain.clone() };
+        let mut report = StageReport::of(step.action.name(), Time::of_lines(step.time, counts.lines));
+        report.lines = Some(LinesReport::new(facts, unit));
+        let Some(light) = step.light.take() else { return (report, None) };
+        let (from, samples) =
+            if light.have_spread() { (ErrorsFrom::Spread, count) } else { (ErrorsFrom::Lines, before) };
+        let mean = light.mean(model, inside, threads);
+        drop(light);
+        let solution = Solution::new(model, &mean, unit);
+        let errors = ErrorsReport { from, samples };
+        report.light = Some(LightReport::new(model, inside, &solution, errors, mean.hash()));
+        (report, Some(solution))
+    }
+
+    /// Returns the time of all repeats.
+    pub(super) fn time(&self) -> Time {
+        let mut time = StageTime { total: self.elapsed(), ..StageTime::default() };
+        for step in &self.steps {
+            time.tracing += step.time.tracing;
+            time.communication += step.time.communication;
+        }
+        let lines = self.steps.iter().map(|step| step.totals.counts().lines).sum();
+        Time::of_lines(time, lines)
+    }
+}
+
+/// Returns the stages of a `Solve`, or the stage itself if it is another one.
+fn parts_of<'a>(action: &'a Action, of_solve: &'a [Action]) -> &'a [Action] {
+    match action {
+        Action::Solve(_) => of_solve,
+        _ => std::slice::from_ref(action),
+    }
+}
+
+impl Convergence {
+    /// Visits the numbers.
+    pub(super) fn visit(&mut self, visitor: &mut dyn Visitor) {
+        let [r, g, b] = self.relative_error.map(|error| error.to_bits() as i64);
+        let mut words = [self.repeats as i64, self.lines as i64, r, g, b, self.time.seconds.to_bits() as i64];
+        visitor.same(&mut words);
+        let float = |i: usize| f64::from_bits(words[i] as u64);
+        let (repeats, lines) = (words[0] as u64, words[1] as u64);
+        *self = Self { repeats, lines, relative_error: [2, 3, 4].map(float), time: Time::of(float(5)) };
+    }
+}
+
+impl Until {
+    /// Returns true if another repeat should run after `done` repeats, at least one, which took `seconds` and whose
+    /// mean has the relative error `error`.
+    pub(super) fn wants_more(self, done: u64, error: Option<f64>, seconds: f64) -> bool {
+        match self {
+            Self::Times(times) => done < times,
+            Self::RelativeError(target) => error.is_some_and(|error| error > target),
+            Self::Seconds(budget) => seconds + seconds / done.max(1) as f64 <= budget,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_repeat_that_would_end_too_late_is_not_begun() {
+        let budget = Until::Seconds(60.0);
+        // Five repeats of ten seconds each; a sixth would end just in time.
+        assert!(budget.wants_more(5, None, 50.0));
+        assert!(!budget.wants_more(5, None, 50.1));
+        assert!(!budget.wants_more(1, None, 31.0));
+    }
+
+    #[test]
+    fn a_target_is_met_when_it_is_reached() {
+        let target = Until::RelativeError(0.01);
+        assert!(target.wants_more(3, Some(0.0101), 1.0) && !target.wants_more(3, Some(0.01), 1.0));
+        assert!(Until::Times(3).wants_more(2, None, 1.0) && !Until::Times(3).wants_more(3, None, 1.0));
+    }
+}
