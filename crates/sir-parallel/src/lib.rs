@@ -51,7 +51,7 @@
 //!     let transport = BatchSettings::new(&model, Domain::hull(model.scene.vertices()), lines, seed);
 //!     executor.run::<Batches>(transport, Start::Fresh(shot))
 //! };
-//! assert_eq!(solve(1)?.outcome.received, solve(3)?.outcome.received);
+//! assert_eq!(solve(1)?.outcome.solution(&model), solve(3)?.outcome.solution(&model));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
