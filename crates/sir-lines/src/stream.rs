@@ -30,6 +30,8 @@ impl Purpose {
     pub const VIEW_FACTORS: Self = Self(12);
     /// Random walks that send on what global lines have left unshot.
     pub const WALKS: Self = Self(17);
+    /// Shadow rays from patches.
+    pub const SHADOW_RAYS: Self = Self(18);
     /// Scrambles of the points of a stage, combined with its purpose.
     pub(crate) const SCRAMBLE: Self = Self(1 << 32);
     /// Seeds of repeats.

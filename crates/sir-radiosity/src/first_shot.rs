@@ -3,15 +3,13 @@
 //! Martínez, Forés and Martín (2009), section 2; Castro, Martínez and Sbert (1998).
 
 use sir_lines::Purpose;
-use sir_mesh::SideId;
 
 use crate::emitter::Emitter;
 use crate::error::SolveError;
 use crate::local_shot::{LocalShot, ShotInput, ShotSources};
 use crate::model::Model;
-use crate::power::{PowerUnit, Quanta};
-use crate::received::Received;
-use crate::shot::ShotSettings;
+use crate::power::PowerUnit;
+use crate::shot::{Shot, ShotSettings};
 use crate::sources::{FocusedSources, total_power};
 use crate::visitor::Visitor;
 use crate::workers::Workers;
@@ -44,7 +42,7 @@ impl ShotInput<Emitter> for () {
 
     fn restore(_model: &Model, _visitor: &mut dyn Visitor) {}
 
-    fn into_power(self, model: &Model) -> (Received, Vec<(SideId, Quanta)>) {
-        (Received::nothing(model.mesh.side_count()), Vec::new())
+    fn into_shot(self, model: &Model) -> Shot {
+        Shot::dark(model)
     }
 }

@@ -10,6 +10,8 @@
 //! * A [`Stage`] traces lines in rounds. [`run_stage`] runs one on the calling thread, `sir_parallel` on many.
 //! * [`FirstShot`]: lines from the light sources ([`Emitter`]: surfaces, points, parallel light, the sky) carry the
 //!   emitted power to the first surfaces. [`SecondShot`]: lines from the brightest patches carry what these reflect.
+//! * [`ShadowRays`]: direct light at the patches by rays from there to the light sources. Where there are few sources, it
+//!   has less noise than that of the first shot.
 //! * Global lines pass the reflected power on, between every pair of surfaces that face each other along a line, in
 //!   both directions. [`Replicas`] passes it on line by line, as published. [`Batches`] fixes the power that surfaces
 //!   send while the lines of a batch are traced, so that any number of workers can share these lines.
@@ -54,6 +56,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod aimed;
 mod batches;
 mod build_accel;
 mod counted;
@@ -63,6 +66,7 @@ mod first_shot;
 mod focus_sides;
 mod global;
 mod grouping;
+mod line_numbers;
 mod local_shot;
 mod model;
 mod patch_side;
@@ -74,6 +78,7 @@ mod replicas;
 mod second_shot;
 mod segments;
 mod sensors;
+mod shadow_rays;
 mod shot;
 mod solution;
 mod sources;
@@ -107,6 +112,7 @@ pub use sensors::{
     Gatherer, Measurement, REPLICATIONS, RepeatedMeasurements, Sensor, SensorSettings, SensorStage,
     SensorStart, SensorTask,
 };
+pub use shadow_rays::{ShadowRaySettings, ShadowRays};
 pub use shot::{Points, Shot, ShotSettings};
 pub use solution::Solution;
 pub use sources::{Source, emits, sources, total_power};

@@ -4,17 +4,17 @@ use std::ops::Range;
 
 use sir_accel::Ray;
 use sir_geom::Rgb;
-use sir_lines::{Allocation, Numbers, Purpose, SobolPoints, Streams};
+use sir_lines::{Allocation, Numbers, Purpose, Streams};
 use sir_mesh::SideId;
 
 use crate::emitter::Emitter;
 use crate::error::SolveError;
 use crate::global::PREFETCH_DISTANCE;
+use crate::line_numbers::LineNumbers;
 use crate::model::Model;
 use crate::patch_side::PatchSide;
 use crate::power::{PowerUnit, Quanta};
-use crate::received::Received;
-use crate::shot::{Points, Shot, ShotSettings};
+use crate::shot::{Shot, ShotSettings};
 use crate::stage::{AnyOrder, Stage};
 use crate::tallies::{Counters, HEADROOM, PatchTallies, SquareUnit};
 use crate::totals::StageTotals;
@@ -42,13 +42,6 @@ pub struct LocalShot<'m, I, S> {
     unit: PowerUnit,
     lines: u64,
     tallies: PatchTallies,
-}
-
-/// Numbers of the lines.
-#[derive(Debug)]
-enum LineNumbers {
-    Random(Streams),
-    Sobol(Box<SobolPoints>),
 }
 
 /// A source of lines.
@@ -97,8 +90,8 @@ pub(crate) trait ShotInput<S>: Sync + Sized {
     /// Restores the input that [`visit`](Self::visit) passed to the visitor that saved it.
     fn restore(model: &Model, visitor: &mut dyn Visitor) -> Self;
 
-    /// Returns the power that sides have received, and the power that they have sent.
-    fn into_power(self, model: &Model) -> (Received, Vec<(SideId, Quanta)>);
+    /// Returns the shot to which the lines add.
+    fn into_shot(self, model: &Model) -> Shot;
 }
 
 /// Sources of the lines of a shot.
@@ -132,11 +125,7 @@ impl<I, S: LineSource> LocalShot<'_, I, S> {
 
     /// Returns the ray of a line of a source.
     fn ray_of(&self, source: usize, index: u64) -> Ray {
-        let (source, model) = (&self.sources[source], self.model);
-        match &self.numbers {
-            LineNumbers::Random(streams) => source.ray(model, &mut streams.line(index)),
-            LineNumbers::Sobol(points) => source.ray(model, &mut points.line(index)),
-        }
+        self.sources[source].ray(self.model, &mut self.numbers.line(index))
     }
 }
 
@@ -165,12 +154,7 @@ impl<'m, I: ShotInput<S>, S: LineSource> Stage for LocalShot<'m, I, S> {
             .line(<I as ShotInput<S>>::PURPOSE.0 - Purpose::FIRST_SHOT.0)
             .unit();
         let allocation = Allocation::new(&weights, lines, offset);
-        let numbers = match points {
-            Points::Random => LineNumbers::Random(Streams::new(seed, <I as ShotInput<S>>::PURPOSE)),
-            Points::Sobol => {
-                LineNumbers::Sobol(Box::new(SobolPoints::new(seed, <I as ShotInput<S>>::PURPOSE)))
-            }
-        };
+        let numbers = LineNumbers::new(points, seed, <I as ShotInput<S>>::PURPOSE);
         // No line brings more than this. Lines in a focus may bring much less, so squares then need precision, not
         // headroom.
         let exact = if density > 1.0 { 1.0 / HEADROOM.sqrt() } else { 1.0 };
@@ -263,7 +247,7 @@ impl<'m, I: ShotInput<S>, S: LineSource> Stage for LocalShot<'m, I, S> {
         let Self { input, model, sources, sides, per_line, allocation, unit, tallies, .. } = self;
         // The memory of sources and tallies is needed for what follows.
         drop(sources);
-        let (mut received, mut sent) = input.into_power(model);
+        let Shot { mut received, mut sent, correction, .. } = input.into_shot(model);
         let StageTotals { mut balance, counts } = totals;
         let lines = counts.lines.max(1) as f64;
         let blocks = received.power.chunks_mut(BLOCK).zip(received.variance.chunks_mut(BLOCK));
@@ -300,6 +284,6 @@ impl<'m, I: ShotInput<S>, S: LineSource> Stage for LocalShot<'m, I, S> {
                 _ => sent.push((side, power)),
             }
         }
-        Ok(Shot { received, unit, balance, counts, sent })
+        Ok(Shot { received, unit, balance, counts, sent, correction })
     }
 }

@@ -17,12 +17,10 @@ use crate::focus_sides::FocusSides;
 use crate::local_shot::{LocalShot, ShotInput, ShotSources};
 use crate::model::Model;
 use crate::patch_side::PatchSide;
-use crate::power::{PowerUnit, Quanta};
-use crate::received::Received;
+use crate::power::Quanta;
 use crate::shot::{Shot, ShotSettings};
 use crate::sources::FocusedSources;
-use crate::totals::{Balance, Counts};
-use crate::visitor::{Visitor, visit_counts};
+use crate::visitor::Visitor;
 use crate::workers::{BLOCK, Sides, Workers, map_blocks, map_sides, no_items};
 
 /// The second shot: lines from the brightest patches; with the focus of the first shot, from the brightest patches in
@@ -64,30 +62,15 @@ impl ShotInput<PatchSide> for Shot {
     }
 
     fn visit(&mut self, visitor: &mut dyn Visitor) {
-        self.received.visit(visitor);
-        self.unit.visit(visitor);
-        let Balance { emitted, absorbed, blocked, escaped, unshot } = &mut self.balance;
-        for quanta in [emitted, absorbed, blocked, escaped, unshot] {
-            visitor.same(&mut quanta.0);
-        }
-        let Counts { lines, empty, odd, crossings } = &mut self.counts;
-        visit_counts([lines, empty, odd, crossings], visitor);
+        Self::visit(self, visitor);
     }
 
     fn restore(model: &Model, visitor: &mut dyn Visitor) -> Self {
-        let mut shot = Self {
-            received: Received::nothing(model.mesh.side_count()),
-            unit: PowerUnit::for_total(1.0, 0.0),
-            balance: Balance::default(),
-            counts: Counts::default(),
-            sent: Vec::new(),
-        };
-        shot.visit(visitor);
-        shot
+        Self::restore(model, visitor)
     }
 
-    fn into_power(self, _model: &Model) -> (Received, Vec<(SideId, Quanta)>) {
-        (self.received, self.sent)
+    fn into_shot(self, _model: &Model) -> Shot {
+        self
     }
 }
 

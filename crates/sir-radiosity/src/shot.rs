@@ -4,10 +4,11 @@ use sir_lines::LocalLines;
 use sir_mesh::SideId;
 
 use crate::model::Model;
-use crate::power::{PowerUnit, Quanta};
+use crate::power::{PowerUnit, Quanta, visit_quanta};
 use crate::received::Received;
 use crate::solution::Solution;
 use crate::totals::{Balance, Counts};
+use crate::visitor::{Visitor, visit_counts};
 use crate::workers::{BLOCK, Workers, map_sides};
 
 /// Points of the lines of a shot: where each begins on its source, and its direction.
@@ -78,9 +79,46 @@ pub struct Shot {
     pub counts: Counts,
     /// Power that sides have sent in a second shot, of the light that they reflect.
     pub sent: Vec<(SideId, Quanta)>,
+    /// Part of `received` that shadow rays have added or taken away, indexed by [`SideId`]; empty without shadow rays. The
+    /// light that is reflected is that of the lines, whose power adds up.
+    pub correction: Vec<Quanta>,
 }
 
 impl Shot {
+    /// Returns a shot without lines.
+    pub(crate) fn dark(model: &Model) -> Self {
+        Self {
+            received: Received::nothing(model.mesh.side_count()),
+            unit: PowerUnit::for_total(1.0, 0.0),
+            balance: Balance::default(),
+            counts: Counts::default(),
+            sent: Vec::new(),
+            correction: Vec::new(),
+        }
+    }
+
+    /// Restores a first shot that [`visit`](Self::visit) passed to the visitor that saved it.
+    pub(crate) fn restore(model: &Model, visitor: &mut dyn Visitor) -> Self {
+        let mut shot = Self::dark(model);
+        shot.visit(visitor);
+        shot
+    }
+
+    /// Visits a first shot.
+    pub(crate) fn visit(&mut self, visitor: &mut dyn Visitor) {
+        self.received.visit(visitor);
+        self.unit.visit(visitor);
+        let Balance { emitted, absorbed, blocked, escaped, unshot } = &mut self.balance;
+        for quanta in [emitted, absorbed, blocked, escaped, unshot] {
+            visitor.same(&mut quanta.0);
+        }
+        let Counts { lines, empty, odd, crossings } = &mut self.counts;
+        let mut corrections = self.correction.len() as u64;
+        visit_counts([lines, empty, odd, crossings, &mut corrections], visitor);
+        self.correction.resize(corrections as usize, Quanta::ZERO);
+        visit_quanta(&mut self.correction, visitor);
+    }
+
     /// Returns the power that each side reflects and has not sent, indexed by [`SideId`]. By chance it is slightly
     /// negative for some sides that have sent all of it.
     #[must_use]
@@ -88,7 +126,9 @@ impl Shot {
         let mut unshot = vec![Quanta::ZERO; model.mesh.side_count()];
         map_sides(workers, &model.mesh, unshot.chunks_mut(BLOCK), |sides, unshot| {
             for ((triangle, side), unshot) in sides.iter().zip(unshot) {
-                *unshot = self.received.power[side.index()].scaled(model.reflectance(triangle, side));
+                let correction = self.correction.get(side.index()).copied().unwrap_or_default();
+                let brought = self.received.power[side.index()] - correction;
+                *unshot = brought.scaled(model.reflectance(triangle, side));
             }
         });
         for &(side, sent) in &self.sent {

@@ -8,17 +8,15 @@
 //! than they held. All walks carry the same amount: a walk that is reflected goes on with the probability `p` that its
 //! amount is, and then carries what is reflected over `p`.
 
-use std::collections::HashMap;
-
 use std::ops::Range;
 
 use sir_accel::{Hit, Ray};
-use sir_geom::{Rgb, TriangleId};
+use sir_geom::Rgb;
 use sir_lines::{Allocation, Purpose, Stream, Streams};
 use sir_mesh::SideId;
 
 use crate::model::Model;
-use crate::patch_side::PatchSide;
+use crate::patch_side::{MergedPatches, PatchSide};
 use crate::power::Quanta;
 use crate::tallies::WorkerTallies;
 use crate::totals::StageTotals;
@@ -41,8 +39,7 @@ struct Start {
 #[derive(Debug)]
 pub(super) struct Walks {
     starts: Vec<Start>,
-    /// Triangles of the patches that have several.
-    merged: HashMap<u32, Vec<TriangleId>>,
+    merged: MergedPatches,
     streams: Streams,
     count: u64,
     /// Mean power of a walk over a walk's power, per band: Σp²/Σ|p|.
@@ -92,7 +89,7 @@ impl Walks {
         });
         let mean =
             [0, 1, 2].map(|band| if amounts[band] > 0.0 { squares[band] / amounts[band] } else { 0.0 });
-        Self { starts, merged: merged(model), streams: Streams::new(seed, purpose), count, mean }
+        Self { starts, merged: MergedPatches::of(model), streams: Streams::new(seed, purpose), count, mean }
     }
 
     /// Returns the number of walks.
@@ -160,43 +157,9 @@ impl Walks {
     }
 
     /// Returns a ray from a random point of a patch.
-    fn ray(&self, model: &Model, mut place: PatchSide, stream: &mut Stream) -> Ray {
-        if let Some(triangles) = self.merged.get(&place.patch.0) {
-            place.triangle = one_of(triangles, |t| model.scene.area(t), stream.unit());
-        }
-        place.emitter(model).ray(&model.scene, stream)
+    fn ray(&self, model: &Model, place: PatchSide, stream: &mut Stream) -> Ray {
+        self.merged.part_of(place, model, stream).emitter(model).ray(&model.scene, stream)
     }
-}
-
-/// Returns the triangles of the patches that have several, by number of patch.
-fn merged(model: &Model) -> HashMap<u32, Vec<TriangleId>> {
-    let Model { scene, mesh, .. } = model;
-    let mut merged: HashMap<u32, Vec<TriangleId>> = HashMap::new();
-    if mesh.patch_count() < scene.triangles().len() {
-        for triangle in scene.triangle_ids() {
-            let patches = mesh.patches_of(triangle);
-            if patches.len() == 1 {
-                merged.entry(patches.start).or_default().push(triangle);
-            }
-        }
-        merged.retain(|_, triangles| triangles.len() > 1);
-    }
-    merged
-}
-
-/// Returns a random triangle with a probability in proportion to its area. `random` is uniform in `[0, 1)`.
-fn one_of(triangles: &[TriangleId], area: impl Fn(TriangleId) -> f64, random: f64) -> TriangleId {
-    let all: f64 = triangles.iter().map(|&t| area(t)).sum();
-    let mut left = random * all;
-    let mut chosen = triangles[0];
-    for &triangle in triangles {
-        chosen = triangle;
-        left -= area(triangle);
-        if left < 0.0 {
-            break;
-        }
-    }
-    chosen
 }
 
 /// Returns the power with which a walk goes on from a surface, or `None` if it ends there.

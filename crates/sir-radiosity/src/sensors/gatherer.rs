@@ -4,8 +4,8 @@ use sir_accel::Tracer;
 use sir_geom::Rgb;
 use sir_lines::{Purpose, Streams};
 
+use crate::aimed::Emitters;
 use crate::model::Model;
-use crate::sensors::emitters::Emitters;
 use crate::sensors::measurement::Measurement;
 use crate::sensors::replication::{PatchHits, Replication};
 use crate::sensors::sensor::{REPLICATIONS, Sensor, SensorSettings};
@@ -48,7 +48,7 @@ impl<'s> Gatherer<'s> {
         let mut tracer = self.model.accel.tracer();
         let start = SensorStart::of(sensor, self.model, &mut tracer);
         let lights = self.lights(sensor, start, &mut tracer);
-        let choice = self.emitters.from(start.origin, sensor);
+        let choice = self.emitters.from(start.origin, sensor.direction());
         let stream = |k| self.streams.line(number * REPLICATIONS + k);
         let SensorSettings { rays, error: target, replications: count, first } = self.settings;
         let mut replications: Vec<_> = (0..count).map(|k| Replication::new(&mut stream(k))).collect();

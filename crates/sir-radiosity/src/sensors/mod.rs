@@ -5,7 +5,6 @@
 //! and the light of the sky. The rays form [`REPLICATIONS`] sets. Each set is low-discrepancy
 //! ([`sir_lines::R2Sequence`]), and the sets are independent of each other, so that their spread gives the error.
 
-mod emitters;
 mod gatherer;
 mod measurement;
 mod repeated;
@@ -13,7 +12,6 @@ mod replication;
 mod sensor;
 mod stage;
 mod start;
-mod tree;
 mod unmet;
 
 pub use gatherer::Gatherer;

@@ -8,8 +8,8 @@ use sir_geom::{Rgb, TriangleId};
 use sir_lines::{R2Sequence, Stream, cosine_direction};
 use sir_mesh::SideId;
 
+use crate::aimed::{Aim, Choice};
 use crate::model::Model;
-use crate::sensors::emitters::{Aim, Choice};
 use crate::sensors::start::SensorStart;
 use crate::sensors::unmet::Extremes;
 use crate::solution::Solution;

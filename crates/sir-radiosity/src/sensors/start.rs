@@ -84,7 +84,7 @@ impl SensorStart {
 
     /// Returns the ray from here to a light without a surface in a direction. The light may lie on a surface, in front
     /// of it.
-    pub(super) fn ray_to_light(&self, direction: DVec3, distance: f64, model: &Model) -> Ray {
+    pub(crate) fn ray_to_light(&self, direction: DVec3, distance: f64, model: &Model) -> Ray {
         let coordinate = (self.origin + distance * direction).abs().max_element();
         let rounding = ROUNDING * coordinate.min(MAX_COORDINATE * distance) + STEPS * model.accel.grid_step();
         let end = if distance.is_finite() { distance - rounding } else { distance };

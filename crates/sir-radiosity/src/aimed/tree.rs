@@ -1,6 +1,6 @@
-//! A tree of emitting surfaces, so that a sensor need not evaluate each of thousands.
+//! A tree of emitting surfaces, so that a point need not evaluate each of thousands.
 //!
-//! As in lightcuts (Walter et al. 2005), a sensor uses a cut through the tree: near groups in parts, far groups as a
+//! As in lightcuts (Walter et al. 2005), a point uses a cut through the tree: near groups in parts, far groups as a
 //! whole. A group is chosen by an estimate of its contribution, and a member of it by power. The estimates affect only
 //! the noise of a measurement, not its mean.
 

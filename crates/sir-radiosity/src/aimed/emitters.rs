@@ -1,4 +1,4 @@
-//! Choice of the emitting surfaces at which a sensor aims.
+//! Choice of the emitting surfaces at which rays from a point aim.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -9,13 +9,13 @@ use sir_mesh::PatchId;
 
 use crate::emitter::Emitter;
 use crate::model::Model;
-use crate::sensors::sensor::Sensor;
-use crate::sensors::tree::{Leaf, MAX_CUT, Tree};
+use crate::aimed::seen::{SeenTriangle, share_of_hemisphere};
+use crate::aimed::tree::{Leaf, MAX_CUT, Tree};
 use crate::sources;
 
 /// All emitting surfaces of a scene.
 #[derive(Clone, Debug)]
-pub(super) struct Emitters {
+pub(crate) struct Emitters {
     patches: Vec<EmittingPatch>,
     /// Tree of the surfaces, if there are many.
     tree: Option<Tree>,
@@ -33,33 +33,46 @@ struct EmittingPatch {
     area: f64,
 }
 
-/// Distribution of rays over the emitting surfaces for one sensor, without occlusion.
+/// Distribution of rays over the emitting surfaces for one point, without occlusion.
 #[derive(Clone, Debug)]
-pub(super) struct Choice<'e> {
+pub(crate) struct Choice<'e> {
     emitters: &'e Emitters,
     origin: DVec3,
     normal: DVec3,
     /// Ranges in the order of the tree; empty without a tree, where each patch is a group of its own.
     groups: Vec<Range<u32>>,
-    /// Running sums of the probabilities of groups, or of patches; empty if the sensor sees no emitter.
+    /// Running sums of the probabilities of groups, or of patches; empty if nothing in front emits.
     ends: Vec<f64>,
+    /// Estimate of the irradiance \[W/m²\], the sum over bands.
+    pub(crate) total: f64,
 }
 
-/// A point of an emitting surface that a sensor aims at.
+/// Area of a source over its squared distance, above which its share of the hemisphere is not estimated: an inverse.
+const NEAR: f64 = 16.0;
+
+/// A surface that is chosen.
+struct Chosen {
+    emitter: usize,
+    probability: f64,
+    /// Remainder of the number that chose it, uniform in `[0, 1]`.
+    rest: f64,
+}
+
+/// A point of an emitting surface that a ray aims at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Aim {
+pub(crate) struct Aim {
     /// Unit vector towards the point.
-    pub(super) direction: DVec3,
+    pub(crate) direction: DVec3,
     /// Triangle aimed at.
-    pub(super) triangle: TriangleId,
+    pub(crate) triangle: TriangleId,
     /// Side of the triangle.
-    pub(super) side: Side,
+    pub(crate) side: Side,
     /// Contribution of the ray, if the point is visible.
-    pub(super) contribution: Rgb,
+    pub(crate) contribution: Rgb,
 }
 
 impl Emitters {
-    pub(super) fn of(model: &Model) -> Self {
+    pub(crate) fn of(model: &Model) -> Self {
         let Model { scene, mesh, .. } = model;
         let patches = sources(scene, mesh).into_iter().filter_map(|source| match source.emitter {
             Emitter::Surface { triangle, patch, side, corners, normal } => {
@@ -88,10 +101,14 @@ impl Emitters {
         Self { patches, tree }
     }
 
-    /// Returns the probability of aiming at each surface from a sensor, in proportion to an estimate of the irradiance
-    /// that it brings.
-    pub(super) fn from(&self, origin: DVec3, sensor: &Sensor) -> Choice<'_> {
-        let normal = sensor.direction();
+    /// True if no surface emits.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.patches.is_empty()
+    }
+
+    /// Returns the probability of aiming at each surface from a point of a surface with this unit normal, in proportion
+    /// to an estimate of the irradiance that it brings.
+    pub(crate) fn from(&self, origin: DVec3, normal: DVec3) -> Choice<'_> {
         let of_patch = |k: usize| weight(&self.patches[k], origin, normal);
         let (groups, weights): (Vec<_>, Vec<f64>) = match &self.tree {
             Some(tree) => tree.cut(origin, normal, of_patch).into_iter().unzip(),
@@ -106,33 +123,36 @@ impl Emitters {
                 sum
             }));
         }
-        Choice { emitters: self, origin, normal, groups, ends }
+        Choice { emitters: self, origin, normal, groups, ends, total }
     }
 }
 
-/// Returns the exitance times an estimate of the share of the hemisphere that a source takes. The estimate uses the
-/// geometry at the corners and the center of the source, and is at most 1. It is zero only if the source is behind the
-/// sensor, or the sensor behind the source.
+/// Returns the exitance times the share of the hemisphere that a source takes, or an estimate of it from the geometry at the
+/// corners and the center if the source is far away. It is zero only if the source is behind the sensor, or the sensor behind
+/// the source.
 fn weight(emitting: &EmittingPatch, origin: DVec3, normal: DVec3) -> f64 {
-    let [a, b, c] = emitting.corners;
-    let height = (origin - a).dot(emitting.normal);
+    let EmittingPatch { corners: corners @ [a, b, c], normal: its_normal, area, exitance, .. } = *emitting;
+    let height = (origin - a).dot(its_normal);
     if height <= 0.0 {
         return 0.0;
+    }
+    let (center, exitance) = ((a + b + c) / 3.0, exitance.element_sum());
+    if NEAR * area > origin.distance_squared(center) {
+        return exitance * share_of_hemisphere(origin, normal, corners);
     }
     let at = |point: DVec3| {
         let to = point - origin;
         let square = to.length_squared();
         // Both cosines lack division by the distance.
-        to.dot(normal).max(0.0) * height / (square * square).max(f64::MIN_POSITIVE)
+        to.dot(normal).max(0.0) * height / (square * square)
     };
-    let geometry = (at(a) + at(b) + at(c) + at((a + b + c) / 3.0)) / 4.0;
-    let factor = (emitting.area * geometry).min(f64::MAX);
-    emitting.exitance.element_sum() * (factor / (PI + factor))
+    let geometry = (at(a) + at(b) + at(c) + at(center)) / 4.0;
+    exitance * (area * geometry / PI)
 }
 
 impl Choice<'_> {
     /// True if there is nothing to aim at.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
@@ -172,7 +192,7 @@ impl Choice<'_> {
 
     /// Returns the contribution of a cosine-weighted ray that has hit this side at this distance. `patch` is the patch
     /// hit, if the patches of the triangle differ.
-    pub(super) fn hit_contribution(
+    pub(crate) fn hit_contribution(
         &self,
         triangle: TriangleId,
         patch: Option<PatchId>,
@@ -185,21 +205,54 @@ impl Choice<'_> {
         found.map_or(Rgb::ZERO, |k| self.contribution(k, direction, distance))
     }
 
-    /// Aims at the point that corresponds to a point of the unit square. Returns `None` if the contribution is zero.
-    pub(super) fn aim(&self, [u, v]: [f64; 2]) -> Option<Aim> {
-        // The first coordinate selects the emitter. Its remainder is a coordinate on the emitter.
+    /// Chooses a surface with its probability, by a uniform number. Returns `None` if there is nothing to aim at.
+    fn choose(&self, u: f64) -> Option<Chosen> {
         let group = self.ends.partition_point(|&end| end <= u).min(self.ends.len().checked_sub(1)?);
         let probability = self.of_group(group);
         let start = self.ends[group] - probability;
         let within = ((u - start) / probability).clamp(0.0, 1.0);
-        let (k, within) = match (&self.emitters.tree, self.groups.get(group)) {
-            (Some(tree), Some(range)) => tree.choose(range, within),
-            _ => (group, within),
-        };
-        let EmittingPatch { triangle, side, corners, .. } = self.emitters.patches[k];
-        let to = sir_lines::continuous_point_on_triangle([within, v]).point(corners) - self.origin;
+        Some(match (&self.emitters.tree, self.groups.get(group)) {
+            (Some(tree), Some(range)) => {
+                let (emitter, rest) = tree.choose(range, within);
+                let share = tree.share(range, tree.place(emitter));
+                Chosen { emitter, probability: probability * share, rest }
+            }
+            _ => Chosen { emitter: group, probability, rest: within },
+        })
+    }
+
+    /// Aims at the point that corresponds to a point of the unit square. Points are uniform on the surface. Returns `None`
+    /// if the contribution is zero.
+    pub(crate) fn aim(&self, [u, v]: [f64; 2]) -> Option<Aim> {
+        let Chosen { emitter, rest, .. } = self.choose(u)?;
+        let EmittingPatch { triangle, side, corners, .. } = self.emitters.patches[emitter];
+        let to = sir_lines::continuous_point_on_triangle([rest, v]).point(corners) - self.origin;
         let (distance, direction) = (to.length(), to.try_normalize()?);
-        let contribution = self.contribution(k, direction, distance);
+        let contribution = self.contribution(emitter, direction, distance);
         (contribution != Rgb::ZERO).then_some(Aim { direction, triangle, side, contribution })
+    }
+
+    /// Aims at the point that corresponds to a point of the unit square, without cosine-weighted rays beside these. Points
+    /// are uniform within the solid angle of the surface, so that a surface that nearly touches the origin does not make a
+    /// few rays carry most of the light. Returns `None` if the contribution is zero.
+    pub(crate) fn aim_alone(&self, [u, v]: [f64; 2]) -> Option<Aim> {
+        let Chosen { emitter, probability, rest } = self.choose(u)?;
+        let EmittingPatch { triangle, side, corners, normal, exitance, area, .. } =
+            self.emitters.patches[emitter];
+        // Irradiance per radiance: the solid angle times the cosine.
+        let (direction, geometry) = match SeenTriangle::from(self.origin, corners) {
+            Some(seen) => {
+                let direction = seen.direction([rest, v]);
+                (direction, seen.solid_angle * direction.dot(self.normal))
+            }
+            None => {
+                let to = sir_lines::continuous_point_on_triangle([rest, v]).point(corners) - self.origin;
+                let direction = to.try_normalize()?;
+                let cosines = direction.dot(self.normal) * -direction.dot(normal);
+                (direction, area * cosines / to.length_squared())
+            }
+        };
+        let contribution = exitance * (geometry / (PI * probability));
+        (geometry > 0.0 && contribution.is_finite()).then_some(Aim { direction, triangle, side, contribution })
     }
 }
