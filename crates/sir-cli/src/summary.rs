@@ -48,7 +48,10 @@ pub fn summary(result: &RunResult) -> String {
                 100.0 * lines.empty_share,
                 100.0 * lines.odd_lines as f64 / lines.lines.max(1) as f64,
             );
-            text += &balance(lines, report.units);
+            // Shadow rays carry no power.
+            if lines.balance.emitted != [0.0; 3] {
+                text += &balance(lines, report.units);
+            }
         }
     }
     let sensors = report.stages.iter().filter_map(|stage| stage.sensors.as_ref());

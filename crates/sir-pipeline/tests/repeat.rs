@@ -182,18 +182,27 @@ fn shared_lines_give_the_same_bits_for_any_number_of_workers() {
 
 const SOLVE: &str = "Solve(lines: 240_000)";
 
+/// Returns the number of lines of a part of a `Solve`, or of its shadow rays as a pipeline states it.
+fn lines(solve: &StageReport, part: &StageReport) -> u64 {
+    match part.name.as_str() {
+        "ShadowRays" => solve.pilot.unwrap().rays,
+        _ => part.lines.as_ref().unwrap().lines,
+    }
+}
+
 /// The lines of a `Solve` are all traced, after a pilot, and give the same as the stages that it reports.
 #[test]
 fn a_solve_is_a_division_of_its_lines() {
     let (files, report) = Case::new(SOLVE).run();
     let solve = report.stages.iter().find(|stage| stage.name == "Solve").unwrap();
-    let lines = |stage: &StageReport| stage.lines.as_ref().unwrap().lines;
-    assert_eq!(solve.stages.iter().map(lines).sum::<u64>(), 240_000);
+    assert_eq!(solve.stages.iter().map(|stage| lines(solve, stage)).sum::<u64>(), 240_000);
     assert!((1..=30_000).contains(&solve.pilot.unwrap().lines), "{:?}", solve.pilot);
     assert_eq!(solve.light.as_ref().unwrap().errors.from, ErrorsFrom::Spread);
     let share = solve.pilot.unwrap().share;
+    let lines = |stage| lines(solve, stage);
     let stages = solve.stages.iter().map(|stage| match stage.name.as_str() {
         "SecondShot" => format!("SecondShot(lines: {}, share: {share})", lines(stage)),
+        "ShadowRays" => format!("ShadowRays(rays: {})", lines(stage)),
         name => format!("{name}(lines: {})", lines(stage)),
     });
     let (same, _) = Case::new(&stages.collect::<Vec<_>>().join(", ")).run();
@@ -208,8 +217,12 @@ fn a_solve_can_be_repeated_until_its_error_is_small() {
     let repeat = repeated(&report);
     let names: Vec<_> = repeat.stages.iter().map(|stage| stage.name.as_str()).collect();
     assert!(["FirstShot", "Multipath"].iter().all(|name| names.contains(name)), "{names:?}");
-    let sum: u64 = repeat.stages.iter().map(|stage| stage.lines.as_ref().unwrap().lines).sum();
-    assert_eq!(sum, 30_000 * repeat.repeats.unwrap());
+    // Of the shadow rays, the report has those of one repeat.
+    let of = |stage: &StageReport| match stage.name.as_str() {
+        "ShadowRays" => lines(repeat, stage) * repeat.repeats.unwrap(),
+        _ => lines(repeat, stage),
+    };
+    assert_eq!(repeat.stages.iter().map(of).sum::<u64>(), 30_000 * repeat.repeats.unwrap());
     assert!(repeat.pilot.unwrap().lines < 5_000, "{:?}", repeat.pilot);
     assert!(repeat.light.as_ref().unwrap().relative_error.into_iter().fold(0.0, f64::max) <= 0.03);
 }

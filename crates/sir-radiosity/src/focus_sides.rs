@@ -51,6 +51,12 @@ impl FocusSides {
         self.0.as_ref().is_none_or(|in_focus| in_focus[side.index()])
     }
 
+    /// Returns the number of sides of a model that are in the focus.
+    #[must_use]
+    pub fn count(&self, model: &Model) -> usize {
+        self.0.as_ref().map_or(model.mesh.side_count(), |in_focus| in_focus.iter().filter(|is| **is).count())
+    }
+
     /// True if no side is in the focus.
     #[must_use]
     pub fn is_empty(&self) -> bool {

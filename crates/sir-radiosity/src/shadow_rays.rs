@@ -100,9 +100,8 @@ impl PointAllocation {
             });
             blocks.into_iter().fold([0.0; 2], add)
         };
-        let [power, area] = sum(&|triangle, side| {
-            [shot.received.power[side.index()].total(), model.area(triangle, side)]
-        });
+        let [power, area] =
+            sum(&|triangle, side| [shot.received.power[side.index()].total(), model.area(triangle, side)]);
         let mut all = Self { mean: if area > 0.0 { power / area } else { 0.0 }, density: 0.0 };
         let [count, weight] = sum(&|triangle, side| [1.0, all.weight(model, shot, triangle, side)]);
         let further = (points as f64 - POINTS.0 as f64 * count).max(0.0);
@@ -164,10 +163,27 @@ impl Sources {
         Self { distant, local, surfaces: Emitters::of(model), has_sky: model.scene.sky().is_some() }
     }
 
-    /// Returns the number of rays from a point.
-    fn rays_per_point(&self) -> u64 {
-        let has_lamps = !self.local.is_empty() || !self.surfaces.is_empty();
-        self.distant.len() as u64 + u64::from(has_lamps) + u64::from(self.has_sky)
+    /// Returns the numbers of rays from a point: to distant lights and the sky, and to lamps.
+    fn rays_per_point(&self) -> [u64; 2] {
+        let has_lamps = !self.local.is_empty() || self.surfaces.count() > 0;
+        [self.distant.len() as u64 + u64::from(self.has_sky), u64::from(has_lamps)]
+    }
+}
+
+impl ShadowRays<'_> {
+    /// Fewest points of a side.
+    pub const MIN_POINTS: u64 = POINTS.0;
+
+    /// Returns the numbers of rays from a point in a scene: to the sun and the sky, and to lamps.
+    #[must_use]
+    pub fn rays_per_point(model: &Model) -> [u64; 2] {
+        Sources::of(model).rays_per_point()
+    }
+
+    /// Returns the number of emitting surfaces in a scene, one of which a ray is aimed at.
+    #[must_use]
+    pub fn emitting_surfaces(model: &Model) -> usize {
+        Emitters::of(model).count()
     }
 }
 
@@ -176,7 +192,7 @@ impl<'m> ShadowRays<'m> {
         let ShadowRaySettings { model, rays, seed, points, .. } = settings;
         let in_focus = FocusSides::of(model, rays.focus.as_ref());
         let sources = Sources::of(model);
-        let all = rays.count / sources.rays_per_point().max(1);
+        let all = rays.count / sources.rays_per_point().iter().sum::<u64>().max(1);
         let allocation = PointAllocation::new(model, &in_focus, &shot, all, workers);
         Self {
             settings,
@@ -190,16 +206,25 @@ impl<'m> ShadowRays<'m> {
         }
     }
 
-    /// Adds the rays of a point of a side.
-    fn aim(&self, place: PatchSide, side: SideId, point: u64, batch: &mut Batch) {
+    /// Adds the rays of all points of a side.
+    fn aim(&self, place: PatchSide, side: SideId, points: u64, batch: &mut Batch) {
+        let model = self.settings.model;
+        let (of_side, normal) = (place.corners(model), place.normal(model));
+        for point in 0..points {
+            let numbers = &mut self.numbers.line(side.index() as u64 * POINTS.1 + point);
+            let part = self.merged.part_of(place, model, numbers);
+            let corners = if part == place { of_side } else { part.corners(model) };
+            let origin = point_on_surface(&model.scene, part.triangle, corners, numbers);
+            let start = SensorStart { origin, surface: Some(part.triangle) };
+            self.aim_from(start, normal, numbers.point(), batch);
+        }
+    }
+
+    /// Adds the rays of a point.
+    fn aim_from(&self, start: SensorStart, normal: DVec3, random: [f64; 2], batch: &mut Batch) {
         let model = self.settings.model;
         let number = batch.irradiances.len();
         batch.irradiances.push(Rgb::ZERO);
-        let numbers = &mut self.numbers.line(side.index() as u64 * POINTS.1 + point);
-        let part = self.merged.part_of(place, model, numbers);
-        let origin = point_on_surface(&model.scene, part.triangle, part.corners(model), numbers);
-        let (normal, start) = (part.normal(model), SensorStart { origin, surface: Some(part.triangle) });
-        let random = numbers.point();
         for light in &self.sources.distant {
             if let Some((ray, irradiance)) = to_light(light, start, normal, model) {
                 batch.free.push(ray);
@@ -344,7 +369,7 @@ impl<'m> Stage for ShadowRays<'m> {
     }
 
     fn lines_per_unit(&self) -> u64 {
-        (self.settings.rays.count / self.gathered.len().max(1) as u64).max(1)
+        self.settings.rays.count.div_ceil(self.gathered.len().max(1) as u64).max(1)
     }
 
     fn chain(&self, _number: u64) -> AnyOrder {
@@ -358,14 +383,15 @@ impl<'m> Stage for ShadowRays<'m> {
         let every = u64::from(every);
         let end = (units.end * every).min(self.gathered.len() as u64) as u32;
         let ranges = model.mesh.sides_within((units.start * every) as u32..end);
-        for (triangle, side) in ranges.flat_map(|(triangle, sides)| sides.map(move |s| (triangle, SideId(s)))) {
+        for (triangle, side) in ranges.flat_map(|(triangle, sides)| sides.map(move |s| (triangle, SideId(s))))
+        {
             if !self.settings.have(side, &self.in_focus) {
                 continue;
             }
             let place = PatchSide::of(model, triangle, side);
             let points = self.allocation.points(model, &self.shot, triangle, side);
             batch.sides.push((triangle, side, points as usize));
-            (0..points).for_each(|point| self.aim(place, side, point, &mut batch));
+            self.aim(place, side, points, &mut batch);
             if batch.free.len() + batch.aimed.len() >= RAYS {
                 self.gather(&mut batch, &mut tracer, &mut totals.counts);
             }
@@ -394,16 +420,22 @@ impl<'m> Stage for ShadowRays<'m> {
         let received = &mut shot.received;
         let blocks = received.power.chunks_mut(BLOCK).zip(received.variance.chunks_mut(BLOCK));
         let blocks = blocks.zip(shot.correction.chunks_mut(BLOCK)).zip(gathered.chunks(BLOCK));
-        map_sides(workers, &settings.model.mesh, blocks, |sides, (((power, variance), correction), gathered)| {
-            let places = power.iter_mut().zip(variance).zip(correction).zip(gathered);
-            for ((_, side), (((power, variance), correction), gathered)) in sides.iter().zip(places) {
-                if settings.have(side, &in_focus) {
-                    let (by_rays, of_rays) = from_words(gathered.each_ref().map(|word| word.load(Relaxed)));
-                    *correction = by_rays - *power;
-                    (*power, *variance) = (by_rays, of_rays);
+        map_sides(
+            workers,
+            &settings.model.mesh,
+            blocks,
+            |sides, (((power, variance), correction), gathered)| {
+                let places = power.iter_mut().zip(variance).zip(correction).zip(gathered);
+                for ((_, side), (((power, variance), correction), gathered)) in sides.iter().zip(places) {
+                    if settings.have(side, &in_focus) {
+                        let (by_rays, of_rays) =
+                            from_words(gathered.each_ref().map(|word| word.load(Relaxed)));
+                        *correction = by_rays - *power;
+                        (*power, *variance) = (by_rays, of_rays);
+                    }
                 }
-            }
-        });
+            },
+        );
         Ok((shot, totals.counts))
     }
 }

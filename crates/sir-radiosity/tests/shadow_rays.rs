@@ -1,4 +1,5 @@
 //! Shadow rays know the direct light that a first shot knows.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
@@ -34,7 +35,8 @@ fn room(lamps: impl FnOnce(&mut SceneBuilder), open: bool) -> Scene {
     let size = DVec3::new(3.0, 2.0, 2.5);
     if open {
         // Without a ceiling.
-        let corners = [DVec3::ZERO, DVec3::new(3.0, 0.0, 0.0), DVec3::new(3.0, 2.0, 0.0), DVec3::new(0.0, 2.0, 0.0)];
+        let corners =
+            [DVec3::ZERO, DVec3::new(3.0, 0.0, 0.0), DVec3::new(3.0, 2.0, 0.0), DVec3::new(0.0, 2.0, 0.0)];
         let corners = corners.map(|corner| builder.add_vertex(corner));
         builder.add_polygon(&corners, wall);
     } else {
@@ -60,9 +62,8 @@ fn cove(builder: &mut SceneBuilder) {
 fn rooms() -> Vec<(&'static str, Scene)> {
     let color = Rgb::new(5.0, 3.0, 1.0);
     let light = |kind| Light { name: String::new(), kind };
-    let at = |x, y, z, spread| {
-        light(LightKind::Point { position: DVec3::new(x, y, z), intensity: color, spread })
-    };
+    let at =
+        |x, y, z, spread| light(LightKind::Point { position: DVec3::new(x, y, z), intensity: color, spread });
     let sun = light(LightKind::Distant {
         direction: DVec3::new(0.36, 0.48, -0.8),
         irradiance: Rgb::new(2.0, 2.0, 1.5),
@@ -162,7 +163,8 @@ fn there_are_rays_in_the_focus_only() {
     }
     assert!(inside > 50, "{inside}");
     let every = gather(ShadowRaySettings { every: 7, ..of_all }, &lines);
-    let changed = (0..model.mesh.side_count()).filter(|&s| every.received.power[s] != lines.received.power[s]);
+    let changed =
+        (0..model.mesh.side_count()).filter(|&s| every.received.power[s] != lines.received.power[s]);
     assert!(changed.clone().all(|side| side % 7 == 0) && changed.count() > 200);
 }
 

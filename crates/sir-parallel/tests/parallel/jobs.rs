@@ -10,9 +10,9 @@ use sir_lines::{Domain, Focus, GlobalLines, LocalLines};
 use sir_mesh::{SideId, Subdivision};
 use sir_parallel::{Communicator, Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
-    Balance, BatchSettings, Batches, Counts, FirstShot, Model, OneWorker, Quanta, Received, ReplicaSettings,
-    Replicas, SecondShot, Shot, ShotSettings, Stage, StageTotals, Transported, Walked, chain_units,
-    run_stage,
+    Balance, BatchSettings, Batches, Counts, FirstShot, Model, OneWorker, Points, Quanta, Received,
+    ReplicaSettings, Replicas, SecondShot, ShadowRaySettings, ShadowRays, Shot, ShotSettings, Stage,
+    StageTotals, Transported, Walked, chain_units, run_stage,
 };
 
 use crate::observers::StopAfter;
@@ -42,6 +42,8 @@ pub(crate) enum Job {
     /// With a focus.
     FocusedShot,
     SecondShot,
+    /// Whose units are the sides of patches.
+    ShadowRays,
     Batches,
     /// With a focus.
     FocusedBatches,
@@ -63,7 +65,7 @@ pub(crate) struct Outcome {
     pub(crate) sent: Vec<(SideId, Quanta)>,
 }
 
-/// All stages, multipath with various settings.
+/// All stages of lines, multipath with various settings.
 pub(crate) const JOBS: [Job; 11] = [
     Job::FirstShot,
     Job::FocusedShot,
@@ -140,6 +142,11 @@ impl Room {
         ShotSettings::new(&self.model, lines, SEED)
     }
 
+    fn shadow_rays(&self) -> ShadowRaySettings<'_> {
+        let rays = LocalLines { count: LINES, focus: Some(self.focus()) };
+        ShadowRaySettings { model: &self.model, rays, seed: SEED, points: Points::Sobol, every: 1 }
+    }
+
     fn focused_lines(&self) -> GlobalLines {
         let lines = GlobalLines::focused(self.domain.clone(), self.focus());
         assert!(lines.weight() > 1);
@@ -168,6 +175,10 @@ impl Job {
             }
             Self::SecondShot => {
                 executor.run::<SecondShot<'_>>(shot, start(room.shot.clone(), saved)).map(Outcome::of_shot)
+            }
+            Self::ShadowRays => {
+                let start = start(room.shot.clone(), saved);
+                executor.run::<ShadowRays<'_>>(room.shadow_rays(), start).map(Outcome::of_rays)
             }
             Self::Batches | Self::FocusedBatches => {
                 let start = start(room.shot.clone(), saved);
@@ -198,6 +209,9 @@ impl Job {
             Self::FirstShot => Outcome::of_shot(by_hand::<FirstShot<'_>>(shot, ())),
             Self::FocusedShot => Outcome::of_shot(by_hand::<FirstShot<'_>>(room.focused_shot(), ())),
             Self::SecondShot => Outcome::of_shot(by_hand::<SecondShot<'_>>(shot, room.shot.clone())),
+            Self::ShadowRays => {
+                Outcome::of_rays(by_hand::<ShadowRays<'_>>(room.shadow_rays(), room.shot.clone()))
+            }
             Self::Batches | Self::FocusedBatches => {
                 Outcome::of_transport(room, by_hand::<Batches<'_>>(self.batches(room), room.shot.clone()))
             }
@@ -235,7 +249,15 @@ fn by_hand<S: Stage>(settings: S::Settings, input: S::Input) -> StageRun<S::Outc
 
 impl Outcome {
     fn of_shot(StageRun { outcome, batches, .. }: StageRun<Shot>) -> Self {
-        let Shot { received, unit, balance, counts, sent } = outcome;
+        let Shot { received, unit, balance, counts, sent, .. } = outcome;
+        Self { received, quantum: unit.quantum(), balance, counts, walked: Walked::default(), batches, sent }
+    }
+
+    fn of_rays(run: StageRun<(Shot, Counts)>) -> Self {
+        let StageRun { outcome: (shot, counts), batches, .. } = run;
+        let Shot { received, unit, balance, correction, .. } = shot;
+        let sent =
+            correction.into_iter().enumerate().map(|(side, power)| (SideId::new(side), power)).collect();
         Self { received, quantum: unit.quantum(), balance, counts, walked: Walked::default(), batches, sent }
     }
 

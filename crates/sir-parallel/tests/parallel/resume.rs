@@ -121,6 +121,11 @@ fn a_first_shot_goes_on_after_a_stop() {
 }
 
 #[test]
+fn shadow_rays_go_on_after_a_stop() {
+    assert_resumable(Job::ShadowRays);
+}
+
+#[test]
 fn batches_go_on_after_a_stop() {
     assert_resumable(Job::Batches);
     assert_resumable(Job::FocusedBatches);

@@ -31,6 +31,11 @@ fn a_first_shot_is_the_same_by_any_number_of_workers() {
 }
 
 #[test]
+fn shadow_rays_are_the_same_by_any_number_of_workers() {
+    assert_same_bits(Job::ShadowRays);
+}
+
+#[test]
 fn batches_are_the_same_by_any_number_of_workers() {
     assert_same_bits(Job::Batches);
     assert_same_bits(Job::FocusedBatches);

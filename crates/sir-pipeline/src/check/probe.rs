@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use sir_lines::LocalLines;
 use sir_parallel::cores;
 use sir_radiosity::{
-    AnyOrder, BatchSettings, Batches, FirstShot, OneWorker, SecondShot, ShotSettings, SolveError, Stage,
-    StageTotals,
+    AnyOrder, BatchSettings, Batches, FirstShot, OneWorker, Points, SecondShot, ShadowRaySettings,
+    ShadowRays, ShotSettings, SolveError, Stage, StageTotals,
 };
 
 use crate::plan;
@@ -51,6 +51,15 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
                 shot = Some(stage.finish(totals, &OneWorker)?);
                 estimates.push(StageEstimate { name, lines, rate });
             }
+            Action::ShadowRays(plan::ShadowRays { rays }) => {
+                let Some(first) = &shot else { continue };
+                let lines = LocalLines { count: rays, focus };
+                let settings =
+                    ShadowRaySettings { model, rays: lines, seed, points: Points::Sobol, every: 1 };
+                let stage = ShadowRays::begin(settings, first.clone(), &OneWorker)?;
+                let (rate, _) = try_stage(&stage, stage.round().end);
+                estimates.push(StageEstimate { name, lines: rays, rate });
+            }
             Action::SecondShot(plan::SecondShot { lines, share }) => {
                 let Some(first) = shot.take() else { continue };
                 let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
@@ -75,23 +84,24 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
     Ok(estimates)
 }
 
-/// Traces lines of a stage for a short time. Returns lines per second, and the stage totals.
-fn try_stage<S: Stage<Chain = AnyOrder>>(stage: &S, lines: u64) -> (f64, StageTotals) {
+/// Traces some of the units of a stage for a short time on one core. Returns the lines per second, times the number of cores,
+/// and the stage totals.
+fn try_stage<S: Stage<Chain = AnyOrder>>(stage: &S, units: u64) -> (f64, StageTotals) {
     let mut totals = StageTotals::default();
-    let rate = rate(lines, |block| stage.trace(0, &mut AnyOrder, block, &mut totals));
-    (rate, totals)
+    let seconds = seconds(units, |block| stage.trace(0, &mut AnyOrder, block, &mut totals));
+    (cores().get() as f64 * totals.counts.lines.max(1) as f64 / seconds, totals)
 }
 
-/// Returns the lines per second in a short trial on one core, times the number of cores.
-fn rate(lines: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
+/// Returns the time of a short trial.
+fn seconds(units: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
     let start = Instant::now();
     let mut done = 0;
-    while done < lines && start.elapsed() < PROBE {
-        let end = lines.min(done + BLOCK);
+    while done < units && start.elapsed() < PROBE {
+        let end = units.min(done + BLOCK);
         trace(done..end);
         done = end;
     }
-    cores().get() as f64 * done as f64 / start.elapsed().as_secs_f64().max(1e-9)
+    start.elapsed().as_secs_f64().max(1e-9)
 }
 
 #[cfg(test)]
@@ -99,12 +109,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rate_counts_every_line_once() {
+    fn a_trial_traces_every_unit_once() {
         let mut seen = 0;
-        let rate = rate(2500, |block| {
+        let seconds = seconds(2500, |block| {
             assert_eq!(block.start, seen);
             seen = block.end;
         });
-        assert!(seen == 2500 && rate > 0.0);
+        assert!(seen == 2500 && seconds > 0.0);
     }
 }

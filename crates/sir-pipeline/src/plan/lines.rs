@@ -1,4 +1,4 @@
-//! The stages `FirstShot`, `SecondShot` and `Solve`.
+//! The stages `FirstShot`, `ShadowRays`, `SecondShot` and `Solve`.
 
 use crate::text::field::Format as _;
 use crate::text::formats::{Count, count, number};
@@ -21,6 +21,14 @@ record! {
 }
 
 record! {
+    /// Stage that replaces the direct light of the first shot with that of rays from the patches.
+    pub struct ShadowRays {
+        /// Total number of rays. Every side of a patch has at least two points with rays to the sources.
+        pub rays: u64 = line_count().required();
+    }
+}
+
+record! {
     /// Stage that sends the power reflected by the brightest patches along local lines.
     pub struct SecondShot {
         /// Total number of lines.
@@ -33,10 +41,10 @@ record! {
 }
 
 record! {
-    /// Stage that computes all light: a first shot, a second shot and global lines.
+    /// Stage that computes all light: a first shot, shadow rays, a second shot and global lines.
     pub struct Solve {
-        /// Number of lines of all three stages together. A pilot of a few per cent of that number decides how they are
-        /// divided.
+        /// Number of lines and rays of all these stages together. A pilot of a few per cent of that number decides how they
+        /// are divided.
         pub lines: u64 = line_count().required();
     }
 }

@@ -23,7 +23,7 @@ pub(crate) mod subdivide;
 pub use focus::Focus;
 pub use image::{Camera, CameraChoice, Image};
 pub use light::{Distant, Lamp, Light};
-pub use lines::{FirstShot, SecondShot, Solve};
+pub use lines::{FirstShot, SecondShot, ShadowRays, Solve};
 pub use load::Load;
 pub use multipath::{DomainKind, Multipath, Replicas, Transport};
 pub use panel::{Panel, PanelStrength};

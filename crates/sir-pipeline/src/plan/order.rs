@@ -8,6 +8,9 @@ pub(crate) type Named<'a> = (&'static str, &'a str);
 /// Stages that compute all light.
 const WHOLE: [&str; 2] = ["Repeat", "Solve"];
 
+/// Stages that send light, in their order.
+const LIGHT: [&str; 4] = ["FirstShot", "ShadowRays", "SecondShot", "Multipath"];
+
 /// Reports every stage, given by name and text, whose input no earlier stage provides. A missing input is reported
 /// once.
 pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &str) {
@@ -42,13 +45,13 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
             multipath |= name == "Multipath" || WHOLE.contains(&name);
             continue;
         }
-        if let (Some(&(whole, of_whole)), "FirstShot" | "SecondShot" | "Multipath" | "Solve" | "Repeat") =
-            (whole, name)
+        if let Some(&(whole, of_whole)) = whole
+            && (LIGHT.contains(&name) || WHOLE.contains(&name))
             && !std::ptr::eq(place, of_whole)
         {
             let line = reader.line(of_whole);
             let (message, help) = match (whole, name) {
-                ("Repeat", "FirstShot" | "SecondShot" | "Multipath" | "Solve") => (
+                ("Repeat", _) if name != "Repeat" => (
                     format!("`{name}` outside of the `Repeat` in line {line}"),
                     format!("move `{name}` into the `stages` of `Repeat`"),
                 ),
@@ -76,12 +79,17 @@ pub(crate) fn check_order(reader: &mut Reader<'_>, stages: &[Named<'_>], list: &
             }
             "FirstShot" => first_shot = true,
             "Repeat" | "Solve" => (first_shot, multipath) = (true, true),
-            "SecondShot" if multipath => reader.problem(
+            "ShadowRays" | "SecondShot" if multipath => reader.problem(
                 place,
-                "`SecondShot` after `Multipath`: all light has been distributed",
-                "move `SecondShot` to before `Multipath`",
+                format!("`{name}` after `Multipath`: all light has been distributed"),
+                format!("move `{name}` to before `Multipath`"),
             ),
-            "SecondShot" | "Multipath" | "Save" | "Sensors" if !first_shot => {
+            "ShadowRays" if stages[..i].iter().any(|(before, _)| *before == "SecondShot") => reader.problem(
+                place,
+                "`ShadowRays` after `SecondShot`: there is reflected light already",
+                "move `ShadowRays` to before `SecondShot`",
+            ),
+            "ShadowRays" | "SecondShot" | "Multipath" | "Save" | "Sensors" if !first_shot => {
                 let why = match name {
                     "Save" | "Sensors" => "there is no result yet",
                     _ => "there is no light to distribute yet",
@@ -119,7 +127,7 @@ pub(crate) fn check_repeated(reader: &mut Reader<'_>, stages: &[Named<'_>], list
         ),
     }
     for (&(before, _), &(name, place)) in stages.iter().zip(stages.iter().skip(1)) {
-        let rank = |name| ["FirstShot", "SecondShot", "Multipath"].iter().position(|n| *n == name);
+        let rank = |name| LIGHT.iter().position(|n| *n == name);
         if [before, name].contains(&"Solve") {
             let message = format!("`{name}` after `{before}`");
             reader.problem(
@@ -132,7 +140,7 @@ pub(crate) fn check_repeated(reader: &mut Reader<'_>, stages: &[Named<'_>], list
             reader.problem(
                 place,
                 message,
-                "the order is `FirstShot`, `SecondShot`, `Multipath`, each of them once",
+                "the order is `FirstShot`, `ShadowRays`, `SecondShot`, `Multipath`, each of them once",
             );
         }
     }

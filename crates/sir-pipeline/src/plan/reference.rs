@@ -3,7 +3,7 @@
 use crate::plan::focus::Focus;
 use crate::plan::image::{Camera, Image};
 use crate::plan::light::Distant;
-use crate::plan::lines::{FirstShot, SecondShot, Solve};
+use crate::plan::lines::{FirstShot, SecondShot, ShadowRays, Solve};
 use crate::plan::load::Load;
 use crate::plan::multipath::{Multipath, Replicas};
 use crate::plan::panel::Panel;
@@ -35,6 +35,7 @@ pub fn field_tables() -> Vec<(&'static str, String)> {
         table::<Focus>(),
         table::<Solve>(),
         table::<FirstShot>(),
+        table::<ShadowRays>(),
         table::<SecondShot>(),
         table::<Multipath>(),
         table::<Replicas>(),

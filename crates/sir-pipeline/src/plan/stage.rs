@@ -2,7 +2,7 @@
 
 use crate::plan::focus::Focus;
 use crate::plan::light::Light;
-use crate::plan::lines::{FirstShot, MAX_LINES, SecondShot, Solve};
+use crate::plan::lines::{FirstShot, MAX_LINES, SecondShot, ShadowRays, Solve};
 use crate::plan::load::Load;
 use crate::plan::multipath::{Multipath, Transport};
 use crate::plan::order::{Named, check_order, check_repeated};
@@ -52,6 +52,8 @@ choice! {
         Solve(Solve),
         /// Sends the power of the light sources along local lines.
         FirstShot(FirstShot),
+        /// Measures the direct light by rays from the patches to the light sources.
+        ShadowRays(ShadowRays),
         /// Sends the power reflected by the brightest patches along local lines.
         SecondShot(SecondShot),
         /// Distributes the reflected light along global lines.
@@ -72,11 +74,12 @@ impl Action {
         Choose::name(self)
     }
 
-    /// Returns the number of lines of the stage, for a `Repeat` that of one repeat.
+    /// Returns the number of lines or rays of the stage, for a `Repeat` that of one repeat.
     #[must_use]
     pub fn lines(&self) -> u64 {
         match self {
             Self::FirstShot(FirstShot { lines })
+            | Self::ShadowRays(ShadowRays { rays: lines })
             | Self::SecondShot(SecondShot { lines, .. })
             | Self::Solve(Solve { lines })
             | Self::Multipath(Multipath { lines, .. }) => *lines,
@@ -223,7 +226,7 @@ impl StageList {
     /// Stages of a `Repeat`.
     const REPEATED: Self = Self {
         what: "repeated stage",
-        known: &["Solve", "FirstShot", "SecondShot", "Multipath"],
+        known: &["Solve", "FirstShot", "ShadowRays", "SecondShot", "Multipath"],
         check_order: check_repeated,
         example: "[FirstShot(lines: 1_000_000), …]",
         breaks: ["", ""],

@@ -1,6 +1,7 @@
 //! Report of the light so far, and its error.
 
 use sir_geom::Rgb;
+use sir_mesh::SideId;
 use sir_radiosity::{FocusSides, Model, Solution};
 
 use crate::report::result::{ErrorsReport, LightReport};
@@ -50,6 +51,29 @@ impl Deviation {
             square += a * error * error;
         });
         Self { area, sum, square }
+    }
+
+    /// Returns the squared errors of a solution that two independent ones show together, on some of the sides. The light is
+    /// left out.
+    pub(crate) fn between(
+        model: &Model,
+        on: impl Fn(SideId) -> bool,
+        one: &Solution,
+        other: &Solution,
+    ) -> Self {
+        let mut square = Rgb::ZERO;
+        model.mesh.for_each_side(|triangle, _, _, side| {
+            if on(side) {
+                let difference = one.irradiance[side.index()] - other.irradiance[side.index()];
+                square += 0.5 * model.area(triangle, side) * difference * difference;
+            }
+        });
+        Self { square, ..Self::default() }
+    }
+
+    /// Returns these sums times a factor.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self { area: factor * self.area, sum: factor * self.sum, square: factor * self.square }
     }
 
     /// Returns the relative variance that has been added since an earlier stage, as a share of the light at the end, in the

@@ -113,6 +113,10 @@ pub struct PilotReport {
     /// Result of the pilot, besides the numbers of lines of the stages: share of the reflected light that the second shot
     /// carries; 0 if there is none.
     pub share: f64,
+    /// Likewise, the number of shadow rays as a pipeline states it; 0 if there are none. Not all of them are traced: none
+    /// are from behind a surface.
+    #[serde(default)]
+    pub rays: u64,
     /// Its time, which is a part of that of the stage.
     pub time: Time,
 }

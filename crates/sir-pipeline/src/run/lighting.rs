@@ -3,8 +3,8 @@
 use sir_lines::{Focus, GlobalLines, LocalLines};
 use sir_parallel::{Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
-    Counted, FirstShot, Model, Points, PowerUnit, Received, SecondShot, Shot, ShotSettings, Solution,
-    Transported, Walked, Workers,
+    Balance, Counted, Counts, FirstShot, Model, Points, PowerUnit, Received, SecondShot, ShadowRaySettings,
+    ShadowRays, Shot, ShotSettings, Solution, Transported, Walked, Workers,
 };
 
 use crate::plan::{Action, DomainKind};
@@ -66,6 +66,15 @@ impl<'m> Lighting<'m> {
                 self.light = Light::None;
                 self.shot(executor.run::<FirstShot<'_>>(shot, start)?)
             }
+            Action::ShadowRays(_) => {
+                let Some(start) = self.start(saved) else { return Ok(None) };
+                let rays = shot.lines;
+                let settings = ShadowRaySettings { model, rays, seed, points: self.points, every: 1 };
+                let StageRun { outcome: (shot, counts), time, batches } =
+                    executor.run::<ShadowRays<'_>>(settings, start)?;
+                // Rays carry no power: they find out what arrives.
+                self.direct(StageRun { outcome: shot, time, batches }, Balance::default(), counts)
+            }
             Action::SecondShot(stage) => {
                 let Some(start) = self.start(saved) else { return Ok(None) };
                 self.shot(executor.run::<SecondShot<'_>>(shot.of_reflected(stage.share), start)?)
@@ -100,8 +109,13 @@ impl<'m> Lighting<'m> {
     }
 
     fn shot(&mut self, run: StageRun<Shot>) -> Done {
+        let Shot { balance, counts, .. } = run.outcome;
+        self.direct(run, balance, counts)
+    }
+
+    fn direct(&mut self, run: StageRun<Shot>, balance: Balance, counts: Counts) -> Done {
         let StageRun { outcome, time, batches } = run;
-        let Shot { balance, counts, unit, .. } = outcome;
+        let unit = outcome.unit;
         let facts = Facts { balance, counts, batches, walked: Walked::default(), domain: None };
         self.light = Light::Direct(Box::new(outcome));
         Done { facts, unit, time }

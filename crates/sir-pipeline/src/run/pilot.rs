@@ -1,20 +1,21 @@
 //! The pilot of a `Solve`, which estimates the noise of each stage from few lines.
 
 use sir_lines::{GlobalLines, LocalLines, seed_of_repeat};
-use sir_parallel::Start;
+use sir_mesh::SideId;
+use sir_parallel::{Executor, Start};
 use sir_radiosity::{
-    BatchSettings, Batches, FirstShot, Model, SecondShot, Shot, ShotSettings, Solution, Transported,
-    crossings_per_patch,
+    BatchSettings, Batches, FirstShot, Model, SecondShot, ShadowRaySettings, ShadowRays, Shot, ShotSettings,
+    Solution, Transported, crossings_per_patch,
 };
 
 use crate::error::Error;
 use crate::plan::DomainKind;
 use crate::ranks::agree;
 use crate::report::light::Deviation;
-use crate::report::result::{PilotReport, Time};
+use crate::report::result::Time;
 use crate::run::execute::Run;
 use crate::run::sharing::CROSSINGS;
-use crate::run::split::{Split, Trial};
+use crate::run::split::{Costs, Split, Trial};
 use crate::stopwatch::Stopwatch;
 
 /// Lines of each shot of the pilot: a share of all lines, but at least a number, up to a larger share.
@@ -32,6 +33,18 @@ const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
 /// the Cornell box and the museum's stair.
 const GLOBAL_TIME: [f64; 2] = [1.0, 0.5];
 
+/// Time of a shadow ray to the sun or the sky over that of a local line, of one to a lamp, and more for each emitting surface
+/// among which it is chosen. Measured on a classroom, the Cornell box and the reading room.
+const RAY_TIMES: [f64; 3] = [0.7, 1.5, 0.28];
+
+/// Largest number of emitting surfaces for which shadow rays are tried.
+const MAX_SURFACES: usize = 32;
+
+/// Fewest and most sides from which the pilot sends shadow rays, about, and their points in the mean. Two independent
+/// estimates with this number of points tell how much such an estimate varies. There are as many rays as lines of a shot.
+const PILOT_SIDES: (f64, f64) = (64.0, 2048.0);
+const PILOT_POINTS: u64 = 8;
+
 /// Number of the repeat whose seed the pilot has. No run has that many repeats.
 const PILOT_REPEAT: u64 = u64::MAX;
 
@@ -42,14 +55,26 @@ struct Pilot<'m> {
     /// Lines of each shot, and global lines.
     shot: u64,
     global: u64,
+    /// Shadow rays of all sides, of which every so manyth is measured; 0 if there are none.
+    rays: u64,
+    every: u32,
     seed: u64,
 }
 
 impl Pilot<'_> {
-    /// Returns the number of all lines: a first shot, a second shot for each share above zero, and global lines for each.
+    /// Returns the number of all lines: a first shot, two times shadow rays, a second shot for each share above zero, and
+    /// global lines for each.
     fn lines(&self) -> u64 {
-        (self.shot + self.global) * SHARES.len() as u64
+        (self.shot + self.global) * SHARES.len() as u64 + 2 * self.rays / u64::from(self.every)
     }
+}
+
+/// Returns the time of a shadow ray over that of a local line, in the mean over the rays from a point.
+fn ray_time(model: &Model) -> f64 {
+    let [distant, lamps] = ShadowRays::rays_per_point(model);
+    let [far, near, each] = RAY_TIMES;
+    let lamp = near + each * ShadowRays::emitting_surfaces(model) as f64;
+    (distant as f64 * far + lamps as f64 * lamp) / (distant + lamps).max(1) as f64
 }
 
 impl Run<'_> {
@@ -61,27 +86,39 @@ impl Run<'_> {
         let domain = DomainKind::Hull.lines_around(&model.scene, focus);
         let per_crossing = lines as f64 / crossings_per_patch(model, &domain, lines);
         let shot = (PILOT_SHARE * lines as f64).max(PILOT_LINES.min(MAX_PILOT_SHARE * lines as f64)).ceil();
+        let sides = self.prepared.inside.count(model);
+        let per_point = ShadowRays::rays_per_point(model).iter().sum::<u64>();
+        let some_sides = shot / (PILOT_POINTS * per_point.max(1)) as f64;
+        let some_sides = some_sides.clamp(PILOT_SIDES.0, PILOT_SIDES.1);
+        let has_many_lamps = ShadowRays::emitting_surfaces(model) > MAX_SURFACES;
         let pilot = Pilot {
             model,
             domain,
             shot: shot as u64,
             global: (PILOT_CROSSINGS * per_crossing).ceil().min(shot) as u64,
+            rays: if has_many_lamps { 0 } else { PILOT_POINTS * per_point * sides as u64 },
+            every: (sides as f64 / some_sides).ceil().max(1.0) as u32,
             seed: seed_of_repeat(self.head.report.seed, PILOT_REPEAT),
         };
         let traced = self.trials(&pilot);
         let (trials, crossings) = agree(self.comm, traced)?;
         let [per_line, each] = GLOBAL_TIME;
-        let needed = repeats as f64 * CROSSINGS * per_crossing;
-        let mut split = Split::best(&trials, lines, per_line + each * crossings, needed.ceil() as u64);
-        let time = Time::of(watch.seconds());
-        split.pilot = PilotReport { lines: pilot.lines(), share: split.share(), time };
+        let costs = Costs {
+            global: per_line + each * crossings,
+            ray: ray_time(model),
+            global_of_repeat: CROSSINGS * per_crossing,
+            repeats,
+            rays_of_repeat: ShadowRays::MIN_POINTS * per_point * sides as u64,
+        };
+        let split = Split::best(&trials, lines, &costs);
+        let split = split.after_pilot(pilot.lines(), Time::of(watch.seconds()));
         self.progress.note(&split.message());
         Ok(split)
     }
 
     /// Traces the pilot. Returns its trials, and the number of surfaces that a global line crosses.
     fn trials(&self, pilot: &Pilot<'_>) -> Result<(Vec<Trial>, f64), Error> {
-        let Pilot { model, ref domain, shot, global, seed } = *pilot;
+        let Pilot { model, ref domain, shot, global, seed, .. } = *pilot;
         let inside = &self.prepared.inside;
         let of_shot = || {
             let lines = LocalLines { count: shot, focus: self.prepared.focus };
@@ -93,6 +130,10 @@ impl Run<'_> {
         executor.observer = Box::new(self.progress.part("Solve: pilot", pilot.lines(), &self.options.stop));
         let first: Shot = executor.run::<FirstShot<'_>>(of_shot(), Start::Fresh(()))?.outcome;
         let after_first = deviation(&first.solution(model));
+        let by_rays = match pilot.rays {
+            0 => None,
+            _ => Some(self.deviation_by_rays(pilot, &first, &mut executor)?),
+        };
         let (mut trials, mut crossings) = (Vec::new(), 0.0);
         for share in SHARES {
             let (mut both, mut after_both) = (first.clone(), after_first);
@@ -111,10 +152,31 @@ impl Run<'_> {
             trials.push(Trial {
                 share,
                 first: of_lines(shot, &after_first, &Deviation::default()),
+                rays: by_rays.map(|by_rays| of_lines(pilot.rays, &by_rays, &Deviation::default())),
                 second: of_lines(shot, &after_both, &after_first),
                 global: of_lines(global, &after_all, &after_both),
             });
         }
         Ok((trials, crossings))
+    }
+
+    /// Returns the deviation of the direct light by shadow rays, from two independent estimates.
+    fn deviation_by_rays(
+        &self,
+        pilot: &Pilot<'_>,
+        first: &Shot,
+        executor: &mut Executor<'_>,
+    ) -> Result<Deviation, Error> {
+        let Pilot { model, rays, every, seed, .. } = *pilot;
+        let rays = LocalLines { count: rays, focus: self.prepared.focus };
+        let mut estimate = |seed| {
+            let settings = ShadowRaySettings { model, rays, seed, points: self.pipeline.points, every };
+            let run = executor.run::<ShadowRays<'_>>(settings, Start::Fresh(first.clone()))?;
+            Ok::<_, Error>(run.outcome.0.solution(model))
+        };
+        let (one, other) = (estimate(seed)?, estimate(seed.wrapping_add(1))?);
+        let is_measured =
+            |side: SideId| (side.index() as u32).is_multiple_of(every) && self.prepared.inside.contains(side);
+        Ok(Deviation::between(model, is_measured, &one, &other).times(f64::from(every)))
     }
 }

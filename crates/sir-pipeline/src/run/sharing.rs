@@ -37,7 +37,7 @@ impl Sharing {
         };
         let domain = domain.lines_around(&model.scene, *focus);
         let crossings = crossings_per_patch(model, &domain, *lines);
-        match ((crossings / CROSSINGS) as u64).min(SHARED).min(fewest) {
+        match repeats_of(crossings / CROSSINGS).min(fewest) {
             repeats @ MIN_REPEATS.. => Self { repeats, too_few: None },
             _ => Self { repeats: 1, too_few: Some((*lines, crossings)) },
         }
@@ -54,6 +54,14 @@ impl Sharing {
              lines or more, or make fewer patches",
             grouped(rounded_up(lines as f64 * factor))
         ))
+    }
+}
+
+/// Returns the number of repeats if the lines are enough for `possible` of them: 1 if these are too few for a spread.
+pub(crate) fn repeats_of(possible: f64) -> u64 {
+    match (possible as u64).min(SHARED) {
+        repeats @ MIN_REPEATS.. => repeats,
+        _ => 1,
     }
 }
 

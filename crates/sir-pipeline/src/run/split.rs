@@ -1,18 +1,23 @@
-//! The lines of a `Solve`: how many the first shot, the second shot and the global lines get.
+//! The lines of a `Solve`: how many the first shot, shadow rays, the second shot and the global lines get.
 //!
-//! The relative variance of the light is a sum over the three stages, each of which contributes in inverse proportion to its
-//! lines: `a/F + b/S + c/G`. A pilot of few lines estimates `a`, `b` and `c`. If lines take the times `1`, `1` and `κ`, the
-//! product of variance and time is smallest for `F : S : G = √a : √b : √(c/κ)` (Lagrange; as in optimal allocation of strata,
-//! Neyman 1934), where it is `(√a + √b + √(cκ))²`. The noise that reflected light inherits from earlier stages is left out.
+//! The relative variance of the light is a sum over the stages, each of which contributes in inverse proportion to its lines:
+//! `a/F + b/S + c/G`. A pilot of few lines estimates `a`, `b` and `c`. If lines take the times `1`, `1` and `κ`, the product of
+//! variance and time is smallest for `F : S : G = √a : √b : √(c/κ)` (Lagrange; as in optimal allocation of strata, Neyman
+//! 1934), where it is `(√a + √b + √(cκ))²`. Shadow rays take the place of the first shot, with an `a` of their own, if the
+//! product is smaller then; the first shot has few lines, whose light is only reflected. The noise that reflected light
+//! inherits from earlier stages is left out.
 
 use serde::{Deserialize, Serialize};
 
 use crate::format::{grouped, percent};
-use crate::plan::{Action, DomainKind, FirstShot as First, Multipath, SecondShot as Second, Transport};
+use crate::plan::{
+    Action, DomainKind, FirstShot as First, Multipath, SecondShot as Second, ShadowRays, Transport,
+};
 use crate::report::result::{PilotReport, Time};
+use crate::run::sharing::repeats_of;
 
-/// Smallest and largest share of all lines for the first shot and for global lines.
-const BOUNDS: (f64, f64) = (0.05, 0.9);
+/// Smallest share of all lines for the first shot and for global lines.
+const FEWEST: f64 = 0.05;
 
 /// Largest share of all lines for those global lines that are needed for the spread of repeats.
 const REPEATS_SHARE: f64 = 0.25;
@@ -22,6 +27,8 @@ const REPEATS_SHARE: f64 = 0.25;
 pub(crate) struct Split {
     /// Lines of the first shot.
     first: u64,
+    /// Shadow rays. The stage is left out without rays.
+    rays: u64,
     /// Lines of the second shot. There is no second shot without lines.
     second: u64,
     /// Share of the reflected light that they carry.
@@ -32,66 +39,111 @@ pub(crate) struct Split {
     pub(crate) pilot: PilotReport,
 }
 
-const NO_PILOT: PilotReport = PilotReport { lines: 0, share: 0.0, time: Time::of(0.0) };
+const NO_PILOT: PilotReport = PilotReport { lines: 0, share: 0.0, rays: 0, time: Time::of(0.0) };
 
 /// What the pilot says of one share of the reflected light: the relative variances times the numbers of lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Trial {
     pub(crate) share: f64,
     pub(crate) first: f64,
+    /// Relative variance of the direct light by shadow rays, times their number; `None` if they take too long.
+    pub(crate) rays: Option<f64>,
     pub(crate) second: f64,
     pub(crate) global: f64,
+}
+
+/// Time of a line or ray over that of a local line, and the numbers of lines that are needed whatever the noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Costs {
+    /// Time of a global line.
+    pub(crate) global: f64,
+    /// Time of a shadow ray.
+    pub(crate) ray: f64,
+    /// Number of global lines of a repeat that are enough for its spread.
+    pub(crate) global_of_repeat: f64,
+    /// Largest number of repeats.
+    pub(crate) repeats: u64,
+    /// Number of shadow rays that a repeat has at least.
+    pub(crate) rays_of_repeat: u64,
 }
 
 impl Split {
     /// Returns a usual split, for estimates of time.
     pub(crate) fn usual(lines: u64) -> Self {
         let (second, global) = (lines / 4, (lines / 4).max(1));
-        Self {
-            first: lines.saturating_sub(second + global).max(1),
-            second,
-            share: 1.0,
-            global,
-            pilot: NO_PILOT,
-        }
+        let first = lines.saturating_sub(second + global).max(1);
+        Self { first, rays: 0, second, share: 1.0, global, pilot: NO_PILOT }
     }
 
-    /// Returns the split with the smallest variance in a given time. `global_time` is the time of a global line over that
-    /// of a local line, and `least_global` the number of global lines that the spread of repeats needs.
-    pub(crate) fn best(trials: &[Trial], lines: u64, global_time: f64, least_global: u64) -> Self {
-        let weights =
-            |trial: &Trial| [trial.first.sqrt(), trial.second.sqrt(), (trial.global / global_time).sqrt()];
-        let cost = |trial: &Trial| {
-            let [first, second, global] = weights(trial);
-            first + second + global * global_time
+    /// Returns the split with the smallest product of variance and time.
+    pub(crate) fn best(trials: &[Trial], lines: u64, costs: &Costs) -> Self {
+        let without_rays = trials.iter().map(|trial| Trial { rays: None, ..*trial });
+        let all = trials.iter().copied().chain(without_rays);
+        let possible = all.filter_map(|trial| {
+            let split = Self::of(&trial, lines, costs)?;
+            Some((split, split.variance(&trial) * split.time(costs)))
+        });
+        let best = possible.min_by(|(_, a), (_, b)| a.total_cmp(b));
+        best.map_or_else(|| Self::usual(lines), |(split, _)| split)
+    }
+
+    /// Returns the best split for what one trial says, with shadow rays if it has them; `None` if these would be too few.
+    fn of(trial: &Trial, lines: u64, costs: &Costs) -> Option<Self> {
+        let all = lines as f64;
+        let direct = trial.rays.map_or(trial.first, |rays| rays / costs.ray).sqrt();
+        let (second, global) = (trial.second.sqrt(), (trial.global / costs.global).sqrt());
+        let sum = direct + second + global;
+        let fewest = FEWEST * all;
+        let needed = fewest.max((costs.repeats as f64 * costs.global_of_repeat).min(REPEATS_SHARE * all));
+        let global = (all * if sum > 0.0 { global / sum } else { 1.0 / 3.0 }).clamp(needed, all - fewest);
+        // The first shot gets what the other stages leave. With shadow rays it has the fewest lines.
+        let (first, least) = match trial.rays {
+            Some(_) => {
+                let repeats = repeats_of(global / costs.global_of_repeat).min(costs.repeats);
+                (fewest, (repeats * costs.rays_of_repeat) as f64)
+            }
+            None => (0.0, fewest),
         };
-        let best = trials.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
-        let Some(best) = best else { return Self::usual(lines) };
-        let [first, second, global] = weights(best);
-        let sum = first + second + global;
-        let (fewest, most) = BOUNDS;
-        let of_all = |weight: f64| lines as f64 * if sum > 0.0 { weight / sum } else { 1.0 / 3.0 };
-        let (fewest, most) = (lines as f64 * fewest, lines as f64 * most);
-        let needed = (least_global as f64).min(REPEATS_SHARE * lines as f64);
-        let global = of_all(global).clamp(fewest.max(needed), most);
-        // The shots share the rest as their weights do.
-        let rest = lines as f64 - global;
-        let of_shots = if first + second > 0.0 { second / (first + second) } else { 0.0 };
-        let second = if best.share > 0.0 { (rest * of_shots).min((rest - fewest).max(0.0)) } else { 0.0 };
+        let global = global.min(all - first - least);
+        if global < needed {
+            return None;
+        }
+        // The others share the rest as their weights do.
+        let rest = all - global - first;
+        let of_second = if direct + second > 0.0 { second / (direct + second) } else { 0.0 };
+        let second = if trial.share > 0.0 { (rest * of_second).min((rest - least).max(0.0)) } else { 0.0 };
         let (global, second) = ((global as u64).max(1), second as u64);
-        let first = lines.saturating_sub(global + second).max(1);
-        Self { first, second, share: best.share, global, pilot: NO_PILOT }
+        let rest = lines.saturating_sub(global + second).max(1);
+        let first = if trial.rays.is_some() { (first as u64).clamp(1, rest) } else { rest };
+        Some(Self { first, rays: rest - first, second, share: trial.share, global, pilot: NO_PILOT })
     }
 
-    /// Returns the share of the reflected light that the second shot carries.
-    pub(crate) fn share(&self) -> f64 {
-        if self.second > 0 { self.share } else { 0.0 }
+    /// Returns the relative variance of the light.
+    fn variance(&self, trial: &Trial) -> f64 {
+        let over = |variance: f64, lines: u64| if variance > 0.0 { variance / lines as f64 } else { 0.0 };
+        let direct = trial.rays.map_or(over(trial.first, self.first), |rays| over(rays, self.rays));
+        direct + over(trial.second, self.second) + over(trial.global, self.global)
+    }
+
+    /// Returns the time, in times of a local line.
+    fn time(&self, costs: &Costs) -> f64 {
+        let local = self.first + self.second;
+        local as f64 + costs.ray * self.rays as f64 + costs.global * self.global as f64
+    }
+
+    /// Returns the split with the report of its pilot.
+    pub(crate) fn after_pilot(self, lines: u64, time: Time) -> Self {
+        let share = if self.second > 0 { self.share } else { 0.0 };
+        Self { pilot: PilotReport { lines, share, rays: self.rays, time }, ..self }
     }
 
     /// Returns the stages with these lines.
     pub(crate) fn actions(&self) -> Vec<Action> {
-        let Self { first, second, share, global, .. } = *self;
+        let Self { first, rays, second, share, global, .. } = *self;
         let mut actions = vec![Action::FirstShot(First { lines: first })];
+        if rays > 0 {
+            actions.push(Action::ShadowRays(ShadowRays { rays }));
+        }
         if second > 0 {
             actions.push(Action::SecondShot(Second { lines: second, share: Some(share) }));
         }
@@ -102,8 +154,8 @@ impl Split {
 
     /// Returns a line about the split.
     pub(crate) fn message(&self) -> String {
-        let Self { first, second, share, global, pilot } = *self;
-        let all = (first + second + global) as f64;
+        let Self { first, rays, second, share, global, pilot } = *self;
+        let all = (first + rays + second + global) as f64;
         let of_all = |lines: u64| percent(lines as f64 / all);
         let second = match second {
             0 => "no second shot".into(),
@@ -112,8 +164,9 @@ impl Split {
             }
             lines => format!("{} in a second shot", of_all(lines)),
         };
+        let rays = if rays > 0 { format!("{} shadow rays, ", of_all(rays)) } else { String::new() };
         format!(
-            "Solve: after a pilot of {} lines, {} of the lines in the first shot, {second}, {} global lines",
+            "Solve: after a pilot of {} lines, {} of the lines in the first shot, {rays}{second}, {} global lines",
             grouped(pilot.lines),
             of_all(first),
             of_all(global)
@@ -125,36 +178,62 @@ impl Split {
 mod tests {
     use super::*;
 
+    const COSTS: Costs =
+        Costs { global: 1.0, ray: 1.0, global_of_repeat: 1.0, repeats: 1, rays_of_repeat: 100 };
+
     fn trial(share: f64, first: f64, second: f64, global: f64) -> Trial {
-        Trial { share, first, second, global }
+        Trial { share, first, rays: None, second, global }
     }
 
     #[test]
     fn lines_go_where_the_noise_is() {
-        let split = Split::best(&[trial(1.0, 4.0, 1.0, 4.0)], 1_000_000, 4.0, 0);
+        let costs = Costs { global: 4.0, ..COSTS };
+        let split = Split::best(&[trial(1.0, 4.0, 1.0, 4.0)], 1_000_000, &costs);
         assert_eq!((split.first, split.second, split.global), (500_000, 250_000, 250_000));
-        assert_eq!(split.share, 1.0);
+        assert_eq!((split.share, split.rays), (1.0, 0));
     }
 
     #[test]
     fn the_best_of_the_trials_is_taken() {
         // A second shot that costs more than it saves.
         let trials = [trial(0.0, 1.0, 0.0, 1.0), trial(1.0, 1.0, 4.0, 0.9)];
-        let split = Split::best(&trials, 1000, 1.0, 0);
+        let split = Split::best(&trials, 1000, &COSTS);
         assert_eq!((split.first, split.second, split.global), (500, 0, 500));
         assert_eq!(split.actions().len(), 2);
         let trials = [trial(0.0, 1.0, 0.0, 100.0), trial(1.0, 1.0, 1.0, 1.0)];
-        assert_eq!(Split::best(&trials, 999, 1.0, 0).second, 333);
+        assert_eq!(Split::best(&trials, 999, &COSTS).second, 333);
+    }
+
+    #[test]
+    fn shadow_rays_are_taken_where_they_pay() {
+        let better = Trial { rays: Some(0.25), ..trial(0.0, 1.0, 0.0, 1.0) };
+        let split = Split::best(&[better], 1500, &COSTS);
+        assert_eq!((split.first, split.rays, split.second, split.global), (75, 425, 0, 1000));
+        assert_eq!(split.actions().len(), 3);
+        assert!(
+            split.message().contains("5.0 % of the lines in the first shot, 28.3 % shadow rays, no second")
+        );
+        // They are worse, or there are not enough for all patches, or not in every repeat.
+        let worse = Trial { rays: Some(1.0), ..better };
+        assert_eq!(Split::best(&[worse], 1500, &COSTS).rays, 0);
+        assert_eq!(Split::best(&[better], 1500, &Costs { rays_of_repeat: 1400, ..COSTS }).rays, 0);
+        let costs = Costs { repeats: 16, global_of_repeat: 20.0, ..COSTS };
+        assert_eq!(Split::best(&[better], 1500, &costs).rays, 0);
+        // All patches have some, though one would do.
+        let one = Trial { rays: Some(1e-6), global: 100.0, ..better };
+        let split = Split::best(&[one], 1500, &COSTS);
+        assert_eq!((split.first, split.rays, split.global), (75, 100, 1325));
     }
 
     #[test]
     fn global_lines_suffice_for_the_spread_of_repeats_as_far_as_they_can() {
         let trials = [trial(0.0, 1.0, 0.0, 0.0)];
-        assert_eq!(Split::best(&trials, 1000, 1.0, 200).global, 200);
-        assert_eq!(Split::best(&trials, 1000, 1.0, 900).global, 250);
+        let of_repeats = |global_of_repeat| Costs { global_of_repeat, ..COSTS };
+        assert_eq!(Split::best(&trials, 1000, &of_repeats(200.0)).global, 200);
+        assert_eq!(Split::best(&trials, 1000, &of_repeats(900.0)).global, 250);
         // Nothing is known, or there is hardly any line.
-        assert_eq!(Split::best(&[trial(0.0, 0.0, 0.0, 0.0)], 3000, 1.0, 0).global, 1000);
-        let split = Split::best(&trials, 1, 1.0, 9);
+        assert_eq!(Split::best(&[trial(0.0, 0.0, 0.0, 0.0)], 3000, &COSTS).global, 1000);
+        let split = Split::best(&trials, 1, &of_repeats(9.0));
         assert_eq!((split.first, split.second, split.global), (1, 0, 1));
     }
 }

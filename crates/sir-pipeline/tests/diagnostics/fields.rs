@@ -58,7 +58,7 @@ fn unknown_names_and_fields() {
     6 | Render,
       | ^^^^^^
       |
-      = help: stages are `Load`, `Light`, `Subdivide`, `Focus`, `Solve`, `FirstShot`, `SecondShot`, `Multipath`, `Repeat`, `Sensors` and `Save`
+      = help: stages are `Load`, `Light`, `Subdivide`, `Focus`, `Solve`, `FirstShot`, `ShadowRays`, `SecondShot`, `Multipath`, `Repeat`, `Sensors` and `Save`
 
     error: unknown output `Picture`
      --> x.ron:7:7

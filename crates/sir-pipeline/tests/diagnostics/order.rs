@@ -271,7 +271,7 @@ fn what_cannot_be_repeated() {
     3 | Repeat(times: 2, stages: [Multipath(lines: 9), FirstShot(lines: 9)]),
       |                                                ^^^^^^^^^
       |
-      = help: the order is `FirstShot`, `SecondShot`, `Multipath`, each of them once
+      = help: the order is `FirstShot`, `ShadowRays`, `SecondShot`, `Multipath`, each of them once
     ");
     insta::assert_snapshot!(
         repeat("times: 2, stages: [FirstShot(lines: 9), FirstShot(lines: 9), Save([Table(path: \"b.csv\")])]"), @r#"
@@ -281,7 +281,7 @@ fn what_cannot_be_repeated() {
     3 | Repeat(times: 2, stages: [FirstShot(lines: 9), FirstShot(lines: 9), Save([Table(path: "b.csv")])]),
       |                                                ^^^^^^^^^
       |
-      = help: the order is `FirstShot`, `SecondShot`, `Multipath`, each of them once
+      = help: the order is `FirstShot`, `ShadowRays`, `SecondShot`, `Multipath`, each of them once
 
     error: `Save` inside of `Repeat`
      --> x.ron:3:69

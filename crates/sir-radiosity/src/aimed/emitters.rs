@@ -7,10 +7,10 @@ use glam::DVec3;
 use sir_geom::{Rgb, Side, TriangleId};
 use sir_mesh::PatchId;
 
-use crate::emitter::Emitter;
-use crate::model::Model;
 use crate::aimed::seen::{SeenTriangle, share_of_hemisphere};
 use crate::aimed::tree::{Leaf, MAX_CUT, Tree};
+use crate::emitter::Emitter;
+use crate::model::Model;
 use crate::sources;
 
 /// All emitting surfaces of a scene.
@@ -101,9 +101,9 @@ impl Emitters {
         Self { patches, tree }
     }
 
-    /// True if no surface emits.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.patches.is_empty()
+    /// Returns the number of emitting surfaces.
+    pub(crate) fn count(&self) -> usize {
+        self.patches.len()
     }
 
     /// Returns the probability of aiming at each surface from a point of a surface with this unit normal, in proportion
@@ -233,14 +233,17 @@ impl Choice<'_> {
     }
 
     /// Aims at the point that corresponds to a point of the unit square, without cosine-weighted rays beside these. Points
-    /// are uniform within the solid angle of the surface, so that a surface that nearly touches the origin does not make a
-    /// few rays carry most of the light. Returns `None` if the contribution is zero.
+    /// are uniform on the surface if that is far away. If it is near, they are uniform within its solid angle, so that a
+    /// surface that nearly touches the origin does not make a few rays carry most of the light. Returns `None` if the contribution is zero.
     pub(crate) fn aim_alone(&self, [u, v]: [f64; 2]) -> Option<Aim> {
         let Chosen { emitter, probability, rest } = self.choose(u)?;
         let EmittingPatch { triangle, side, corners, normal, exitance, area, .. } =
             self.emitters.patches[emitter];
         // Irradiance per radiance: the solid angle times the cosine.
-        let (direction, geometry) = match SeenTriangle::from(self.origin, corners) {
+        let [a, b, c] = corners;
+        let is_near = NEAR * area > self.origin.distance_squared((a + b + c) / 3.0);
+        let seen = if is_near { SeenTriangle::from(self.origin, corners) } else { None };
+        let (direction, geometry) = match seen {
             Some(seen) => {
                 let direction = seen.direction([rest, v]);
                 (direction, seen.solid_angle * direction.dot(self.normal))
@@ -253,6 +256,11 @@ impl Choice<'_> {
             }
         };
         let contribution = exitance * (geometry / (PI * probability));
-        (geometry > 0.0 && contribution.is_finite()).then_some(Aim { direction, triangle, side, contribution })
+        (geometry > 0.0 && contribution.is_finite()).then_some(Aim {
+            direction,
+            triangle,
+            side,
+            contribution,
+        })
     }
 }

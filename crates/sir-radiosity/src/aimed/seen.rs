@@ -97,8 +97,8 @@ mod tests {
             let seen = SeenTriangle::from(DVec3::ZERO, corners).unwrap();
             let (ab, bc, ca) = (a.midpoint(b), b.midpoint(c), c.midpoint(a));
             let parts = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
-            let shares = parts
-                .map(|part| SeenTriangle::from(DVec3::ZERO, part).map_or(0.0, |part| part.solid_angle));
+            let shares =
+                parts.map(|part| SeenTriangle::from(DVec3::ZERO, part).map_or(0.0, |part| part.solid_angle));
             assert!((shares.iter().sum::<f64>() / seen.solid_angle - 1.0).abs() < 1e-6);
             let streams = Streams::new(1, Purpose::PROBE);
             let n = 40_000;
@@ -134,7 +134,8 @@ mod tests {
     fn shares_of_the_hemisphere_are_those_of_uniform_directions() {
         let far = 1e6;
         // A plane above takes all of it, an upright one half.
-        let above = [DVec3::new(-far, -far, 1.0), DVec3::new(3.0 * far, -far, 1.0), DVec3::new(-far, 3.0 * far, 1.0)];
+        let above =
+            [DVec3::new(-far, -far, 1.0), DVec3::new(3.0 * far, -far, 1.0), DVec3::new(-far, 3.0 * far, 1.0)];
         assert!((share_of_hemisphere(DVec3::ZERO, DVec3::Z, above) - 1.0).abs() < 1e-5);
         let upright = above.map(|p| DVec3::new(p.z, p.x, p.y));
         assert!((share_of_hemisphere(DVec3::ZERO, DVec3::Z, upright) - 0.5).abs() < 1e-5);

@@ -114,8 +114,8 @@ impl Subject {
                     actions.push(Action::Load(Load { path: absolute(&load.path), ..load.clone() }))
                 }
                 kept @ (Action::Light(_) | Action::Subdivide(_)) => actions.push(kept.clone()),
-                // `Focus` is left out because the paper does not have it and replicas do not support it. Sensors are
-                // left out because the experiment measures patches.
+                // `Focus` and `ShadowRays` are left out because the paper does not have them and replicas do not support a
+                // focus. Sensors are left out because the experiment measures patches.
                 _ => {}
             }
         }
