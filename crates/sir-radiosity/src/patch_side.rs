@@ -75,6 +75,13 @@ impl MergedPatches {
         Self(merged)
     }
 
+    /// Returns all parts of a patch.
+    pub(crate) fn parts(&self, place: PatchSide) -> impl Iterator<Item = PatchSide> {
+        let merged = self.0.get(&place.patch.0).map_or(&[][..], Vec::as_slice);
+        let single = merged.is_empty().then_some(place);
+        single.into_iter().chain(merged.iter().map(move |&triangle| PatchSide { triangle, ..place }))
+    }
+
     /// Returns a random part of a patch, with a probability in proportion to its area. Only a patch of several triangles
     /// takes a number.
     #[inline]

@@ -4,6 +4,9 @@
 //! need only find out whether the way to the source is free: how much light comes from there is known. With few sources,
 //! this has much less noise for the same number of rays. With hundreds of sources it has more, as each ray tests one.
 //!
+//! A lamp that is small and close to a patch lights a small part of it, which few points would find. Such patches keep the
+//! light of the lines.
+//!
 //! From each of several points of a patch goes one ray to each distant light, one to one of all lamps (emitting surfaces
 //! and other lights), chosen by an estimate of its light without obstacles, and one to the sky.
 
@@ -53,20 +56,14 @@ pub struct ShadowRaySettings<'m> {
     pub every: u32,
 }
 
-impl ShadowRaySettings<'_> {
-    /// True if there are rays from a side.
-    fn have(&self, side: SideId, in_focus: &FocusSides) -> bool {
-        (side.index() as u32).is_multiple_of(self.every) && in_focus.contains(side)
-    }
-}
-
 /// Shadow rays from the sides of patches. The outcome is the first shot with the direct light that they know instead of that
 /// of its lines, and the counts of rays. What is reflected remains that of the lines.
 #[derive(Debug)]
 pub struct ShadowRays<'m> {
     settings: ShadowRaySettings<'m>,
     shot: Shot,
-    in_focus: FocusSides,
+    /// Per side, true if there are rays from it.
+    with_rays: Vec<bool>,
     sources: Sources,
     merged: MergedPatches,
     numbers: LineNumbers,
@@ -91,7 +88,7 @@ struct PointAllocation {
 }
 
 impl PointAllocation {
-    /// Returns the allocation of `points` to the sides in the focus.
+    /// Returns the allocation of `points` to the sides in the focus, whether all of these have rays or not.
     fn new(model: &Model, in_focus: &FocusSides, shot: &Shot, points: u64, workers: &dyn Workers) -> Self {
         let sum = |of: &(dyn Fn(TriangleId, SideId) -> [f64; 2] + Sync)| {
             let blocks = map_sides(workers, &model.mesh, no_items(), |sides, ()| {
@@ -137,7 +134,14 @@ struct Sources {
     local: Vec<LightKind>,
     surfaces: Emitters,
     has_sky: bool,
+    /// Centers and radii of spheres around lamps: lights at a point, and emitting surfaces.
+    lamps: Vec<(DVec3, f64)>,
 }
+
+/// Largest distance of a lamp from the center of a patch that it is close to, in radii of the patch, and radius of a small
+/// lamp.
+const CLOSE: f64 = 2.0;
+const SMALL: f64 = 0.5;
 
 /// Rays of some points, with what they bring if they arrive.
 #[derive(Default)]
@@ -159,8 +163,23 @@ struct Batch {
 impl Sources {
     fn of(model: &Model) -> Self {
         let lights = model.scene.lights().iter().map(|light| light.kind);
-        let (distant, local) = lights.partition(|kind| matches!(kind, LightKind::Distant { .. }));
-        Self { distant, local, surfaces: Emitters::of(model), has_sky: model.scene.sky().is_some() }
+        let (distant, local): (Vec<_>, Vec<_>) =
+            lights.partition(|kind| matches!(kind, LightKind::Distant { .. }));
+        let surfaces = Emitters::of(model);
+        let at = |kind: &LightKind| match kind {
+            LightKind::Point { position, .. } => Some((*position, 0.0)),
+            LightKind::Distant { .. } => None,
+        };
+        let lamps = local.iter().filter_map(at).chain(surfaces.corners().map(around)).collect();
+        Self { distant, local, surfaces, has_sky: model.scene.sky().is_some(), lamps }
+    }
+
+    /// True if a small lamp is close to a triangle.
+    fn are_close_to(&self, corners: [DVec3; 3]) -> bool {
+        let (center, radius) = around(corners);
+        self.lamps
+            .iter()
+            .any(|&(lamp, size)| size < SMALL * radius && lamp.distance(center) < CLOSE * radius + size)
     }
 
     /// Returns the numbers of rays from a point: to distant lights and the sky, and to lamps.
@@ -168,6 +187,12 @@ impl Sources {
         let has_lamps = !self.local.is_empty() || self.surfaces.count() > 0;
         [self.distant.len() as u64 + u64::from(self.has_sky), u64::from(has_lamps)]
     }
+}
+
+/// Returns the center and the radius of a sphere around a triangle.
+fn around(corners @ [a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+    let center = (a + b + c) / 3.0;
+    (center, corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max))
 }
 
 impl ShadowRays<'_> {
@@ -189,17 +214,27 @@ impl ShadowRays<'_> {
 
 impl<'m> ShadowRays<'m> {
     fn new(settings: ShadowRaySettings<'m>, shot: Shot, workers: &dyn Workers) -> Self {
-        let ShadowRaySettings { model, rays, seed, points, .. } = settings;
+        let ShadowRaySettings { model, rays, seed, points, every } = settings;
         let in_focus = FocusSides::of(model, rays.focus.as_ref());
         let sources = Sources::of(model);
         let all = rays.count / sources.rays_per_point().iter().sum::<u64>().max(1);
         let allocation = PointAllocation::new(model, &in_focus, &shot, all, workers);
+        let merged = MergedPatches::of(model);
+        let has_rays = |(triangle, side): (TriangleId, SideId)| {
+            (side.index() as u32).is_multiple_of(every) && in_focus.contains(side) && {
+                let place = PatchSide::of(model, triangle, side);
+                merged.parts(place).all(|part| !sources.are_close_to(part.corners(model)))
+            }
+        };
+        let with_rays = map_sides(workers, &model.mesh, no_items(), |sides, ()| {
+            sides.iter().map(has_rays).collect::<Vec<_>>()
+        });
         Self {
             settings,
             shot,
-            in_focus,
+            with_rays: with_rays.concat(),
             sources,
-            merged: MergedPatches::of(model),
+            merged,
             numbers: LineNumbers::new(points, seed, Purpose::SHADOW_RAYS),
             allocation,
             gathered: (0..model.mesh.side_count()).map(|_| Default::default()).collect(),
@@ -385,7 +420,7 @@ impl<'m> Stage for ShadowRays<'m> {
         let ranges = model.mesh.sides_within((units.start * every) as u32..end);
         for (triangle, side) in ranges.flat_map(|(triangle, sides)| sides.map(move |s| (triangle, SideId(s))))
         {
-            if !self.settings.have(side, &self.in_focus) {
+            if !self.with_rays[side.index()] {
                 continue;
             }
             let place = PatchSide::of(model, triangle, side);
@@ -415,7 +450,7 @@ impl<'m> Stage for ShadowRays<'m> {
     }
 
     fn finish(self, totals: StageTotals, workers: &dyn Workers) -> Result<(Shot, Counts), SolveError> {
-        let Self { settings, mut shot, in_focus, gathered, .. } = self;
+        let Self { settings, mut shot, with_rays, gathered, .. } = self;
         shot.correction = vec![Quanta::ZERO; gathered.len()];
         let received = &mut shot.received;
         let blocks = received.power.chunks_mut(BLOCK).zip(received.variance.chunks_mut(BLOCK));
@@ -427,7 +462,7 @@ impl<'m> Stage for ShadowRays<'m> {
             |sides, (((power, variance), correction), gathered)| {
                 let places = power.iter_mut().zip(variance).zip(correction).zip(gathered);
                 for ((_, side), (((power, variance), correction), gathered)) in sides.iter().zip(places) {
-                    if settings.have(side, &in_focus) {
+                    if with_rays[side.index()] {
                         let (by_rays, of_rays) =
                             from_words(gathered.each_ref().map(|word| word.load(Relaxed)));
                         *correction = by_rays - *power;

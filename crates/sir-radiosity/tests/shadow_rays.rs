@@ -168,6 +168,24 @@ fn there_are_rays_in_the_focus_only() {
     assert!(changed.clone().all(|side| side % 7 == 0) && changed.count() > 200);
 }
 
+/// Few points of a large patch would find the spot that a close lamp lights.
+#[test]
+fn patches_close_to_a_small_lamp_keep_the_light_of_lines() {
+    let lamp = DVec3::new(1.9, 1.1, 0.001);
+    let spread = Spread::Lambertian { axis: -DVec3::Z };
+    let kind = LightKind::Point { position: lamp, intensity: Rgb::ONE, spread };
+    let scene = room(|builder| builder.add_light(Light { name: String::new(), kind }), false);
+    let model = Model::new(scene, Subdivision::Patches(800)).unwrap();
+    let lines = shot(&model, 20_000, 1);
+    let rays = gather(settings(&model, 4, 2), &lines);
+    let brightest = (0..model.mesh.side_count()).max_by_key(|&side| lines.received.power[side].0[0]).unwrap();
+    assert_eq!(lines.received.power[brightest], rays.received.power[brightest]);
+    let same = (0..model.mesh.side_count()).filter(|&side| {
+        lines.received.power[side] == rays.received.power[side] && lines.received.power[side].0[0] > 0
+    });
+    assert!(same.count() < 10);
+}
+
 /// The noise of a few rays is far below that of as many lines where there is one lamp, even where it touches a wall.
 #[test]
 fn one_lamp_is_known_better_by_rays() {

@@ -101,6 +101,11 @@ impl Emitters {
         Self { patches, tree }
     }
 
+    /// Returns the corners of all emitting surfaces.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        self.patches.iter().map(|patch| patch.corners)
+    }
+
     /// Returns the number of emitting surfaces.
     pub(crate) fn count(&self) -> usize {
         self.patches.len()
