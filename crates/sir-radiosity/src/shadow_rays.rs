@@ -195,6 +195,37 @@ fn around(corners @ [a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     (center, corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max))
 }
 
+/// Returns, per side, true if there are rays from it.
+fn with_rays(
+    settings: &ShadowRaySettings<'_>,
+    in_focus: &FocusSides,
+    sources: &Sources,
+    merged: &MergedPatches,
+    workers: &dyn Workers,
+) -> Vec<bool> {
+    let ShadowRaySettings { model, every, .. } = *settings;
+    let has_rays = |(triangle, side): (TriangleId, SideId)| {
+        (side.index() as u32).is_multiple_of(every) && in_focus.contains(side) && {
+            let place = PatchSide::of(model, triangle, side);
+            merged.parts(place).all(|part| !sources.are_close_to(part.corners(model)))
+        }
+    };
+    let blocks = map_sides(workers, &model.mesh, no_items(), |sides, ()| {
+        sides.iter().map(has_rays).collect::<Vec<_>>()
+    });
+    blocks.concat()
+}
+
+impl ShadowRaySettings<'_> {
+    /// Returns, per side, true if there are rays from it: it is in the focus, and no small lamp is close to it. Others keep
+    /// the light of the first shot.
+    #[must_use]
+    pub fn sides(&self, workers: &dyn Workers) -> Vec<bool> {
+        let in_focus = FocusSides::of(self.model, self.rays.focus.as_ref());
+        with_rays(self, &in_focus, &Sources::of(self.model), &MergedPatches::of(self.model), workers)
+    }
+}
+
 impl ShadowRays<'_> {
     /// Fewest points of a side.
     pub const MIN_POINTS: u64 = POINTS.0;
@@ -214,25 +245,17 @@ impl ShadowRays<'_> {
 
 impl<'m> ShadowRays<'m> {
     fn new(settings: ShadowRaySettings<'m>, shot: Shot, workers: &dyn Workers) -> Self {
-        let ShadowRaySettings { model, rays, seed, points, every } = settings;
+        let ShadowRaySettings { model, rays, seed, points, .. } = settings;
         let in_focus = FocusSides::of(model, rays.focus.as_ref());
         let sources = Sources::of(model);
         let all = rays.count / sources.rays_per_point().iter().sum::<u64>().max(1);
         let allocation = PointAllocation::new(model, &in_focus, &shot, all, workers);
         let merged = MergedPatches::of(model);
-        let has_rays = |(triangle, side): (TriangleId, SideId)| {
-            (side.index() as u32).is_multiple_of(every) && in_focus.contains(side) && {
-                let place = PatchSide::of(model, triangle, side);
-                merged.parts(place).all(|part| !sources.are_close_to(part.corners(model)))
-            }
-        };
-        let with_rays = map_sides(workers, &model.mesh, no_items(), |sides, ()| {
-            sides.iter().map(has_rays).collect::<Vec<_>>()
-        });
+        let with_rays = with_rays(&settings, &in_focus, &sources, &merged, workers);
         Self {
             settings,
             shot,
-            with_rays: with_rays.concat(),
+            with_rays,
             sources,
             merged,
             numbers: LineNumbers::new(points, seed, Purpose::SHADOW_RAYS),

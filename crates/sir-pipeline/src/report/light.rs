@@ -39,9 +39,14 @@ pub(crate) struct Deviation {
 impl Deviation {
     /// Returns the sums over a solution.
     pub(crate) fn of(model: &Model, inside: &FocusSides, solution: &Solution) -> Self {
+        Self::on(model, |side| inside.contains(side), solution)
+    }
+
+    /// Returns the sums over some of the sides of a solution.
+    pub(crate) fn on(model: &Model, is_counted: impl Fn(SideId) -> bool, solution: &Solution) -> Self {
         let (mut area, mut sum, mut square) = (0.0, Rgb::ZERO, Rgb::ZERO);
         model.mesh.for_each_side(|triangle, _, _, side| {
-            if !inside.contains(side) {
+            if !is_counted(side) {
                 return;
             }
             let a = model.area(triangle, side);

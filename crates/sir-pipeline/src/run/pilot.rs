@@ -15,7 +15,7 @@ use crate::report::light::Deviation;
 use crate::report::result::Time;
 use crate::run::execute::Run;
 use crate::run::sharing::CROSSINGS;
-use crate::run::split::{Costs, Split, Trial};
+use crate::run::split::{Costs, RayTrial, Split, Trial};
 use crate::stopwatch::Stopwatch;
 
 /// Lines of each shot of the pilot: a share of all lines, but at least a number, up to a larger share.
@@ -67,6 +67,15 @@ impl Pilot<'_> {
     fn lines(&self) -> u64 {
         (self.shot + self.global) * SHARES.len() as u64 + 2 * self.rays / u64::from(self.every)
     }
+}
+
+/// What the pilot says of shadow rays.
+struct ByRays {
+    /// Errors of the sides with rays, and of those that keep the light of the first shot.
+    rays: Deviation,
+    kept: Deviation,
+    /// Share of the rays that are traced. Others would leave from behind a surface.
+    traced: f64,
 }
 
 /// Returns the time of a shadow ray over that of a local line, in the mean over the rays from a point.
@@ -132,7 +141,7 @@ impl Run<'_> {
         let after_first = deviation(&first.solution(model));
         let by_rays = match pilot.rays {
             0 => None,
-            _ => Some(self.deviation_by_rays(pilot, &first, &mut executor)?),
+            _ => Some(self.try_rays(pilot, &first, &mut executor)?),
         };
         let (mut trials, mut crossings) = (Vec::new(), 0.0);
         for share in SHARES {
@@ -152,7 +161,11 @@ impl Run<'_> {
             trials.push(Trial {
                 share,
                 first: of_lines(shot, &after_first, &Deviation::default()),
-                rays: by_rays.map(|by_rays| of_lines(pilot.rays, &by_rays, &Deviation::default())),
+                rays: by_rays.as_ref().map(|by_rays| RayTrial {
+                    rays: of_lines(pilot.rays, &by_rays.rays, &Deviation::default()),
+                    kept: of_lines(shot, &by_rays.kept, &Deviation::default()),
+                    traced: by_rays.traced,
+                }),
                 second: of_lines(shot, &after_both, &after_first),
                 global: of_lines(global, &after_all, &after_both),
             });
@@ -160,23 +173,33 @@ impl Run<'_> {
         Ok((trials, crossings))
     }
 
-    /// Returns the deviation of the direct light by shadow rays, from two independent estimates.
-    fn deviation_by_rays(
+    /// Tries shadow rays: two independent estimates of the direct light.
+    fn try_rays(
         &self,
         pilot: &Pilot<'_>,
         first: &Shot,
         executor: &mut Executor<'_>,
-    ) -> Result<Deviation, Error> {
-        let Pilot { model, rays, every, seed, .. } = *pilot;
-        let rays = LocalLines { count: rays, focus: self.prepared.focus };
-        let mut estimate = |seed| {
-            let settings = ShadowRaySettings { model, rays, seed, points: self.pipeline.points, every };
+    ) -> Result<ByRays, Error> {
+        let Pilot { model, rays: count, every, seed, .. } = *pilot;
+        let (inside, points) = (&self.prepared.inside, self.pipeline.points);
+        let rays = LocalLines { count, focus: self.prepared.focus };
+        let with_rays = ShadowRaySettings { model, rays, seed, points, every: 1 }.sides(&self.threads());
+        let (mut estimates, mut traced) = (Vec::new(), 0);
+        for seed in [seed, seed.wrapping_add(1)] {
+            let settings = ShadowRaySettings { model, rays, seed, points, every };
             let run = executor.run::<ShadowRays<'_>>(settings, Start::Fresh(first.clone()))?;
-            Ok::<_, Error>(run.outcome.0.solution(model))
-        };
-        let (one, other) = (estimate(seed)?, estimate(seed.wrapping_add(1))?);
+            let (shot, counts) = run.outcome;
+            traced += counts.lines;
+            estimates.push(shot.solution(model));
+        }
         let is_measured =
-            |side: SideId| (side.index() as u32).is_multiple_of(every) && self.prepared.inside.contains(side);
-        Ok(Deviation::between(model, is_measured, &one, &other).times(f64::from(every)))
+            |side: SideId| with_rays[side.index()] && (side.index() as u32).is_multiple_of(every);
+        let is_kept = |side: SideId| inside.contains(side) && !with_rays[side.index()];
+        Ok(ByRays {
+            rays: Deviation::between(model, is_measured, &estimates[0], &estimates[1])
+                .times(f64::from(every)),
+            kept: Deviation::on(model, is_kept, &first.solution(model)),
+            traced: (0.5 * f64::from(every) * traced as f64 / count.max(1) as f64).min(1.0),
+        })
     }
 }

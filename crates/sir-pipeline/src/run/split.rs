@@ -46,10 +46,21 @@ const NO_PILOT: PilotReport = PilotReport { lines: 0, share: 0.0, rays: 0, time:
 pub(crate) struct Trial {
     pub(crate) share: f64,
     pub(crate) first: f64,
-    /// Relative variance of the direct light by shadow rays, times their number; `None` if they take too long.
-    pub(crate) rays: Option<f64>,
+    /// The direct light by shadow rays; `None` if they take too long.
+    pub(crate) rays: Option<RayTrial>,
     pub(crate) second: f64,
     pub(crate) global: f64,
+}
+
+/// What the pilot says of shadow rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RayTrial {
+    /// Relative variance of their light times their number.
+    pub(crate) rays: f64,
+    /// Relative variance of the light of the first shot on patches without rays, times the number of its lines.
+    pub(crate) kept: f64,
+    /// Share of the rays that take time.
+    pub(crate) traced: f64,
 }
 
 /// Time of a line or ray over that of a local line, and the numbers of lines that are needed whatever the noise.
@@ -67,6 +78,13 @@ pub(crate) struct Costs {
     pub(crate) rays_of_repeat: u64,
 }
 
+impl Costs {
+    /// Returns the mean time of a shadow ray, of those that are traced and those that are not.
+    fn of_ray(&self, of_rays: &RayTrial) -> f64 {
+        self.ray * of_rays.traced.max(0.05)
+    }
+}
+
 impl Split {
     /// Returns a usual split, for estimates of time.
     pub(crate) fn usual(lines: u64) -> Self {
@@ -81,7 +99,7 @@ impl Split {
         let all = trials.iter().copied().chain(without_rays);
         let possible = all.filter_map(|trial| {
             let split = Self::of(&trial, lines, costs)?;
-            Some((split, split.variance(&trial) * split.time(costs)))
+            Some((split, split.variance(&trial) * split.time(&trial, costs)))
         });
         let best = possible.min_by(|(_, a), (_, b)| a.total_cmp(b));
         best.map_or_else(|| Self::usual(lines), |(split, _)| split)
@@ -90,45 +108,54 @@ impl Split {
     /// Returns the best split for what one trial says, with shadow rays if it has them; `None` if these would be too few.
     fn of(trial: &Trial, lines: u64, costs: &Costs) -> Option<Self> {
         let all = lines as f64;
-        let direct = trial.rays.map_or(trial.first, |rays| rays / costs.ray).sqrt();
+        let first = trial.rays.map_or(trial.first, |of_rays| of_rays.kept).sqrt();
+        let rays = trial.rays.map_or(0.0, |of_rays| (of_rays.rays / costs.of_ray(&of_rays)).sqrt());
         let (second, global) = (trial.second.sqrt(), (trial.global / costs.global).sqrt());
-        let sum = direct + second + global;
+        let sum = first + rays + second + global;
         let fewest = FEWEST * all;
         let needed = fewest.max((costs.repeats as f64 * costs.global_of_repeat).min(REPEATS_SHARE * all));
-        let global = (all * if sum > 0.0 { global / sum } else { 1.0 / 3.0 }).clamp(needed, all - fewest);
-        // The first shot gets what the other stages leave. With shadow rays it has the fewest lines.
-        let (first, least) = match trial.rays {
-            Some(_) => {
-                let repeats = repeats_of(global / costs.global_of_repeat).min(costs.repeats);
-                (fewest, (repeats * costs.rays_of_repeat) as f64)
-            }
-            None => (0.0, fewest),
-        };
-        let global = global.min(all - first - least);
+        let share = |weight: f64| all * if sum > 0.0 { weight / sum } else { 1.0 / 3.0 };
+        let global = share(global).clamp(needed, all - fewest);
+        let least_rays = trial.rays.map_or(0.0, |_| {
+            let repeats = repeats_of(global / costs.global_of_repeat).min(costs.repeats);
+            (repeats * costs.rays_of_repeat) as f64
+        });
+        let global = global.min(all - fewest - least_rays);
         if global < needed {
             return None;
         }
-        // The others share the rest as their weights do.
-        let rest = all - global - first;
-        let of_second = if direct + second > 0.0 { second / (direct + second) } else { 0.0 };
-        let second = if trial.share > 0.0 { (rest * of_second).min((rest - least).max(0.0)) } else { 0.0 };
-        let (global, second) = ((global as u64).max(1), second as u64);
-        let rest = lines.saturating_sub(global + second).max(1);
-        let first = if trial.rays.is_some() { (first as u64).clamp(1, rest) } else { rest };
-        Some(Self { first, rays: rest - first, second, share: trial.share, global, pilot: NO_PILOT })
+        // The other stages share the rest as their weights do; each has its least.
+        let rest = all - global;
+        let of_rest = |weight: f64| rest * if sum > 0.0 { weight / (first + rays + second) } else { 0.0 };
+        let of_rest = |weight: f64| if weight > 0.0 { of_rest(weight) } else { 0.0 };
+        let second = if trial.share > 0.0 { of_rest(second).min(rest - fewest - least_rays) } else { 0.0 };
+        let rays = match trial.rays {
+            Some(_) if first > 0.0 => {
+                let of_both = (rest - second) * rays / (first + rays);
+                of_both.clamp(least_rays, rest - second - fewest)
+            }
+            Some(_) => rest - second - fewest,
+            None => 0.0,
+        };
+        let (global, second, rays) = ((global as u64).max(1), second as u64, rays as u64);
+        let first = lines.saturating_sub(global + second + rays).max(1);
+        Some(Self { first, rays, second, share: trial.share, global, pilot: NO_PILOT })
     }
 
     /// Returns the relative variance of the light.
     fn variance(&self, trial: &Trial) -> f64 {
         let over = |variance: f64, lines: u64| if variance > 0.0 { variance / lines as f64 } else { 0.0 };
-        let direct = trial.rays.map_or(over(trial.first, self.first), |rays| over(rays, self.rays));
+        let direct = trial.rays.map_or(over(trial.first, self.first), |of_rays| {
+            over(of_rays.rays, self.rays) + over(of_rays.kept, self.first)
+        });
         direct + over(trial.second, self.second) + over(trial.global, self.global)
     }
 
     /// Returns the time, in times of a local line.
-    fn time(&self, costs: &Costs) -> f64 {
+    fn time(&self, trial: &Trial, costs: &Costs) -> f64 {
         let local = self.first + self.second;
-        local as f64 + costs.ray * self.rays as f64 + costs.global * self.global as f64
+        let ray = trial.rays.map_or(0.0, |of_rays| costs.of_ray(&of_rays));
+        local as f64 + ray * self.rays as f64 + costs.global * self.global as f64
     }
 
     /// Returns the split with the report of its pilot.
@@ -206,7 +233,8 @@ mod tests {
 
     #[test]
     fn shadow_rays_are_taken_where_they_pay() {
-        let better = Trial { rays: Some(0.25), ..trial(0.0, 1.0, 0.0, 1.0) };
+        let of_rays = |rays, kept| Some(RayTrial { rays, kept, traced: 1.0 });
+        let better = Trial { rays: of_rays(0.25, 0.0), ..trial(0.0, 1.0, 0.0, 1.0) };
         let split = Split::best(&[better], 1500, &COSTS);
         assert_eq!((split.first, split.rays, split.second, split.global), (75, 425, 0, 1000));
         assert_eq!(split.actions().len(), 3);
@@ -214,15 +242,21 @@ mod tests {
             split.message().contains("5.0 % of the lines in the first shot, 28.3 % shadow rays, no second")
         );
         // They are worse, or there are not enough for all patches, or not in every repeat.
-        let worse = Trial { rays: Some(1.0), ..better };
+        let worse = Trial { rays: of_rays(1.0, 0.0), ..better };
         assert_eq!(Split::best(&[worse], 1500, &COSTS).rays, 0);
         assert_eq!(Split::best(&[better], 1500, &Costs { rays_of_repeat: 1400, ..COSTS }).rays, 0);
         let costs = Costs { repeats: 16, global_of_repeat: 20.0, ..COSTS };
         assert_eq!(Split::best(&[better], 1500, &costs).rays, 0);
         // All patches have some, though one would do.
-        let one = Trial { rays: Some(1e-6), global: 100.0, ..better };
+        let one = Trial { rays: of_rays(1e-6, 0.0), global: 100.0, ..better };
         let split = Split::best(&[one], 1500, &COSTS);
         assert_eq!((split.first, split.rays, split.global), (75, 100, 1325));
+        // What keeps the light of the first shot needs its lines, and may need so many that rays do not pay.
+        let some = Trial { rays: of_rays(0.04, 0.04), ..better };
+        let split = Split::best(&[some], 1400, &COSTS);
+        assert_eq!((split.first, split.rays, split.global), (200, 200, 1000));
+        let most = Trial { rays: of_rays(0.04, 0.9), ..better };
+        assert_eq!(Split::best(&[most], 1500, &COSTS).rays, 0);
     }
 
     #[test]
