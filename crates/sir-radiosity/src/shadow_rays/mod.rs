@@ -10,16 +10,19 @@
 //! From each of several points of a patch goes one ray to each distant light, one to one of all lamps (emitting surfaces
 //! and other lights), chosen by an estimate of its light without obstacles, and one to the sky.
 
+mod allocation;
+mod batch;
+mod sources;
+
 use std::ops::Range;
 use std::sync::atomic::{AtomicI64, Ordering::Relaxed};
 
-use glam::DVec3;
-use sir_accel::Ray;
-use sir_geom::{LightKind, Rgb, Side, TriangleId};
-use sir_lines::{LocalLines, Numbers, Purpose, cosine_direction};
+use sir_accel::Tracer;
+use sir_geom::{Rgb, TriangleId};
+use sir_lines::{LocalLines, Numbers, Purpose};
 use sir_mesh::SideId;
 
-use crate::aimed::{Aim, Emitters};
+use crate::aimed::Emitters;
 use crate::emitter::point_on_surface;
 use crate::error::SolveError;
 use crate::focus_sides::FocusSides;
@@ -28,6 +31,9 @@ use crate::model::Model;
 use crate::patch_side::{MergedPatches, PatchSide};
 use crate::power::Quanta;
 use crate::sensors::SensorStart;
+use crate::shadow_rays::allocation::{POINTS, PointAllocation};
+use crate::shadow_rays::batch::Batch;
+use crate::shadow_rays::sources::Sources;
 use crate::shot::{Points, Shot};
 use crate::stage::{AnyOrder, Stage};
 use crate::totals::{Counts, StageTotals};
@@ -36,9 +42,6 @@ use crate::workers::{BLOCK, Workers, map_sides, no_items};
 
 /// Number of rays that are traced at a time, at least.
 const RAYS: usize = 1024;
-
-/// Fewest and most points of a side. The spread of one point is not known.
-const POINTS: (u64, u64) = (2, 1 << 16);
 
 /// Settings of shadow rays.
 #[derive(Clone, Copy, Debug)]
@@ -75,125 +78,6 @@ pub struct ShadowRays<'m> {
 
 /// Numbers of a side: power in three bands, two variances in one number, and the third in another.
 const WORDS: usize = 5;
-
-/// How many points the sides have: two, and more in proportion to the root of the area times the irradiance by the lines of
-/// the first shot, to which the mean is added. If the noise of one point is in proportion to the light, this has the smallest
-/// area-weighted variance (Neyman 1934).
-#[derive(Clone, Copy, Debug, Default)]
-struct PointAllocation {
-    /// Mean irradiance \[quanta/m²\].
-    mean: f64,
-    /// Further points per weight.
-    density: f64,
-}
-
-impl PointAllocation {
-    /// Returns the allocation of `points` to the sides in the focus, whether all of these have rays or not.
-    fn new(model: &Model, in_focus: &FocusSides, shot: &Shot, points: u64, workers: &dyn Workers) -> Self {
-        let sum = |of: &(dyn Fn(TriangleId, SideId) -> [f64; 2] + Sync)| {
-            let blocks = map_sides(workers, &model.mesh, no_items(), |sides, ()| {
-                let sides = sides.iter().filter(|(_, side)| in_focus.contains(*side));
-                sides.map(|(triangle, side)| of(triangle, side)).fold([0.0; 2], add)
-            });
-            blocks.into_iter().fold([0.0; 2], add)
-        };
-        let [power, area] =
-            sum(&|triangle, side| [shot.received.power[side.index()].total(), model.area(triangle, side)]);
-        let mut all = Self { mean: if area > 0.0 { power / area } else { 0.0 }, density: 0.0 };
-        let [count, weight] = sum(&|triangle, side| [1.0, all.weight(model, shot, triangle, side)]);
-        let further = (points as f64 - POINTS.0 as f64 * count).max(0.0);
-        all.density = if weight > 0.0 { further / weight } else { 0.0 };
-        all
-    }
-
-    fn weight(&self, model: &Model, shot: &Shot, triangle: TriangleId, side: SideId) -> f64 {
-        let area = model.area(triangle, side);
-        if area > 0.0 {
-            area.sqrt() * (shot.received.power[side.index()].total() / area + self.mean)
-        } else {
-            0.0
-        }
-    }
-
-    /// Returns the number of points of a side.
-    fn points(&self, model: &Model, shot: &Shot, triangle: TriangleId, side: SideId) -> u64 {
-        let further = self.density * self.weight(model, shot, triangle, side);
-        (POINTS.0 + further as u64).min(POINTS.1)
-    }
-}
-
-fn add([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
-    [a + c, b + d]
-}
-
-/// The sources of light as seen from a point.
-#[derive(Debug)]
-struct Sources {
-    distant: Vec<LightKind>,
-    /// Lights at a point.
-    local: Vec<LightKind>,
-    surfaces: Emitters,
-    has_sky: bool,
-    /// Centers and radii of spheres around lamps: lights at a point, and emitting surfaces.
-    lamps: Vec<(DVec3, f64)>,
-}
-
-/// Largest distance of a lamp from the center of a patch that it is close to, in radii of the patch, and radius of a small
-/// lamp.
-const CLOSE: f64 = 2.0;
-const SMALL: f64 = 0.5;
-
-/// Rays of some points, with what they bring if they arrive.
-#[derive(Default)]
-struct Batch {
-    /// Rays that arrive if nothing is in the way.
-    free: Vec<Ray>,
-    /// Rays that arrive if they hit a side of a triangle.
-    aimed: Vec<Ray>,
-    targets: Vec<(TriangleId, Side)>,
-    /// Number of the point, and irradiance \[W/m²\], of each ray.
-    of_free: Vec<(usize, Rgb)>,
-    of_aimed: Vec<(usize, Rgb)>,
-    /// Sides of the points, and the number of points of each.
-    sides: Vec<(TriangleId, SideId, usize)>,
-    /// Irradiance of each point.
-    irradiances: Vec<Rgb>,
-}
-
-impl Sources {
-    fn of(model: &Model) -> Self {
-        let lights = model.scene.lights().iter().map(|light| light.kind);
-        let (distant, local): (Vec<_>, Vec<_>) =
-            lights.partition(|kind| matches!(kind, LightKind::Distant { .. }));
-        let surfaces = Emitters::of(model);
-        let at = |kind: &LightKind| match kind {
-            LightKind::Point { position, .. } => Some((*position, 0.0)),
-            LightKind::Distant { .. } => None,
-        };
-        let lamps = local.iter().filter_map(at).chain(surfaces.corners().map(around)).collect();
-        Self { distant, local, surfaces, has_sky: model.scene.sky().is_some(), lamps }
-    }
-
-    /// True if a small lamp is close to a triangle.
-    fn are_close_to(&self, corners: [DVec3; 3]) -> bool {
-        let (center, radius) = around(corners);
-        self.lamps
-            .iter()
-            .any(|&(lamp, size)| size < SMALL * radius && lamp.distance(center) < CLOSE * radius + size)
-    }
-
-    /// Returns the numbers of rays from a point: to distant lights and the sky, and to lamps.
-    fn rays_per_point(&self) -> [u64; 2] {
-        let has_lamps = !self.local.is_empty() || self.surfaces.count() > 0;
-        [self.distant.len() as u64 + u64::from(self.has_sky), u64::from(has_lamps)]
-    }
-}
-
-/// Returns the center and the radius of a sphere around a triangle.
-fn around(corners @ [a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
-    let center = (a + b + c) / 3.0;
-    (center, corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max))
-}
 
 /// Returns, per side, true if there are rays from it.
 fn with_rays(
@@ -274,89 +158,17 @@ impl<'m> ShadowRays<'m> {
             let corners = if part == place { of_side } else { part.corners(model) };
             let origin = point_on_surface(&model.scene, part.triangle, corners, numbers);
             let start = SensorStart { origin, surface: Some(part.triangle) };
-            self.aim_from(start, normal, numbers.point(), batch);
-        }
-    }
-
-    /// Adds the rays of a point.
-    fn aim_from(&self, start: SensorStart, normal: DVec3, random: [f64; 2], batch: &mut Batch) {
-        let model = self.settings.model;
-        let number = batch.irradiances.len();
-        batch.irradiances.push(Rgb::ZERO);
-        for light in &self.sources.distant {
-            if let Some((ray, irradiance)) = to_light(light, start, normal, model) {
-                batch.free.push(ray);
-                batch.of_free.push((number, irradiance));
-            }
-        }
-        self.aim_at_lamp(start, normal, random, number, batch);
-        if let (true, Some(sky)) = (self.sources.has_sky, model.scene.sky()) {
-            let direction = cosine_direction(normal, random);
-            let irradiance = std::f64::consts::PI * sky.radiance(direction);
-            if irradiance != Rgb::ZERO {
-                batch.free.push(start.ray(direction));
-                batch.of_free.push((number, irradiance));
-            }
-        }
-    }
-
-    /// Adds a ray to one of all lamps.
-    fn aim_at_lamp(
-        &self,
-        start: SensorStart,
-        normal: DVec3,
-        [u, v]: [f64; 2],
-        number: usize,
-        batch: &mut Batch,
-    ) {
-        let Sources { local, surfaces, .. } = &self.sources;
-        let choice = surfaces.from(start.origin, normal);
-        let rays = local.iter().filter_map(|light| to_light(light, start, normal, self.settings.model));
-        let lights: Vec<(Ray, Rgb)> = rays.collect();
-        let of_lights: f64 = lights.iter().map(|(_, irradiance)| irradiance.element_sum()).sum();
-        let total = choice.total + of_lights;
-        let mut rest = u * total;
-        if rest < choice.total {
-            let share = choice.total / total;
-            if let Some(aim) = choice.aim_alone([rest / choice.total, v]) {
-                let Aim { direction, triangle, side, contribution } = aim;
-                batch.aimed.push(start.ray(direction));
-                batch.targets.push((triangle, side));
-                batch.of_aimed.push((number, contribution / share));
-            }
-            return;
-        }
-        rest -= choice.total;
-        for (i, &(ray, irradiance)) in lights.iter().enumerate() {
-            let weight = irradiance.element_sum();
-            if rest < weight || i + 1 == lights.len() {
-                batch.free.push(ray);
-                batch.of_free.push((number, irradiance * (total / weight)));
-                return;
-            }
-            rest -= weight;
+            self.sources.aim(start, normal, numbers.point(), model, batch);
         }
     }
 
     /// Traces the rays of a batch and notes the power of its sides. Empties the batch.
-    fn gather(&self, batch: &mut Batch, tracer: &mut sir_accel::Tracer<'_>, counts: &mut Counts) {
-        let Batch { free, aimed, targets, of_free, of_aimed, sides, irradiances } = batch;
-        counts.lines += (free.len() + aimed.len()) as u64;
-        let mut arrives = vec![false; free.len()];
-        tracer.occluded_each(free, |i, is_occluded| arrives[i] = !is_occluded);
-        let mut add = |(number, irradiance): (usize, Rgb), arrives: bool| {
-            if arrives { irradiances[number] += irradiance } else { counts.empty += 1 }
-        };
-        // Rays are traced in any order, but floats have to be added in a fixed order.
-        of_free.iter().zip(arrives).for_each(|(&ray, arrives)| add(ray, arrives));
-        let mut arrives = vec![false; aimed.len()];
-        tracer.closest_each(aimed, |i, hit| {
-            arrives[i] = hit.is_some_and(|hit| (hit.triangle, hit.side) == targets[i]);
-        });
-        of_aimed.iter().zip(arrives).for_each(|(&ray, arrives)| add(ray, arrives));
+    fn gather(&self, batch: &mut Batch, tracer: &mut Tracer<'_>, counts: &mut Counts) {
+        batch.trace(tracer, counts);
+        let Batch { sides, irradiances, .. } = std::mem::take(batch);
         let model = self.settings.model;
         let mut values = irradiances.as_slice();
-        for &(triangle, side, points) in &*sides {
+        for (triangle, side, points) in sides {
             let (of_side, others) = values.split_at(points);
             values = others;
             let n = points as f64;
@@ -370,18 +182,7 @@ impl<'m> ShadowRays<'m> {
                 word.store(value, Relaxed);
             }
         }
-        *batch = Batch::default();
     }
-}
-
-/// Returns the ray to a light without a surface, and the irradiance \[W/m²\] that it brings.
-fn to_light(light: &LightKind, start: SensorStart, normal: DVec3, model: &Model) -> Option<(Ray, Rgb)> {
-    let arrival = light.arrival(start.origin)?;
-    let cosine = arrival.towards.dot(normal);
-    (cosine > 0.0).then(|| {
-        let ray = start.ray_to_light(arrival.towards, arrival.distance, model);
-        (ray, cosine * arrival.irradiance)
-    })
 }
 
 fn to_words([r, g, b]: [i64; 3], variance: [f32; 3]) -> [i64; WORDS] {
@@ -450,7 +251,7 @@ impl<'m> Stage for ShadowRays<'m> {
             let points = self.allocation.points(model, &self.shot, triangle, side);
             batch.sides.push((triangle, side, points as usize));
             self.aim(place, side, points, &mut batch);
-            if batch.free.len() + batch.aimed.len() >= RAYS {
+            if batch.len() >= RAYS {
                 self.gather(&mut batch, &mut tracer, &mut totals.counts);
             }
         }
