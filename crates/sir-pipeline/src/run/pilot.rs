@@ -78,11 +78,11 @@ struct ByRays {
     traced: f64,
 }
 
-/// Returns the time of a shadow ray over that of a local line, in the mean over the rays from a point.
-fn ray_time(model: &Model) -> f64 {
-    let [distant, lamps] = ShadowRays::rays_per_point(model);
+/// Returns the time of a shadow ray over that of a local line, in the mean over the rays from a point: to the sun and the sky,
+/// and to one of these emitting surfaces.
+fn ray_time([distant, lamps]: [u64; 2], surfaces: usize) -> f64 {
     let [far, near, each] = RAY_TIMES;
-    let lamp = near + each * ShadowRays::emitting_surfaces(model) as f64;
+    let lamp = near + each * surfaces as f64;
     (distant as f64 * far + lamps as f64 * lamp) / (distant + lamps).max(1) as f64
 }
 
@@ -96,10 +96,12 @@ impl Run<'_> {
         let per_crossing = lines as f64 / crossings_per_patch(model, &domain, lines);
         let shot = (PILOT_SHARE * lines as f64).max(PILOT_LINES.min(MAX_PILOT_SHARE * lines as f64)).ceil();
         let sides = self.prepared.inside.count(model);
-        let per_point = ShadowRays::rays_per_point(model).iter().sum::<u64>();
+        let (from_point, surfaces) =
+            (ShadowRays::rays_per_point(model), ShadowRays::emitting_surfaces(model));
+        let per_point = from_point.iter().sum::<u64>();
         let some_sides = shot / (PILOT_POINTS * per_point.max(1)) as f64;
         let some_sides = some_sides.clamp(PILOT_SIDES.0, PILOT_SIDES.1);
-        let has_many_lamps = ShadowRays::emitting_surfaces(model) > MAX_SURFACES;
+        let has_many_lamps = surfaces > MAX_SURFACES;
         let pilot = Pilot {
             model,
             domain,
@@ -114,7 +116,7 @@ impl Run<'_> {
         let [per_line, each] = GLOBAL_TIME;
         let costs = Costs {
             global: per_line + each * crossings,
-            ray: ray_time(model),
+            ray: ray_time(from_point, surfaces),
             global_of_repeat: CROSSINGS * per_crossing,
             repeats,
             rays_of_repeat: ShadowRays::MIN_POINTS * per_point * sides as u64,

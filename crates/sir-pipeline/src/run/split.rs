@@ -126,9 +126,10 @@ impl Split {
         }
         // The other stages share the rest as their weights do; each has its least.
         let rest = all - global;
-        let of_rest = |weight: f64| rest * if sum > 0.0 { weight / (first + rays + second) } else { 0.0 };
-        let of_rest = |weight: f64| if weight > 0.0 { of_rest(weight) } else { 0.0 };
-        let second = if trial.share > 0.0 { of_rest(second).min(rest - fewest - least_rays) } else { 0.0 };
+        let second = match trial.share > 0.0 && second > 0.0 {
+            true => (rest * second / (first + rays + second)).min(rest - fewest - least_rays),
+            false => 0.0,
+        };
         let rays = match trial.rays {
             Some(_) if first > 0.0 => {
                 let of_both = (rest - second) * rays / (first + rays);

@@ -71,6 +71,18 @@ pub(crate) struct Aim {
     pub(crate) contribution: Rgb,
 }
 
+impl EmittingPatch {
+    fn center(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        (a + b + c) / 3.0
+    }
+
+    /// True if the surface is large for its distance.
+    fn is_near(&self, origin: DVec3) -> bool {
+        NEAR * self.area > origin.distance_squared(self.center())
+    }
+}
+
 impl Emitters {
     pub(crate) fn of(model: &Model) -> Self {
         let Model { scene, mesh, .. } = model;
@@ -141,18 +153,19 @@ fn weight(emitting: &EmittingPatch, origin: DVec3, normal: DVec3) -> f64 {
     if height <= 0.0 {
         return 0.0;
     }
-    let (center, exitance) = ((a + b + c) / 3.0, exitance.element_sum());
-    if NEAR * area > origin.distance_squared(center) {
+    let exitance = exitance.element_sum();
+    if emitting.is_near(origin) {
         return exitance * share_of_hemisphere(origin, normal, corners);
     }
     let at = |point: DVec3| {
         let to = point - origin;
         let square = to.length_squared();
         // Both cosines lack division by the distance.
-        to.dot(normal).max(0.0) * height / (square * square)
+        to.dot(normal).max(0.0) * height / (square * square).max(f64::MIN_POSITIVE)
     };
-    let geometry = (at(a) + at(b) + at(c) + at(center)) / 4.0;
-    exitance * (area * geometry / PI)
+    let geometry = (at(a) + at(b) + at(c) + at(emitting.center())) / 4.0;
+    // A sliver may be close to a corner of it and far from its center.
+    exitance * (area * geometry / PI).min(1.0)
 }
 
 impl Choice<'_> {
@@ -239,15 +252,15 @@ impl Choice<'_> {
 
     /// Aims at the point that corresponds to a point of the unit square, without cosine-weighted rays beside these. Points
     /// are uniform on the surface if that is far away. If it is near, they are uniform within its solid angle, so that a
-    /// surface that nearly touches the origin does not make a few rays carry most of the light. Returns `None` if the contribution is zero.
+    /// surface that nearly touches the origin does not make a few rays carry most of the light. Returns `None` if the
+    /// contribution is zero.
     pub(crate) fn aim_alone(&self, [u, v]: [f64; 2]) -> Option<Aim> {
         let Chosen { emitter, probability, rest } = self.choose(u)?;
-        let EmittingPatch { triangle, side, corners, normal, exitance, area, .. } =
-            self.emitters.patches[emitter];
-        // Irradiance per radiance: the solid angle times the cosine.
-        let [a, b, c] = corners;
-        let is_near = NEAR * area > self.origin.distance_squared((a + b + c) / 3.0);
+        let emitting = &self.emitters.patches[emitter];
+        let EmittingPatch { triangle, side, corners, normal, exitance, area, .. } = *emitting;
+        let is_near = emitting.is_near(self.origin);
         let seen = if is_near { SeenTriangle::from(self.origin, corners) } else { None };
+        // Irradiance per radiance: the solid angle times the cosine.
         let (direction, geometry) = match seen {
             Some(seen) => {
                 let direction = seen.direction([rest, v]);

@@ -59,7 +59,7 @@ impl Sources {
             }
         }
         self.aim_at_lamp(start, normal, random, model, batch);
-        if let (true, Some(sky)) = (self.has_sky, model.scene.sky()) {
+        if let Some(sky) = model.scene.sky() {
             let direction = cosine_direction(normal, random);
             let irradiance = PI * sky.radiance(direction);
             if irradiance != Rgb::ZERO {
