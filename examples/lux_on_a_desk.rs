@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let height = (a.y + b.y + c.y) / 3.0;
         let upward = light.side == Side::Front && model.scene.normal(light.triangle).y > 0.99;
         if upward && (0.6..0.9).contains(&height) {
-            let area = model.mesh.patch_area(light.triangle);
+            let area = model.mesh.patch_area(light.triangle, light.patch);
             let sum = desks.entry(&model.scene.material(light.triangle).name).or_default();
             sum.0 += area;
             sum.1 += area * light.irradiance;

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use sir::geom::{LoadOptions, Rgb, Side, load};
 use sir::lines::Domain;
-use sir::mesh::Subdivision;
+use sir::mesh::{PatchSize, Subdivision};
 use sir::parallel::{Executor, Start};
 use sir::radiosity::{BatchSettings, Batches, FirstShot, Model, ShotSettings};
 
@@ -89,12 +89,12 @@ fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
         let solution =
             executor.run::<Batches<'_>>(settings, Start::Fresh(shot)).unwrap().outcome.solution(model);
         let mut radiosity = vec![Rgb::ZERO; model.scene.triangles().len()];
-        model.mesh.for_each_side(|t, _, side, id| {
-            if side == Side::Front {
-                let share = 1.0 / model.mesh.patches_of(t).len() as f64;
-                radiosity[t.index()] += share * solution.radiosity(model, t, side, id);
-            }
-        });
+        for t in model.scene.triangle_ids() {
+            model.mesh.for_each_piece_of(t, |patch, piece| {
+                let front = model.mesh.side_of(t, patch, Side::Front).unwrap();
+                radiosity[t.index()] += piece.share() * solution.radiosity(model, t, Side::Front, front);
+            });
+        }
         radiosity
     };
     (1..=effort.seeds).map(one).collect()
@@ -102,7 +102,7 @@ fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
 
 fn model(path: &Path, effort: &Effort) -> Model {
     let scene = load(path, &LoadOptions::default()).unwrap().scene;
-    Model::new(scene, Subdivision::Patches(effort.patches)).unwrap()
+    Model::new(scene, Subdivision::Triangles(PatchSize::Count(effort.patches))).unwrap()
 }
 
 /// Differences in units of their standard errors, each with a description.

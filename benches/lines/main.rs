@@ -18,7 +18,7 @@ use std::time::Instant;
 use sir::accel::{Accel, Ray};
 use sir::geom::Scene;
 use sir::lines::{Domain, Purpose, Streams, cosine_direction, point_on_triangle};
-use sir::mesh::Subdivision;
+use sir::mesh::{PatchSize, Subdivision};
 use sir::radiosity::{
     AnyOrder, BatchSettings, Batches, FirstShot, Model, OneWorker, Segments, ShotSettings, Stage,
     StageTotals, run_stage,
@@ -130,7 +130,7 @@ fn row(scene: &str, what: &str, counts: (f64, f64), times: &[f64], agreement: &s
 
 /// Measures the three rates of a scene.
 fn rates(name: &str, scene: Scene, embree: Option<&Embree>, options: &Options) {
-    let model = Model::new(scene, Subdivision::Patches(PATCHES)).unwrap();
+    let model = Model::new(scene, Subdivision::Triangles(PatchSize::Count(PATCHES))).unwrap();
     let scene = &model.scene;
     println!("{name:<16} {} triangles, {} patches", scene.triangles().len(), model.mesh.patch_count());
     let closest = embree.map(|e| e.scene(scene, Quality::High, false));
@@ -266,7 +266,8 @@ fn patches(options: &Options) {
     for (name, load) in scenes::ALL {
         let Some(scene) = load() else { continue };
         let few = scene.triangles().len() as u64;
-        let models = [few, 10 * few].map(|n| Model::new(scene.clone(), Subdivision::Patches(n)).unwrap());
+        let models = [few, 10 * few]
+            .map(|n| Model::new(scene.clone(), Subdivision::Triangles(PatchSize::Count(n))).unwrap());
         let domain = Domain::Sphere(scene.bounding_sphere());
         let streams = Streams::new(1, Purpose::GLOBAL);
         let lines: Vec<_> = (0..options.lines).map(|i| domain.line(streams.line(i).point())).collect();
@@ -314,7 +315,7 @@ fn experiment(embree: Option<&Embree>, options: &Options) {
     );
     for (name, patches) in [("museum-stairs", 614_778), ("airplane-cabin", 438_518)] {
         let Some(scene) = scenes::ALL.iter().find(|s| s.0 == name).and_then(|s| s.1()) else { continue };
-        let model = Model::new(scene, Subdivision::Patches(patches)).unwrap();
+        let model = Model::new(scene, Subdivision::Triangles(PatchSize::Count(patches))).unwrap();
         let (local, global) = (options.lines, options.lines * 13 / 10);
         let domain = Domain::hull(model.scene.vertices());
         let shoot = || run_stage::<FirstShot<'_>>(ShotSettings::new(&model, local, 1), ()).unwrap();

@@ -34,6 +34,13 @@ pub(crate) struct Cut {
     pub(crate) is_valid: bool,
 }
 
+/// Returns triangles that cover an approximately flat polygon, as indices of its corners, two fewer than corners. Its corners
+/// and those of the triangles run counterclockwise seen from the front. Triangles may overlap if the outline crosses itself.
+#[must_use]
+pub fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
+    cut(corners).triangles
+}
+
 /// Triangulates an approximately flat polygon whose outline is counterclockwise seen from its front.
 pub(crate) fn cut(corners: &[DVec3]) -> Cut {
     let fan: Vec<_> = (2..corners.len()).map(|i| [0, i - 1, i]).collect();

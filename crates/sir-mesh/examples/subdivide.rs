@@ -5,7 +5,7 @@
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
-use sir_mesh::{PatchMesh, Subdivision};
+use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut builder = SceneBuilder::new();
@@ -17,13 +17,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for subdivision in [
         Subdivision::PerTriangle,
         Subdivision::PerFace,
-        Subdivision::MaxArea(0.01),
-        Subdivision::MaxEdge(0.1),
-        Subdivision::Patches(614_778),
+        Subdivision::Triangles(PatchSize::MaxArea(0.01)),
+        Subdivision::Triangles(PatchSize::MaxEdge(0.1)),
+        Subdivision::Triangles(PatchSize::Count(614_778)),
+        Subdivision::Surfaces(PatchSize::MaxEdge(0.1)),
+        Subdivision::Surfaces(PatchSize::Count(1000)),
     ] {
         let mesh = PatchMesh::new(&scene, subdivision)?;
-        let areas = scene.triangle_ids().map(|t| mesh.patch_area(t));
-        let (least, most) = areas.fold((f64::INFINITY, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
+        let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+        mesh.for_each_side(|triangle, patch, _, _| {
+            let area = mesh.patch_area(triangle, patch);
+            (least, most) = (least.min(area), most.max(area));
+        });
         println!("{subdivision:?}: {} patches of {least:.2e} to {most:.2e} m²", mesh.patch_count());
     }
     Ok(())

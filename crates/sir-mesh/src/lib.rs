@@ -21,18 +21,18 @@
 //! ```
 //! use glam::DVec3;
 //! use sir_geom::{Barycentric, Material, Rgb, SceneBuilder, Side, TriangleId, shapes::{self, Facing}};
-//! use sir_mesh::{PatchMesh, Subdivision};
+//! use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 //!
 //! let mut builder = SceneBuilder::new();
 //! let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));
 //! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [gray; 6], Facing::Inward);
 //! let scene = builder.build()?.scene;
 //!
-//! let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01))?;
+//! let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.01)))?;
 //! let (triangle, hit) = (TriangleId(3), Barycentric { v: 0.3, w: 0.6 });
 //! let patch = mesh.patch_at(triangle, hit);
-//! assert!(mesh.patches_of(triangle).contains(&patch.0));
-//! assert!(mesh.patch_area(triangle) <= 0.01);
+//! assert!(mesh.pieces(triangle, patch).all(|piece| piece.triangle == triangle));
+//! assert!(mesh.patch_area(triangle, patch) <= 0.01);
 //! assert_eq!(mesh.side_of(triangle, patch, Side::Back), None, "this triangle is one-sided");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -40,14 +40,21 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod barycentric;
-mod divisions;
+mod cells;
 mod error;
 mod index;
+mod lattice;
+mod layout;
 mod mesh;
 mod numbering;
+mod parts;
+mod piece;
 mod properties;
+mod subdivision;
+mod surfaces;
 
-pub use divisions::Subdivision;
 pub use error::MeshError;
 pub use index::{PatchId, SideId};
 pub use mesh::PatchMesh;
+pub use piece::Piece;
+pub use subdivision::{PatchSize, Subdivision};

@@ -2,16 +2,20 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
 use sir_geom::{Barycentric, BoundingBox, Rgb, Scene, Side, TriangleId};
 
-use crate::barycentric;
-use crate::divisions::Subdivision;
 use crate::error::MeshError;
 use crate::index::{PatchId, SideId};
-use crate::numbering::{Numbering, Patches};
+use crate::numbering::Numbering;
+use crate::piece::Piece;
 use crate::properties::Properties;
+use crate::subdivision::Subdivision;
 
-/// All patches of a scene. Uses 28 bytes per *triangle*, and nothing per patch except where it has a texture.
+/// All patches of a scene.
+///
+/// A patch belongs to the *surface* of one or more triangles, which have consecutive patches. Functions of a patch also take
+/// any triangle of its surface.
 #[derive(Clone, Debug)]
 pub struct PatchMesh {
     numbering: Numbering,
@@ -19,7 +23,7 @@ pub struct PatchMesh {
 }
 
 impl PatchMesh {
-    /// Divides the triangles of a scene into patches.
+    /// Divides a scene into patches.
     ///
     /// # Errors
     ///
@@ -28,8 +32,8 @@ impl PatchMesh {
         Self::within(scene, subdivision, None)
     }
 
-    /// Divides the triangles of a scene into patches, as [`new`](Self::new) does, but if a box is given, cuts only
-    /// triangles whose centroid is in it. If others reach into the box, [split the
+    /// Divides a scene into patches, as [`new`](Self::new) does, but if a box is given, cuts only triangles whose
+    /// centroid is in it. If others reach into the box, [split the
     /// scene](sir_geom::SceneBuilder::split_at) at the box first.
     ///
     /// # Errors
@@ -57,31 +61,95 @@ impl PatchMesh {
         self.numbering.sides as usize
     }
 
-    /// Returns the numbers of the patches of a triangle.
+    /// Returns the number of parts into which each edge of a triangle is cut; `None` if the triangle is cut into cells.
     #[must_use]
-    pub fn patches_of(&self, triangle: TriangleId) -> Range<u32> {
-        self.numbering.patches_of(triangle)
-    }
-
-    /// Returns the number of parts into which each edge of a triangle is cut.
-    #[must_use]
-    pub fn divisions(&self, triangle: TriangleId) -> u32 {
+    pub fn divisions(&self, triangle: TriangleId) -> Option<u32> {
         self.numbering.divisions(triangle)
     }
 
-    /// Returns the area of each patch of a triangle, including its gaps; for a merged face, the area of the whole face.
+    /// Returns the area of a patch, including its gaps.
     #[inline]
     #[must_use]
-    pub fn patch_area(&self, triangle: TriangleId) -> f64 {
-        self.numbering.patches_of[triangle.index()].area
+    pub fn patch_area(&self, triangle: TriangleId, patch: PatchId) -> f64 {
+        self.numbering.area(triangle, patch)
     }
 
     /// Returns the covered area of a patch: the area that stops light, without gaps. It may be zero.
     #[inline]
     #[must_use]
     pub fn covered_area(&self, triangle: TriangleId, patch: PatchId) -> f64 {
-        let Patches { first, area } = self.numbering.patches_of[triangle.index()];
-        area * self.properties.coverage(triangle, patch.0 - first)
+        self.numbering.area(triangle, patch)
+            * self.properties.coverage(triangle, self.number_in_surface(triangle, patch))
+    }
+
+    /// Returns the first triangle of the surface of a triangle, and the numbers of the patches of the surface.
+    #[must_use]
+    pub fn surface_of(&self, triangle: TriangleId) -> (TriangleId, Range<u32>) {
+        self.numbering.surface_of(triangle)
+    }
+
+    /// Returns the number of a patch within its surface.
+    #[inline]
+    #[must_use]
+    pub fn number_in_surface(&self, triangle: TriangleId, patch: PatchId) -> u32 {
+        patch.0 - self.numbering.first_patch(triangle)
+    }
+
+    /// Returns the pieces of a patch.
+    pub fn pieces(&self, triangle: TriangleId, patch: PatchId) -> impl Iterator<Item = Piece> + use<'_> {
+        self.numbering.pieces(triangle, patch)
+    }
+
+    /// Calls `visit` with all pieces of a triangle, and the patch of each.
+    pub fn for_each_piece_of(&self, triangle: TriangleId, visit: impl FnMut(PatchId, Piece)) {
+        self.numbering.for_each_piece_of(triangle, visit);
+    }
+
+    /// Returns the center of a patch, and the sum of the normals of its pieces times twice their areas.
+    ///
+    /// `scene` must be the scene that was divided into these patches.
+    #[must_use]
+    pub fn center_and_normal(&self, scene: &Scene, triangle: TriangleId, patch: PatchId) -> (DVec3, DVec3) {
+        let (mut moment, mut weight, mut normal) = (DVec3::ZERO, 0.0, DVec3::ZERO);
+        for piece in self.pieces(triangle, patch) {
+            let corners = scene.corners(piece.triangle);
+            for part in piece.triangles() {
+                let [a, b, c] = part.map(|point| point.point(corners));
+                let twice = (b - a).cross(c - a);
+                moment += twice.length() * ((a + b + c) / 3.0);
+                weight += twice.length();
+                normal += twice;
+            }
+        }
+        (moment / weight, normal)
+    }
+
+    /// Returns the center of a patch.
+    ///
+    /// `scene` must be the scene that was divided into these patches.
+    #[must_use]
+    pub fn center(&self, scene: &Scene, triangle: TriangleId, patch: PatchId) -> DVec3 {
+        self.center_and_normal(scene, triangle, patch).0
+    }
+
+    /// Returns the corners of a patch that is one triangle: cut from one into congruent triangles, or not cut. `None` for
+    /// others.
+    #[must_use]
+    pub fn single_triangle(&self, triangle: TriangleId, patch: PatchId) -> Option<[Barycentric; 3]> {
+        self.numbering.single_triangle(triangle, patch)
+    }
+
+    /// Returns a triangle, and a part of it, in which a random point of a patch lies, for a uniform number in `[0, 1)`, and
+    /// the remainder of the number, which is uniform in `[0, 1)`, too.
+    #[inline]
+    #[must_use]
+    pub fn random_part(
+        &self,
+        triangle: TriangleId,
+        patch: PatchId,
+        random: f64,
+    ) -> (TriangleId, [Barycentric; 3], f64) {
+        self.numbering.random_part(triangle, patch, random)
     }
 
     /// Returns the covered area of a triangle: the area that stops light.
@@ -91,10 +159,12 @@ impl PatchMesh {
         if !self.is_varied(triangle) {
             return area;
         }
-        let (patches, all) = (self.patches_of(triangle), self.patch_area(triangle));
-        // A merged face is one patch of several triangles.
-        let part = area / (patches.len() as f64 * all);
-        patches.map(|patch| part * self.covered_area(triangle, PatchId(patch))).sum()
+        let mut covered = 0.0;
+        self.for_each_piece_of(triangle, |patch, piece| {
+            covered +=
+                piece.share() * self.properties.coverage(triangle, self.number_in_surface(triangle, patch));
+        });
+        area * covered
     }
 
     /// Returns the diffuse reflectance of a patch per band, in `[0, 1)`; with a texture, the mean over the covered
@@ -104,8 +174,7 @@ impl PatchMesh {
     #[inline]
     #[must_use]
     pub fn reflectance(&self, scene: &Scene, triangle: TriangleId, patch: PatchId) -> Rgb {
-        let within = patch.0 - self.numbering.patches_of[triangle.index()].first;
-        let own = self.properties.reflectance(triangle, within);
+        let own = self.properties.reflectance(triangle, self.number_in_surface(triangle, patch));
         own.unwrap_or_else(|| scene.material(triangle).reflectance)
     }
 
@@ -114,8 +183,10 @@ impl PatchMesh {
     #[must_use]
     pub fn exitance(&self, scene: &Scene, triangle: TriangleId, patch: PatchId, side: Side) -> Rgb {
         let of_triangle = scene.exitance(triangle, side);
-        let within = patch.0 - self.numbering.patches_of[triangle.index()].first;
-        let own = self.properties.exitance(triangle, within).filter(|_| of_triangle != Rgb::ZERO);
+        let own = self
+            .properties
+            .exitance(triangle, self.number_in_surface(triangle, patch))
+            .filter(|_| of_triangle != Rgb::ZERO);
         own.unwrap_or(of_triangle)
     }
 
@@ -139,33 +210,37 @@ impl PatchMesh {
         self.properties.bytes()
     }
 
+    /// Returns the memory in use for the numbers, areas and pieces of patches \[bytes\].
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.numbering.bytes()
+    }
+
     /// Returns the patch of a triangle in which a point lies.
     #[inline]
     #[must_use]
     pub fn patch_at(&self, triangle: TriangleId, point: Barycentric) -> PatchId {
-        let within = barycentric::locate(self.divisions(triangle), point);
-        PatchId(self.numbering.patches_of[triangle.index()].first + within)
+        PatchId(self.numbering.first_patch(triangle) + self.numbering.locate(triangle, point).0)
     }
 
-    /// Returns the given side of a patch of a triangle; `None` if that side does not take part in light transport.
+    /// Returns the given side of a patch; `None` if that side does not take part in light transport.
     #[inline]
     #[must_use]
     pub fn side_of(&self, triangle: TriangleId, patch: PatchId, side: Side) -> Option<SideId> {
-        let cut = self.numbering.cuts[triangle.index()];
-        let within = (patch.0 - self.numbering.patches_of[triangle.index()].first) * cut.sides();
+        let sides = self.numbering.cut(triangle).sides();
+        let front = self.numbering.first_side(triangle) + self.number_in_surface(triangle, patch) * sides;
         match side {
-            Side::Front => Some(SideId(cut.first_side + within)),
-            Side::Back if cut.sides == 2 => Some(SideId(cut.first_side + within + 1)),
-            Side::Back => None,
+            Side::Front => Some(SideId(front)),
+            Side::Back => (sides == 2).then_some(SideId(front + 1)),
         }
     }
 
-    /// Returns the patch of a triangle to which a side belongs.
+    /// Returns the patch to which a side belongs.
     #[inline]
     #[must_use]
     pub fn patch_of_side(&self, triangle: TriangleId, side: SideId) -> PatchId {
-        let cut = self.numbering.cuts[triangle.index()];
-        PatchId(self.numbering.patches_of[triangle.index()].first + (side.0 - cut.first_side) / cut.sides())
+        let within = (side.0 - self.numbering.first_side(triangle)) / self.numbering.cut(triangle).sides();
+        PatchId(self.numbering.first_patch(triangle) + within)
     }
 
     /// Returns the given side of the patch in which a point of a triangle lies.
@@ -183,7 +258,7 @@ impl PatchMesh {
     #[inline]
     #[must_use]
     pub fn place_of(&self, triangle: TriangleId) -> &impl Sized {
-        &self.numbering.cuts[triangle.index()]
+        self.numbering.cut(triangle)
     }
 
     /// Returns the front and, if it takes part in light transport, the back of the patch in which a point of a triangle
@@ -191,22 +266,17 @@ impl PatchMesh {
     #[inline]
     #[must_use]
     pub fn sides_at(&self, triangle: TriangleId, point: Barycentric) -> (SideId, Option<SideId>) {
-        let cut = self.numbering.cuts[triangle.index()];
-        let front = SideId(cut.first_side + barycentric::locate(cut.divisions(), point) * cut.sides());
-        (front, (cut.sides == 2).then_some(SideId(front.0 + 1)))
+        let (within, first) = self.numbering.locate(triangle, point);
+        let sides = self.numbering.cut(triangle).sides();
+        let front = SideId(first + within * sides);
+        (front, (sides == 2).then_some(SideId(front.0 + 1)))
     }
 
-    /// Returns the corners of a patch as points of its triangle, in the triangle's orientation; for a merged face,
-    /// those of the given triangle.
-    #[must_use]
-    pub fn patch_corners(&self, triangle: TriangleId, patch: PatchId) -> [Barycentric; 3] {
-        self.numbering.patch_corners(triangle, patch)
-    }
-
-    /// Calls `visit` once for every active side, in the order of [`SideId`], with one triangle of its patch.
+    /// Calls `visit` once for every active side, in the order of [`SideId`], with one triangle of its surface.
     pub fn for_each_side(&self, mut visit: impl FnMut(TriangleId, PatchId, Side, SideId)) {
-        for &triangle in &self.numbering.owners {
-            for patch in self.patches_of(triangle).map(PatchId) {
+        for &(triangle, count) in &self.numbering.surfaces {
+            let first = self.numbering.first_patch(triangle);
+            for patch in (first..first + count).map(PatchId) {
                 for side in [Side::Front, Side::Back] {
                     if let Some(id) = self.side_of(triangle, patch, side) {
                         visit(triangle, patch, side, id);
@@ -216,17 +286,19 @@ impl PatchMesh {
         }
     }
 
-    /// Returns the active sides whose numbers lie in `sides`, in order. Each item is a triangle and the consecutive
-    /// numbers of sides of its patches, all of the same material and, including gaps, of the same area.
+    /// Returns the active sides whose numbers lie in `sides`, in order. Each item is a triangle and consecutive numbers of
+    /// sides of patches of its surface, all of the same material.
     pub fn sides_within(&self, sides: Range<u32>) -> impl Iterator<Item = (TriangleId, Range<u32>)> {
-        let of = |triangle: TriangleId| {
-            let (cut, n) = (self.numbering.cuts[triangle.index()], self.divisions(triangle));
-            cut.first_side..cut.first_side + n * n * cut.sides()
+        let of = |&(triangle, count): &(TriangleId, u32)| {
+            let first = self.numbering.first_side(triangle);
+            first..first + count * self.numbering.cut(triangle).sides()
         };
-        let first = self.numbering.owners.partition_point(|&t| of(t).end <= sides.start);
-        self.numbering.owners[first..]
+        let first = self.numbering.surfaces.partition_point(|surface| of(surface).end <= sides.start);
+        self.numbering.surfaces[first..]
             .iter()
-            .map(move |&t| (t, of(t).start.max(sides.start)..of(t).end.min(sides.end)))
+            .map(move |surface| {
+                (surface.0, of(surface).start.max(sides.start)..of(surface).end.min(sides.end))
+            })
             .take_while(|(_, range)| !range.is_empty())
     }
 }
@@ -234,7 +306,7 @@ impl PatchMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
+    use crate::subdivision::PatchSize;
     use proptest::prelude::*;
     use sir_geom::shapes::{self, Facing};
     use sir_geom::{Material, Rgb, SceneBuilder, Sides};
@@ -248,25 +320,34 @@ mod tests {
     }
 
     fn total_area(scene: &Scene, mesh: &PatchMesh) -> f64 {
-        scene.triangle_ids().map(|t| mesh.patch_area(t) * mesh.patches_of(t).len() as f64).sum()
+        let mut total = 0.0;
+        for t in scene.triangle_ids() {
+            mesh.for_each_piece_of(t, |_, piece| total += scene.area(t) * piece.share());
+        }
+        total
     }
 
     #[test]
     fn limits_hold_and_areas_add_up() {
         let scene = room(Sides::Front);
-        for subdivision in
-            [Subdivision::MaxArea(0.02), Subdivision::MaxEdge(0.3), Subdivision::Patches(20_000)]
-        {
+        for subdivision in [
+            Subdivision::Triangles(PatchSize::MaxArea(0.02)),
+            Subdivision::Triangles(PatchSize::MaxEdge(0.3)),
+            Subdivision::Triangles(PatchSize::Count(20_000)),
+        ] {
             let mesh = PatchMesh::new(&scene, subdivision).unwrap();
             assert!((total_area(&scene, &mesh) / scene.total_area() - 1.0).abs() < 1e-12);
             for t in scene.triangle_ids() {
                 let corners = scene.corners(t);
-                let c = mesh.patch_corners(t, PatchId(mesh.patches_of(t).start)).map(|b| b.point(corners));
+                let patch = mesh.patch_at(t, Barycentric { v: 0.0, w: 0.0 });
+                let c = mesh.single_triangle(t, patch).unwrap().map(|b| b.point(corners));
                 let area = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).length();
-                assert!((area / mesh.patch_area(t) - 1.0).abs() < 1e-9);
+                assert!((area / mesh.patch_area(t, patch) - 1.0).abs() < 1e-9);
                 match subdivision {
-                    Subdivision::MaxArea(max) => assert!(area <= max * (1.0 + 1e-9)),
-                    Subdivision::MaxEdge(max) => assert!(c[0].distance(c[1]) <= max * (1.0 + 1e-9)),
+                    Subdivision::Triangles(PatchSize::MaxArea(max)) => assert!(area <= max * (1.0 + 1e-9)),
+                    Subdivision::Triangles(PatchSize::MaxEdge(max)) => {
+                        assert!(c[0].distance(c[1]) <= max * (1.0 + 1e-9))
+                    }
                     _ => {}
                 }
             }
@@ -277,11 +358,11 @@ mod tests {
     fn a_target_count_is_met_closely() {
         let scene = room(Sides::Front);
         for target in [332, 1_000, 20_000, 614_778] {
-            let mesh = PatchMesh::new(&scene, Subdivision::Patches(target)).unwrap();
+            let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(target))).unwrap();
             let off = mesh.patch_count() as f64 / target as f64 - 1.0;
             assert!(off.abs() < 1e-3 + 2.0 / target as f64, "{target}: {} patches", mesh.patch_count());
         }
-        let mesh = PatchMesh::new(&scene, Subdivision::Patches(5)).unwrap();
+        let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(5))).unwrap();
         assert_eq!(mesh.patch_count(), scene.triangles().len());
     }
 
@@ -294,26 +375,30 @@ mod tests {
         b.split_at(&bounds);
         let scene = b.build().unwrap().scene;
         let inside = 2.0 * (2.0 * 3.0) + 3.0 * 3.0 + 2.0 * 3.0;
-        for subdivision in
-            [Subdivision::MaxArea(0.02), Subdivision::MaxEdge(0.3), Subdivision::Patches(20_000)]
-        {
+        for subdivision in [
+            Subdivision::Triangles(PatchSize::MaxArea(0.02)),
+            Subdivision::Triangles(PatchSize::MaxEdge(0.3)),
+            Subdivision::Triangles(PatchSize::Count(20_000)),
+        ] {
             let all = PatchMesh::new(&scene, subdivision).unwrap();
             let mesh = PatchMesh::within(&scene, subdivision, Some(bounds)).unwrap();
             assert!((total_area(&scene, &mesh) / scene.total_area() - 1.0).abs() < 1e-12);
             let mut area = 0.0;
             for t in scene.triangle_ids() {
                 if !scene.corners(t).iter().all(|&corner| bounds.contains(corner)) {
-                    assert_eq!(mesh.divisions(t), 1);
+                    assert_eq!(mesh.divisions(t), Some(1));
                     continue;
                 }
                 area += scene.area(t);
                 match subdivision {
-                    Subdivision::Patches(_) => assert!(mesh.divisions(t) > all.divisions(t)),
+                    Subdivision::Triangles(PatchSize::Count(_)) => {
+                        assert!(mesh.divisions(t) > all.divisions(t))
+                    }
                     _ => assert_eq!(mesh.divisions(t), all.divisions(t)),
                 }
             }
             assert!((area - inside).abs() < 1e-9, "{area} of {inside}");
-            if let Subdivision::Patches(target) = subdivision {
+            if let Subdivision::Triangles(PatchSize::Count(target)) = subdivision {
                 let missing = target as usize - mesh.patch_count();
                 assert!(missing < 100, "{missing} fewer than asked for");
             }
@@ -327,8 +412,9 @@ mod tests {
             let mesh = PatchMesh::new(&scene, Subdivision::PerFace).unwrap();
             assert_eq!(mesh.patch_count(), 6 + 320);
             assert_eq!(mesh.side_count(), per_patch * mesh.patch_count());
-            assert_eq!(mesh.patches_of(TriangleId(0)), mesh.patches_of(TriangleId(1)));
-            assert!((mesh.patch_area(TriangleId(0)) - 21.0).abs() < 1e-12);
+            let middle = Barycentric { v: 0.3, w: 0.3 };
+            assert_eq!(mesh.patch_at(TriangleId(0), middle), mesh.patch_at(TriangleId(1), middle));
+            assert!((mesh.patch_area(TriangleId(0), PatchId(0)) - 21.0).abs() < 1e-12);
             let mut visited = Vec::new();
             mesh.for_each_side(|_, _, _, side| visited.push(side.index()));
             assert_eq!(visited, (0..mesh.side_count()).collect::<Vec<_>>());
@@ -342,11 +428,15 @@ mod tests {
         let scene = room(Sides::Front);
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
-                PatchMesh::new(&scene, Subdivision::MaxArea(bad)),
+                PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(bad))),
                 Err(MeshError::NotPositive { .. })
             ));
         }
-        for huge in [Subdivision::MaxArea(1e-12), Subdivision::MaxEdge(1e-9), Subdivision::Patches(1 << 40)] {
+        for huge in [
+            Subdivision::Triangles(PatchSize::MaxArea(1e-12)),
+            Subdivision::Triangles(PatchSize::MaxEdge(1e-9)),
+            Subdivision::Triangles(PatchSize::Count(1 << 40)),
+        ] {
             assert_eq!(PatchMesh::new(&scene, huge).unwrap_err(), MeshError::TooMany);
         }
     }
@@ -355,7 +445,7 @@ mod tests {
         #[test]
         fn every_side_has_its_own_number(area in 0.01..5.0f64, v in 0.0..1.0f64, w in 0.0..1.0f64) {
             let scene = room(Sides::Both);
-            let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(area)).unwrap();
+            let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(area))).unwrap();
             let mut seen = vec![false; mesh.side_count()];
             mesh.for_each_side(|_, _, _, s| assert!(!std::mem::replace(&mut seen[s.index()], true)));
             prop_assert!(seen.iter().all(|&s| s));
@@ -365,7 +455,7 @@ mod tests {
             for t in scene.triangle_ids() {
                 let point = Barycentric { v, w: w * (1.0 - v) };
                 let patch = mesh.patch_at(t, point);
-                prop_assert!(mesh.patches_of(t).contains(&patch.0));
+                prop_assert!(mesh.single_triangle(t, patch).is_some());
                 let front = mesh.side_at(t, point, Side::Front).unwrap();
                 let back = mesh.side_at(t, point, Side::Back).unwrap();
                 prop_assert_eq!(back.0, front.0 + 1);

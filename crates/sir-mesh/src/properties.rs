@@ -1,14 +1,14 @@
 //! Reflectance, exitance and coverage of the patches of textured triangles: means over the area of each patch.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use sir_geom::{
     Barycentric, ColorMap, Material, Opacities, Opacity, Rgb, Scene, TextureId, TextureMap, TextureMean,
     TextureSums, TriangleId, Wrap,
 };
 
-use crate::index::PatchId;
 use crate::numbering::Numbering;
+use crate::piece::Piece;
 
 /// Properties of the patches of varied triangles, whose patches differ. Uses 4 bytes per triangle of a scene that has
 /// varied triangles, and 12 to 28 bytes per patch of such a triangle.
@@ -76,22 +76,27 @@ impl Properties {
         if varied.is_empty() {
             return Self::default();
         }
-        let mut first = vec![PLAIN; scene.triangles().len()];
-        // The triangles of a merged face share their patch.
-        let mut firsts = HashMap::new();
+        let is_varied: HashSet<u32> = varied.iter().map(|&t| numbering.first_patch(t)).collect();
         let mut totals: Vec<Total> = Vec::new();
+        // All triangles of a surface share its patches.
+        let mut starts = HashMap::new();
+        for &(t, count) in
+            numbering.surfaces.iter().filter(|s| is_varied.contains(&numbering.first_patch(s.0)))
+        {
+            starts.insert(numbering.first_patch(t), totals.len() as u32);
+            totals.resize(totals.len() + count as usize, Total::default());
+        }
+        let mut first = vec![PLAIN; scene.triangles().len()];
         let mut images = Images { scene, sums: HashMap::new() };
-        for &t in &varied {
-            let patches = numbering.patches_of(t);
-            let start = *firsts.entry(patches.start).or_insert_with(|| {
-                totals.resize(totals.len() + patches.len(), Total::default());
-                totals.len() - patches.len()
+        for t in scene.triangle_ids() {
+            let first_patch = numbering.first_patch(t);
+            let Some(&start) = starts.get(&first_patch) else { continue };
+            first[t.index()] = start;
+            let area = scene.area(t);
+            numbering.for_each_piece_of(t, |patch, piece| {
+                let total = &mut totals[(start + patch.0 - first_patch) as usize];
+                total.add(area * piece.share(), &images.mean(t, &piece));
             });
-            first[t.index()] = start as u32;
-            let area = scene.area(t) / patches.len() as f64;
-            for (total, patch) in totals[start..].iter_mut().zip(patches) {
-                total.add(area, &images.mean(t, numbering.patch_corners(t, PatchId(patch))));
-            }
         }
         let emits = varied.iter().any(|&t| scene.material(t).exitance_map.is_some());
         let gaps = Opacities::of(scene).is_some();
@@ -156,8 +161,25 @@ struct Images<'a> {
 type Key = (TextureId, [Wrap; 2], Option<[u64; 2]>);
 
 impl Images<'_> {
+    /// Returns the means over a piece of a triangle.
+    fn mean(&mut self, t: TriangleId, piece: &Piece) -> Mean {
+        let mut triangles = piece.triangles();
+        if let (Some(only), 3) = (triangles.next(), piece.corners().len()) {
+            return self.mean_between(t, only);
+        }
+        let mut total = Total::default();
+        piece
+            .triangles()
+            .for_each(|corners| total.add(Piece::new(t, &corners).share(), &self.mean_between(t, corners)));
+        Mean {
+            reflectance: total.of_covered(total.reflected, total.last.reflectance),
+            exitance: total.of_covered(total.emitted, total.last.exitance),
+            coverage: total.covered / total.area,
+        }
+    }
+
     /// Returns the means over the part of a triangle between three points.
-    fn mean(&mut self, t: TriangleId, corners: [Barycentric; 3]) -> Mean {
+    fn mean_between(&mut self, t: TriangleId, corners: [Barycentric; 3]) -> Mean {
         let Material { reflectance, reflectance_map, exitance, exitance_map, opacity, .. } =
             *self.scene.material(t);
         let sum = |part: fn(Barycentric) -> f64| corners.iter().map(|&c| part(c)).sum::<f64>() / 3.0;
@@ -201,8 +223,9 @@ impl Images<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::divisions::Subdivision;
+    use crate::index::PatchId;
     use crate::mesh::PatchMesh;
+    use crate::subdivision::{PatchSize, Subdivision};
     use glam::{DVec3, Vec2, Vec4};
     use sir_geom::{SceneBuilder, Side, Sides, Texture};
 
@@ -255,7 +278,7 @@ mod tests {
     fn finer_patches_have_the_same_sum() {
         let scene = square(Opacity::default(), None);
         for n in [1, 2, 3, 10, 57] {
-            let mesh = PatchMesh::new(&scene, Subdivision::Patches(2 * n * n)).unwrap();
+            let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(2 * n * n))).unwrap();
             let mut sum = Rgb::ZERO;
             mesh.for_each_side(|t, patch, side, id| {
                 assert_eq!(mesh.patch_of_side(t, id), patch);
@@ -274,7 +297,7 @@ mod tests {
             let scene = square(Opacity { cutoff: Some(cutoff), ..Opacity::default() }, None);
             let mesh = PatchMesh::new(&scene, Subdivision::PerFace).unwrap();
             let of = |t: TriangleId| {
-                let patch = PatchId(mesh.patches_of(t).start);
+                let patch = mesh.patch_at(t, Barycentric { v: 0.0, w: 0.0 });
                 mesh.covered_area(t, patch) * mesh.reflectance(&scene, t, patch)
             };
             let areas: f64 = scene.triangle_ids().map(|t| mesh.covered_area_of(&scene, t)).sum();
@@ -305,7 +328,7 @@ mod tests {
         let v = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| b.add_vertex(p));
         b.add_polygon(&v, m);
         let scene = b.build().unwrap().scene;
-        let mesh = PatchMesh::new(&scene, Subdivision::Patches(100)).unwrap();
+        let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(100))).unwrap();
         assert!(!mesh.is_varied(TriangleId(0)) && mesh.paint_bytes() == 0);
     }
 }

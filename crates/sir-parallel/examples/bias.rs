@@ -164,7 +164,7 @@ fn bias(model: &Model, shot: &Shot, run: &Transported, reflectance: f64) -> f64 
 /// Returns the root mean square deviation of the power received per area, relative to its mean.
 fn noise(model: &Model, shot: &Shot, run: &Transported) -> f64 {
     let mut areas = Vec::new();
-    model.mesh.for_each_side(|triangle, _, _, _| areas.push(model.mesh.patch_area(triangle)));
+    model.mesh.for_each_side(|triangle, patch, _, _| areas.push(model.mesh.patch_area(triangle, patch)));
     let powers = indirect(model, shot, run);
     let mean = powers.iter().sum::<f64>() / areas.iter().sum::<f64>();
     let square = |(power, area): (&f64, &f64)| (power / area / mean - 1.0).powi(2);

@@ -5,7 +5,7 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::Domain;
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_parallel::{Executor, Observer, Start};
 use sir_radiosity::{BatchSettings, Batches, FirstShot, Model, ShotSettings};
 
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gray = Material::diffuse("gray", Rgb::new(0.5, 0.8, 0.9)).emitting(Rgb::ONE);
     let gray = builder.add_material(gray);
     shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [gray; 6], Facing::Inward);
-    let model = Model::new(builder.build()?.scene, Subdivision::Patches(600))?;
+    let model = Model::new(builder.build()?.scene, Subdivision::Triangles(PatchSize::Count(600)))?;
 
     let (lines, seed) = (1_000_000, 1);
     let mut executor = Executor::default().watched_by(Tenths(0));

@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 
 use sir_geom::{Rgb, Scene, Side, TriangleId};
 use sir_lines::{Domain, LocalLines};
-use sir_mesh::{PatchId, SideId, Subdivision};
+use sir_mesh::{PatchId, PatchSize, SideId, Subdivision};
 use sir_radiosity::{
     BatchSettings, Batches, FirstShot, Model, ModelError, Received, SecondShot, ShotSettings, Solution,
 };
@@ -96,7 +96,7 @@ impl Solver {
     pub fn new(scene: Scene) -> Self {
         Self {
             scene,
-            subdivision: Subdivision::Patches(10_000),
+            subdivision: Subdivision::Triangles(PatchSize::Count(10_000)),
             first: 1_000_000.into(),
             second: None,
             global: 2_000_000,
@@ -109,7 +109,7 @@ impl Solver {
     /// Sets the approximate number of patches.
     #[must_use]
     pub fn patches(self, count: u64) -> Self {
-        self.subdivision(Subdivision::Patches(count))
+        self.subdivision(Subdivision::Triangles(PatchSize::Count(count)))
     }
 
     /// Sets the subdivision of the scene into patches.

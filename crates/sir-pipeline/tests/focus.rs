@@ -21,7 +21,8 @@ fn a_wide_ground_has_patches_in_the_focus_only() {
     for t in model.scene.triangle_ids() {
         let corners = model.scene.corners(t);
         let reach = corners.iter().map(|corner| corner.x.abs().max(corner.z.abs())).fold(0.0, f64::max);
-        let patches = model.mesh.patches_of(t).len();
+        let mut patches = 0;
+        model.mesh.for_each_piece_of(t, |_, _| patches += 1);
         match model.scene.triangle(t).source {
             0 | 1 if reach < 1.001 => floor += patches,
             0 | 1 => outside += patches,

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use sir_geom::{LoadOptions, load};
 use sir_lines::{ConvexHull, Domain};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{
     AnyOrder, BatchSettings, Batches, Counts, FirstShot, Model, OneWorker, ShotSettings, Stage, StageTotals,
     run_stage,
@@ -36,7 +36,7 @@ fn measure(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let facets = ConvexHull::of(scene.vertices()).map_or(0, |hull| hull.facets().len());
     let hull_time = start.elapsed().as_secs_f64();
-    let model = Model::new(scene, Subdivision::Patches(100_000))?;
+    let model = Model::new(scene, Subdivision::Triangles(PatchSize::Count(100_000)))?;
     let scene = &model.scene;
     let shot = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, 100_000, 1), ())?;
 

@@ -9,7 +9,7 @@ use std::time::Instant;
 use glam::DVec3;
 use sir_geom::shapes::{Facing, cuboid};
 use sir_geom::{Light, LightKind, Material, Rgb, SceneBuilder, Spread};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{FirstShot, Gatherer, Model, Sensor, SensorSettings, ShotSettings, Solution, run_stage};
 
 const POWER: f64 = 1000.0;
@@ -93,7 +93,7 @@ fn room(lamps: &Lamps) -> Result<Model, Box<dyn std::error::Error>> {
             }
         }
     }
-    Ok(Model::new(b.build()?.scene, Subdivision::MaxEdge(0.5))?)
+    Ok(Model::new(b.build()?.scene, Subdivision::Triangles(PatchSize::MaxEdge(0.5)))?)
 }
 
 /// Returns the seconds per sensor, and the mean relative error.

@@ -109,7 +109,7 @@ impl Emitter {
 }
 
 /// Largest number of attempts to draw a point that is not in a gap.
-const MAX_TRIES: u32 = 1000;
+pub(crate) const MAX_TRIES: u32 = 1000;
 
 /// Returns a uniform random point of the covered area of a part of a triangle.
 pub(crate) fn point_on_surface(

@@ -2,7 +2,7 @@
 
 use sir_geom::Side;
 use sir_lines::Focus;
-use sir_mesh::{PatchId, SideId};
+use sir_mesh::SideId;
 
 use crate::model::Model;
 
@@ -25,21 +25,18 @@ impl FocusSides {
         let Some(focus) = focus else { return Self::all() };
         let bounds = focus.bounds();
         let mut in_focus = vec![true; model.mesh.side_count()];
-        // A flat polygon that is one patch has several triangles.
         for triangle in model.scene.triangle_ids() {
             let corners = model.scene.corners(triangle);
             let whole = corners.iter().all(|&corner| bounds.contains(corner));
-            for patch in model.mesh.patches_of(triangle).map(PatchId) {
-                let patch_in_focus = whole || {
-                    let patch = model.mesh.patch_corners(triangle, patch);
-                    patch.iter().all(|corner| bounds.contains(corner.point(corners)))
-                };
+            model.mesh.for_each_piece_of(triangle, |patch, piece| {
+                let piece_in_focus =
+                    whole || piece.corners().iter().all(|corner| bounds.contains(corner.point(corners)));
                 for side in [Side::Front, Side::Back] {
                     if let Some(id) = model.mesh.side_of(triangle, patch, side) {
-                        in_focus[id.index()] &= patch_in_focus;
+                        in_focus[id.index()] &= piece_in_focus;
                     }
                 }
-            }
+            });
         }
         Self(Some(in_focus))
     }

@@ -60,7 +60,7 @@ impl LineSource for Emitter {
 impl LineSource for PatchSide {
     #[inline]
     fn ray(&self, model: &Model, numbers: &mut impl Numbers) -> Ray {
-        self.emitter(model).ray(&model.scene, numbers)
+        (*self).ray(model, numbers)
     }
 }
 

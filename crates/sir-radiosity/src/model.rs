@@ -73,11 +73,7 @@ impl Model {
     #[inline]
     #[must_use]
     pub fn area(&self, triangle: TriangleId, id: SideId) -> f64 {
-        if self.mesh.is_varied(triangle) {
-            self.mesh.covered_area(triangle, self.mesh.patch_of_side(triangle, id))
-        } else {
-            self.mesh.patch_area(triangle)
-        }
+        self.mesh.covered_area(triangle, self.mesh.patch_of_side(triangle, id))
     }
 
     /// Returns the exitance `M` \[W/m²\] of a side of a patch.

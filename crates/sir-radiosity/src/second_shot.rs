@@ -8,9 +8,9 @@
 //! By default, the ratio of the power of the brightest patches to the power of all sources is that of the lines of this
 //! shot to the lines of the first shot. A line of this shot then carries as much power as a line of the first shot.
 
-use sir_geom::{Rgb, Side, TriangleId};
+use sir_geom::{Rgb, TriangleId};
 use sir_lines::Purpose;
-use sir_mesh::{PatchId, SideId};
+use sir_mesh::SideId;
 
 use crate::error::SolveError;
 use crate::focus_sides::FocusSides;
@@ -21,7 +21,7 @@ use crate::power::Quanta;
 use crate::shot::{Shot, ShotSettings};
 use crate::sources::FocusedSources;
 use crate::visitor::Visitor;
-use crate::workers::{BLOCK, Sides, Workers, map_blocks, map_sides, no_items};
+use crate::workers::{BLOCK, Sides, Workers, map_sides, no_items};
 
 /// The second shot: lines from the brightest patches; with the focus of the first shot, from the brightest patches in
 /// it. There are no lines if nothing reflects.
@@ -74,7 +74,7 @@ impl ShotInput<PatchSide> for Shot {
     }
 }
 
-/// A bright side, or the part of it in one triangle.
+/// A bright side.
 struct BrightSide {
     place: PatchSide,
     id: SideId,
@@ -90,23 +90,13 @@ fn bright_sides(
     bright: &[bool],
     workers: &dyn Workers,
 ) -> Vec<Vec<BrightSide>> {
-    map_blocks(workers, model.scene.triangles().len(), no_items(), |triangles, ()| {
-        let mut sources = Vec::new();
-        for triangle in triangles.map(TriangleId::new) {
-            let patches = model.mesh.patches_of(triangle);
-            // A flat polygon that is one patch has several triangles.
-            let part = model.scene.area(triangle) / (patches.len() as f64 * model.mesh.patch_area(triangle));
-            for patch in patches.map(PatchId) {
-                for side in [Side::Front, Side::Back] {
-                    let Some(id) = model.mesh.side_of(triangle, patch, side) else { continue };
-                    if bright[id.index()] {
-                        let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO) * part;
-                        sources.push(BrightSide { place: PatchSide { triangle, patch, side }, id, power });
-                    }
-                }
-            }
-        }
-        sources
+    map_sides(workers, &model.mesh, no_items(), |sides, ()| {
+        let bright = sides.iter().filter(|(_, id)| bright[id.index()]);
+        let with_power = |(triangle, id): (TriangleId, SideId)| {
+            let power = shot.unit.watts(unshot[id.index()]).max(Rgb::ZERO);
+            BrightSide { place: PatchSide::of(model, triangle, id), id, power }
+        };
+        bright.map(with_power).collect()
     })
 }
 

@@ -2,7 +2,7 @@
 
 use sir_geom::{LightKind, Rgb, Scene, Side};
 use sir_lines::{Focus, MAX_FOCUS_DENSITY, ParallelLines};
-use sir_mesh::{PatchId, PatchMesh};
+use sir_mesh::PatchMesh;
 
 use crate::emitter::{Emitter, SkyAperture};
 use crate::error::SolveError;
@@ -92,15 +92,17 @@ fn surfaces(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
                 sources.push(Source { emitter, power: exitance * area });
                 continue;
             }
-            let patches = mesh.patches_of(triangle);
-            // A flat polygon that is one patch has several triangles.
-            let part = area / (patches.len() as f64 * mesh.patch_area(triangle));
-            for patch in patches.map(PatchId) {
-                let corners = mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
-                let emitter = Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
+            mesh.for_each_piece_of(triangle, |patch, piece| {
                 let exitance = mesh.exitance(scene, triangle, patch, side);
-                sources.push(Source { emitter, power: exitance * mesh.covered_area(triangle, patch) * part });
-            }
+                let part = area * piece.share() / mesh.patch_area(triangle, patch);
+                let power = exitance * mesh.covered_area(triangle, patch) * part;
+                // Patches of lamps with textures are triangles.
+                if let [a, b, c] = *piece.corners() {
+                    let corners = [a, b, c].map(|point| point.point(corners));
+                    let emitter = Emitter::Surface { triangle, patch: Some(patch), side, corners, normal };
+                    sources.push(Source { emitter, power });
+                }
+            });
         }
     }
     sources

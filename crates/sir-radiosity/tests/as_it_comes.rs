@@ -8,7 +8,7 @@ use common::{Estimate, batches, gray, received, runs, scene, shoot};
 use glam::{DQuat, DVec3};
 use sir_geom::shapes::{Facing, cuboid, quad};
 use sir_geom::{Material, MaterialId, Rgb, SceneBuilder, Side, Sides};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{Model, Solution};
 
 const fn v(x: f64, y: f64, z: f64) -> DVec3 {
@@ -118,15 +118,13 @@ fn a_decal_covers_what_is_below_and_changes_nothing_else() {
             square(&mut b);
         }
         // Patch edges are a quarter of the edges of the cube, so that patches are covered completely or not at all.
-        let model = model(b, Subdivision::MaxEdge(0.36));
+        let model = model(b, Subdivision::Triangles(PatchSize::MaxEdge(0.36)));
         let shot = shoot(&model, 200_000, 2);
         assert!(shot.balance.closes());
         let solution = batches(&model, shot, 400_000, 2).solution(&model);
         let (mut seen, mut area) = (0.0, 0.0);
         model.mesh.for_each_side(|triangle, patch, _, side| {
-            let corners = model.scene.corners(triangle);
-            let middle = model.mesh.patch_corners(triangle, patch).map(|c| c.point(corners));
-            let middle = (middle[0] + middle[1] + middle[2]) / 3.0;
+            let middle = model.mesh.center(&model.scene, triangle, patch);
             let material = model.scene.triangle(triangle).material;
             let in_square = (middle - 0.5).truncate().abs().max_element() < 0.25;
             let covered = material == floor && in_square;
@@ -134,8 +132,8 @@ fn a_decal_covers_what_is_below_and_changes_nothing_else() {
             if covered {
                 assert_eq!(irradiance, 0.0, "{material:?} at {middle}");
             } else {
-                seen += irradiance * model.mesh.patch_area(triangle);
-                area += model.mesh.patch_area(triangle);
+                seen += irradiance * model.mesh.patch_area(triangle, patch);
+                area += model.mesh.patch_area(triangle, patch);
             }
         });
         assert!((area - 6.0).abs() < 1e-12);
@@ -183,7 +181,7 @@ fn a_wall_of_one_sheet_lets_nothing_through() {
                     [v(1., 1., 1.9), v(1., 2., 1.9), v(1.9, 2., 1.9), v(1.9, 1., 1.9)].map(at),
                     lamp,
                 );
-                let model = model(b, Subdivision::Patches(500));
+                let model = model(b, Subdivision::Triangles(PatchSize::Count(500)));
                 let shot = shoot(&model, 300_000, 3);
                 assert!(shot.balance.closes());
                 let run = batches(&model, shot, 600_000, 3);
@@ -239,10 +237,10 @@ fn solve(model: &Model) -> Solution {
 /// mean.
 fn deviation(model: &Model, found: &Solution, expected: &Solution) -> f64 {
     let (mut off, mut sum) = (0.0, 0.0);
-    model.mesh.for_each_side(|triangle, _, _, side| {
+    model.mesh.for_each_side(|triangle, patch, _, side| {
         let [a, b] = [found, expected].map(|s| s.irradiance[side.index()].x);
-        off += (a - b).abs() * model.mesh.patch_area(triangle);
-        sum += b * model.mesh.patch_area(triangle);
+        off += (a - b).abs() * model.mesh.patch_area(triangle, patch);
+        sum += b * model.mesh.patch_area(triangle, patch);
     });
     off / sum
 }
@@ -325,12 +323,12 @@ fn a_room_on_a_wide_ground_is_as_tight_as_one_without() {
                 let run = batches(&model, shoot(&model, lines, seed), 2_000_000, seed);
                 assert_eq!(run.balance.escaped.0, [0; 3]);
                 let (mut inside, solution) = (0.0, run.solution(&model));
-                model.mesh.for_each_side(|triangle, _, side, id| {
+                model.mesh.for_each_side(|triangle, patch, side, id| {
                     let material = model.scene.triangle(triangle).material;
                     if material == outside || side == Side::Back {
                         assert_eq!(solution.irradiance[id.index()], Rgb::ZERO, "{triangle} {side:?}");
                     } else {
-                        let area = model.mesh.patch_area(triangle);
+                        let area = model.mesh.patch_area(triangle, patch);
                         inside += area * solution.irradiance[id.index()].x / 59.0;
                     }
                 });

@@ -11,7 +11,7 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder, Sides};
 use sir_lines::Domain;
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{Model, Shot, Transported};
 
 /// Transports the light of a first shot with lines of a domain, with a number of lines and a seed.
@@ -85,7 +85,7 @@ fn room() -> Model {
         DVec3::new(0.7, 1.5, 0.5),
     ];
     shapes::quad(&mut b, sheet, screen);
-    Model::new(b.build().unwrap().scene, Subdivision::Patches(900)).unwrap()
+    Model::new(b.build().unwrap().scene, Subdivision::Triangles(PatchSize::Count(900))).unwrap()
 }
 
 /// All domains give every material the same radiosity, and every patch the same irradiance, within the errors that runs

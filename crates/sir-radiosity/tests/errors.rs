@@ -19,7 +19,7 @@ use common::{TRANSPORTS, gray, scene, shoot};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{Model, Solution};
 
 /// Returns a cube with these materials, where `top` is the last face.
@@ -79,9 +79,10 @@ fn inherited(way: &str) -> f64 {
 #[test]
 fn errors_of_many_patches_are_honest() {
     const LINES: u64 = 50_000;
-    for (what, model) in
-        [("furnace", furnace(Subdivision::Patches(600))), ("lamp", lamp(Subdivision::Patches(600)))]
-    {
+    for (what, model) in [
+        ("furnace", furnace(Subdivision::Triangles(PatchSize::Count(600)))),
+        ("lamp", lamp(Subdivision::Triangles(PatchSize::Count(600)))),
+    ] {
         for (way, transport) in TRANSPORTS {
             let run = |seed| transport(&model, shoot(&model, LINES, seed), LINES, seed).solution(&model);
             let runs: Vec<_> = (1..=40).map(run).collect();
@@ -111,7 +112,7 @@ fn errors_of_few_patches_are_not_too_small() {
 /// to all lines of the transport, and small unless the shot has fewer lines than cross a patch.
 #[test]
 fn noise_of_the_first_shot_that_is_reflected_can_be_left_out() {
-    let model = lamp(Subdivision::Patches(600));
+    let model = lamp(Subdivision::Triangles(PatchSize::Count(600)));
     for (way, transport) in TRANSPORTS {
         let run = |seed| transport(&model, shoot(&model, 5_000, seed), 50_000, seed).solution(&model);
         let runs: Vec<_> = (1..=40).map(run).collect();

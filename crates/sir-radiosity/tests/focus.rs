@@ -8,7 +8,7 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{BoundingBox, Light, LightKind, Material, Rgb, SceneBuilder, Sky, SkyModel};
 use sir_lines::{Domain, Focus, GlobalLines, LocalLines};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{
     BatchSettings, Batches, FirstShot, Model, Shot, ShotSettings, Transported, run_stage, sources,
 };
@@ -109,7 +109,7 @@ fn furnace() -> (Model, Focus) {
     shapes::cuboid(&mut b, DVec3::ZERO, DVec3::ONE, [wall; 6], Facing::Inward);
     let at = |x: f64, y: f64| DVec3::new(x, y, -0.01);
     shapes::quad(&mut b, [at(-12.0, -12.0), at(13.0, -12.0), at(13.0, 13.0), at(-12.0, 13.0)], ground);
-    let model = Model::new(scene(b), Subdivision::MaxEdge(0.5)).unwrap();
+    let model = Model::new(scene(b), Subdivision::Triangles(PatchSize::MaxEdge(0.5))).unwrap();
     let bounds = BoundingBox { min: DVec3::ZERO, max: DVec3::ONE };
     let focus = Focus::new(bounds, 0.75, model.scene.bounding_box()).unwrap();
     (model, focus)

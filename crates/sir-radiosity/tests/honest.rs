@@ -13,7 +13,7 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::{Domain, seed_of_repeat};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{
     FocusSides, MIN_REPEATS, Model, OneWorker, PowerUnit, Received, Repeats, ReplicaSettings, Solution,
     Transported,
@@ -46,7 +46,7 @@ fn furnace() -> Exact {
     let mut b = SceneBuilder::new();
     let wall = b.add_material(Material::diffuse("", reflectance).emitting(Rgb::ONE));
     shapes::cuboid(&mut b, DVec3::ZERO, DVec3::ONE, [wall; 6], Facing::Inward);
-    let model = Model::new(scene(b), Subdivision::Patches(150)).unwrap();
+    let model = Model::new(scene(b), Subdivision::Triangles(PatchSize::Count(150))).unwrap();
     Exact {
         name: "furnace",
         model,

@@ -10,7 +10,7 @@ use common::{batches, gray, received, shoot};
 use glam::DVec3;
 use sir_geom::shapes::{Facing, cuboid, quad};
 use sir_geom::{Light, LightKind, Rgb, SceneBuilder, Sky, SkyModel, Spread};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{FirstShot, Model, Shot, ShotSettings, run_stage, sources};
 
 const LINES: u64 = 400_000;
@@ -66,14 +66,14 @@ fn cie_5_2_a_lambertian_point_over_a_plane() {
     let mut b = SceneBuilder::new();
     rectangle(&mut b, DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0);
     b.add_light(point(DVec3::Z * h, intensity, Spread::Lambertian { axis: -DVec3::Z }));
-    let model = model(b, Subdivision::MaxEdge(0.5));
+    let model = model(b, Subdivision::Triangles(PatchSize::MaxEdge(0.5)));
     let shot = shoot(&model, LINES, 1);
     let power = PI * intensity;
     assert!((shot.unit.watts(shot.balance.emitted).x / power - 1.0).abs() < 1e-9);
     let (mut chi, mut patches) = (0.0, 0.0);
     model.mesh.for_each_side(|triangle, patch, _, side| {
-        let corners =
-            model.mesh.patch_corners(triangle, patch).map(|c| c.point(model.scene.corners(triangle)));
+        let corners = model.mesh.single_triangle(triangle, patch).unwrap();
+        let corners = corners.map(|c| c.point(model.scene.corners(triangle)));
         let lines = LINES as f64
             * integral(corners, |p| intensity * h * h / (p.length_squared() + h * h).powi(2))
             / power;
@@ -87,9 +87,7 @@ fn cie_5_2_a_lambertian_point_over_a_plane() {
     let solution = shot.solution(&model);
     let mut nearest = (f64::INFINITY, 0.0);
     model.mesh.for_each_side(|triangle, patch, _, side| {
-        let corners =
-            model.mesh.patch_corners(triangle, patch).map(|c| c.point(model.scene.corners(triangle)));
-        let distance = (corners[0] + corners[1] + corners[2]).length();
+        let distance = model.mesh.center(&model.scene, triangle, patch).length();
         if distance < nearest.0 {
             nearest = (distance, solution.irradiance[side.index()].x);
         }
@@ -250,12 +248,12 @@ fn a_furnace_with_a_point_light() {
     let walls = b.add_material(gray(0.0, rho));
     cuboid(&mut b, DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0), [walls; 6], Facing::Inward);
     b.add_light(point(DVec3::new(0.5, 0.5, 0.4), power / (4.0 * PI), Spread::Isotropic));
-    let model = model(b, Subdivision::Patches(200));
+    let model = model(b, Subdivision::Triangles(PatchSize::Count(200)));
     let shot = shoot(&model, 100_000, 3);
     let solution = batches(&model, shot, 400_000, 3).solution(&model);
     let (mut area, mut sum) = (0.0, 0.0);
-    model.mesh.for_each_side(|triangle, _, _, side| {
-        let a = model.mesh.patch_area(triangle);
+    model.mesh.for_each_side(|triangle, patch, _, side| {
+        let a = model.mesh.patch_area(triangle, patch);
         area += a;
         sum += a * solution.irradiance[side.index()].x;
     });

@@ -8,7 +8,7 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{SceneBuilder, Sides};
 use sir_lines::{Domain, Purpose, Streams};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{End, Model, Segment, Segments};
 
 /// Counts how often each pair of sides faces each other along uniform lines: `count[i][j]` for light from `i` to `j`,
@@ -47,14 +47,15 @@ fn counted_crossings_agree_with_the_forecast() {
     shapes::cuboid(&mut b, DVec3::ZERO, DVec3::new(4.0, 3.0, 5.0), [one; 6], Facing::Inward);
     shapes::cuboid(&mut b, DVec3::new(1.0, 0.5, 1.0), DVec3::new(1.5, 2.0, 3.0), [two; 6], Facing::Outward);
     shapes::sphere(&mut b, DVec3::new(3.0, 1.0, 2.0), 0.7, 2, Facing::Outward, |_| one);
-    let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(2_000)).unwrap();
+    let model =
+        Model::new(b.build().unwrap().scene, Subdivision::Triangles(PatchSize::Count(2_000))).unwrap();
     let lines = 500_000;
     for domain in domains(&model) {
         let count = facing_counts(&model, &domain, lines);
         let forecast = domain.forecast(lines);
         let (mut chi2, mut sides) = (0.0, 0.0);
-        model.mesh.for_each_side(|triangle, _, _, side| {
-            let expected = forecast.crossings(model.mesh.patch_area(triangle));
+        model.mesh.for_each_side(|triangle, patch, _, side| {
+            let expected = forecast.crossings(model.mesh.patch_area(triangle, patch));
             let counted: u64 = count[side.index()].iter().sum();
             chi2 += (counted as f64 - expected).powi(2) / expected;
             sides += 1.0;

@@ -11,7 +11,7 @@ use common::{TRANSPORTS, gray, scene, shoot, shoot_again};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder, Side, Sides};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{Model, OneWorker, Quanta};
 
 /// Returns a room with a lamp close to its ceiling, and a sheet that reflects from both sides.
@@ -44,7 +44,7 @@ fn sum(quanta: &[Quanta]) -> Quanta {
 
 #[test]
 fn power_is_kept_to_the_quantum() {
-    for subdivision in [Subdivision::Patches(1000), Subdivision::PerFace] {
+    for subdivision in [Subdivision::Triangles(PatchSize::Count(1000)), Subdivision::PerFace] {
         let model = room(subdivision);
         let first = shoot(&model, 40_000, 1);
         let second = shoot_again(&model, &first, 10_000, 1);
@@ -68,7 +68,7 @@ fn power_is_kept_to_the_quantum() {
 #[test]
 fn light_is_the_same_with_less_noise() {
     const RUNS: u64 = 40;
-    let model = room(Subdivision::Patches(1000));
+    let model = room(Subdivision::Triangles(PatchSize::Count(1000)));
     for (way, transport) in TRANSPORTS {
         let run = |twice: bool, seed| {
             let first = shoot(&model, if twice { 40_000 } else { 50_000 }, seed);
@@ -81,8 +81,8 @@ fn light_is_the_same_with_less_noise() {
         let (mut noise, mut stated) = ([0.0; 2], 0.0);
         // Irradiance of each side of each triangle in each run.
         let mut means = BTreeMap::new();
-        model.mesh.for_each_side(|triangle, _, which, side| {
-            let area = model.mesh.patch_area(triangle);
+        model.mesh.for_each_side(|triangle, patch, which, side| {
+            let area = model.mesh.patch_area(triangle, patch);
             for (i, runs) in [&once, &twice].into_iter().enumerate() {
                 let values: Vec<f64> = runs.iter().map(|run| run.irradiance[side.index()].y).collect();
                 noise[i] += area * variance(&values);

@@ -10,7 +10,7 @@ use common::{batches, factor, gray, shoot};
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Light, LightKind, Material, Rgb, SceneBuilder, Sides, Sky, SkyModel, Spread};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{Gatherer, Measurement, Model, REPLICATIONS, Sensor, SensorSettings, Solution};
 
 const RAYS: SensorSettings = SensorSettings::new(16_384, 0.0);
@@ -368,7 +368,7 @@ fn errors_of_patches_are_passed_on() {
     );
     let lamp = b.add_material(gray(1000.0, 0.0));
     shapes::quad(&mut b, OPENING.map(|p| p - 0.1 * DVec3::Z), lamp);
-    let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(600)).unwrap();
+    let model = Model::new(b.build().unwrap().scene, Subdivision::Triangles(PatchSize::Count(600))).unwrap();
     for (position, direction) in [(v(1.0, 1.3, 0.75), DVec3::Z), (v(0.3, 0.3, 1.0), DVec3::X)] {
         let sensor = at(position, direction);
         let runs: Vec<Measurement> = (1..=100)

@@ -5,7 +5,7 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Light, LightKind, Material, Rgb, Scene, SceneBuilder, Sides, Sky, Spread};
 use sir_lines::{Focus, LocalLines};
-use sir_mesh::{SideId, Subdivision};
+use sir_mesh::{PatchSize, SideId, Subdivision};
 use sir_radiosity::{
     FirstShot, Model, OneWorker, Points, ShadowRaySettings, ShadowRays, Shot, ShotSettings, run_stage,
 };
@@ -102,7 +102,7 @@ fn rooms() -> Vec<(&'static str, Scene)> {
 #[test]
 fn rays_and_lines_agree_within_their_errors() {
     for (name, scene) in rooms() {
-        for subdivision in [Subdivision::Patches(800), Subdivision::PerFace] {
+        for subdivision in [Subdivision::Triangles(PatchSize::Count(800)), Subdivision::PerFace] {
             let model = Model::new(scene.clone(), subdivision).unwrap();
             let lines = shot(&model, 2_000_000, 1);
             let rays = gather(settings(&model, 256, 2), &lines);
@@ -134,7 +134,7 @@ fn rays_and_lines_agree_within_their_errors() {
 #[test]
 fn what_is_reflected_is_that_of_the_lines() {
     let (_, scene) = rooms().swap_remove(1);
-    let model = Model::new(scene, Subdivision::Patches(500)).unwrap();
+    let model = Model::new(scene, Subdivision::Triangles(PatchSize::Count(500))).unwrap();
     let lines = shot(&model, 20_000, 1);
     let rays = gather(settings(&model, 4, 2), &lines);
     assert_ne!(lines.received.power, rays.received.power);
@@ -147,7 +147,7 @@ fn what_is_reflected_is_that_of_the_lines() {
 #[test]
 fn there_are_rays_in_the_focus_only() {
     let (_, scene) = rooms().swap_remove(0);
-    let model = Model::new(scene, Subdivision::Patches(2000)).unwrap();
+    let model = Model::new(scene, Subdivision::Triangles(PatchSize::Count(2000))).unwrap();
     let bounds = sir_geom::BoundingBox { min: DVec3::new(1.5, 0.5, -0.1), max: DVec3::new(3.1, 1.5, 1.0) };
     let focus = Focus::new(bounds, 0.5, model.scene.bounding_box()).unwrap();
     let lines = shot(&model, 20_000, 1);
@@ -175,7 +175,7 @@ fn patches_close_to_a_small_lamp_keep_the_light_of_lines() {
     let spread = Spread::Lambertian { axis: -DVec3::Z };
     let kind = LightKind::Point { position: lamp, intensity: Rgb::ONE, spread };
     let scene = room(|builder| builder.add_light(Light { name: String::new(), kind }), false);
-    let model = Model::new(scene, Subdivision::Patches(800)).unwrap();
+    let model = Model::new(scene, Subdivision::Triangles(PatchSize::Count(800))).unwrap();
     let lines = shot(&model, 20_000, 1);
     let rays = gather(settings(&model, 4, 2), &lines);
     let brightest = (0..model.mesh.side_count()).max_by_key(|&side| lines.received.power[side].0[0]).unwrap();
@@ -190,7 +190,7 @@ fn patches_close_to_a_small_lamp_keep_the_light_of_lines() {
 #[test]
 fn one_lamp_is_known_better_by_rays() {
     let (_, scene) = rooms().swap_remove(0);
-    let model = Model::new(scene, Subdivision::Patches(800)).unwrap();
+    let model = Model::new(scene, Subdivision::Triangles(PatchSize::Count(800))).unwrap();
     let exact = gather(settings(&model, 2000, 9), &shot(&model, 1000, 1));
     let square = |shot: &Shot| -> f64 {
         let pairs = shot.received.power.iter().zip(&exact.received.power);

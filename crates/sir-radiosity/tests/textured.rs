@@ -6,7 +6,7 @@ mod common;
 use common::{Estimate, TRANSPORTS, runs, scene, shoot_again};
 use glam::{DVec3, Vec2};
 use sir_geom::{ColorMap, Material, Rgb, SceneBuilder, Side, Texture, TextureMap, Wrap};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::{Emitter, Model, sources};
 
 /// Bright and dark texels, and the 8-bit sRGB value closest to the linear value .2.
@@ -51,11 +51,9 @@ fn complementary_cube(subdivision: Subdivision) -> Model {
 
 #[test]
 fn where_light_is_emitted_that_is_not_reflected_all_is_equally_bright() {
-    let model = complementary_cube(Subdivision::MaxArea(0.02));
-    let varied: Vec<f64> = (0..12)
-        .flat_map(|t| model.mesh.patches_of(sir_geom::TriangleId(t)).map(move |p| (t, p)))
-        .map(|(t, p)| model.mesh.reflectance(&model.scene, sir_geom::TriangleId(t), sir_mesh::PatchId(p)).x)
-        .collect();
+    let model = complementary_cube(Subdivision::Triangles(PatchSize::MaxArea(0.02)));
+    let mut varied = Vec::new();
+    model.mesh.for_each_side(|t, patch, _, _| varied.push(model.mesh.reflectance(&model.scene, t, patch).x));
     let (least, most) = varied.iter().fold((1.0, 0.0), |(a, b), &x| (f64::min(a, x), f64::max(b, x)));
     assert!(least < 0.05 && most > 0.4, "patches differ: {least} to {most}");
     for (way, transport) in TRANSPORTS {
@@ -68,7 +66,7 @@ fn where_light_is_emitted_that_is_not_reflected_all_is_equally_bright() {
 
 #[test]
 fn a_second_shot_sends_what_each_patch_reflects() {
-    let model = complementary_cube(Subdivision::MaxArea(0.02));
+    let model = complementary_cube(Subdivision::Triangles(PatchSize::MaxArea(0.02)));
     let runs: Vec<f64> = (1..=16)
         .map(|seed| {
             let shot = common::shoot(&model, 400_000, seed);
@@ -82,14 +80,14 @@ fn a_second_shot_sends_what_each_patch_reflects() {
 
 #[test]
 fn sources_are_patches_where_a_texture_emits() {
-    let model = complementary_cube(Subdivision::MaxArea(0.1));
+    let model = complementary_cube(Subdivision::Triangles(PatchSize::MaxArea(0.1)));
     let sources = sources(&model.scene, &model.mesh);
     assert!(sources.len() > 12 && sources.len() <= model.mesh.patch_count());
     for source in &sources {
         let Emitter::Surface { triangle, patch: Some(patch), side: Side::Front, .. } = source.emitter else {
             panic!("{source:?}")
         };
-        let expected = model.exitance(triangle, patch, Side::Front) * model.mesh.patch_area(triangle);
+        let expected = model.exitance(triangle, patch, Side::Front) * model.mesh.patch_area(triangle, patch);
         assert!((source.power - expected).length() < 1e-12);
     }
     // Each wall shows the pattern 1.7 times across and 2.5 times along. The mean over triangles is therefore not the
@@ -102,7 +100,7 @@ fn sources_are_patches_where_a_texture_emits() {
 
 #[test]
 fn sensors_see_the_pattern() {
-    let model = complementary_cube(Subdivision::MaxArea(0.02));
+    let model = complementary_cube(Subdivision::Triangles(PatchSize::MaxArea(0.02)));
     let run = common::batches(&model, common::shoot(&model, 2_000_000, 1), 2_000_000, 1);
     let settings = sir_radiosity::SensorSettings::new(8192, 0.0);
     let solution = run.solution(&model);

@@ -7,7 +7,7 @@ use common::{Estimate, TRANSPORTS, gray, scene, shoot};
 use glam::{DVec3, Vec2};
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, MaterialId, Opacity, Rgb, SceneBuilder, Sides, Texture, TextureMap, Wrap};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::Model;
 
 /// Adds a rectangle across the x axis with texture coordinates from 0 to 1.
@@ -45,7 +45,7 @@ fn a_furnace_with_partitions_that_have_gaps() {
         let material = b.add_material(Material { opacity, back_emits: true, ..both });
         across(&mut b, x, material);
     }
-    let model = Model::new(scene(b), Subdivision::MaxArea(0.05)).unwrap();
+    let model = Model::new(scene(b), Subdivision::Triangles(PatchSize::MaxArea(0.05))).unwrap();
     for (way, transport) in TRANSPORTS {
         let runs: Vec<Vec<f64>> = (1..=16)
             .map(|seed| {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use sir_geom::shapes::quad;
 use sir_geom::{Material, Rgb, Scene, SceneBuilder};
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_radiosity::Model;
 
 use crate::data::{Case, FaceAverage, Point, Shape, Surface};
@@ -114,7 +114,7 @@ fn averages<'a>(case: &'a Case, some: &'a [FaceAverage]) -> Trial<'a> {
     let (patches, lines) = AVERAGES;
     let prepare = move |_: Effort| -> Result<Sample<'a>, ValidateError> {
         let scene = plain(case, bands(some.iter().map(|average| average.reflectance)))?;
-        let model = Model::new(scene, Subdivision::Patches(patches))?;
+        let model = Model::new(scene, Subdivision::Triangles(PatchSize::Count(patches)))?;
         Ok(Box::new(move |lines, seed, executor| {
             let light = solve(&model, lines, seed, executor)?;
             let (direct, all) = (means(&model, &light.direct), means(&model, &light.all));

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Camera, Material, Rgb, SceneBuilder};
-use sir_mesh::{PatchMesh, Subdivision};
+use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 use sir_radiosity::build_accel;
 use sir_view::{DisplayMesh, Exposure, PictureSettings, Table, render, write_exr, write_glb, write_png};
 
@@ -22,13 +22,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::new(4.0, 2.6, 5.0), walls, Facing::Inward);
     shapes::sphere(&mut builder, DVec3::new(2.4, 0.8, 1.6), 0.8, 3, Facing::Outward, |_| white);
     let scene = builder.build()?.scene;
-    let mesh = PatchMesh::new(&scene, Subdivision::MaxEdge(0.3))?;
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxEdge(0.3)))?;
 
     // A solver would compute these: one value for each side.
     let mut irradiance = Vec::with_capacity(mesh.side_count());
     mesh.for_each_side(|triangle, patch, _, _| {
-        let corners = mesh.patch_corners(triangle, patch).map(|c| c.point(scene.corners(triangle)));
-        let center = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let center = mesh.center(&scene, triangle, patch);
         let upward = 0.6 + 0.4 * scene.normal(triangle).y;
         irradiance.push(Rgb::new(1.0, 0.95, 0.85) * upward * (-0.2 * center.z).exp());
     });

@@ -8,11 +8,12 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3, Vec3};
 use serde_json::{Value, json};
-use sir_geom::{Barycentric, Camera, Projection, TriangleId};
+use sir_geom::{Barycentric, Camera, Projection, TriangleId, median_extent};
+use sir_mesh::PatchId;
 
 use crate::atomic_file::write_atomically;
 use crate::camera_rays::camera_axes;
-use crate::display::{DisplayMesh, extent};
+use crate::display::DisplayMesh;
 use crate::error::ViewError;
 use crate::exposure::Exposure;
 use crate::tone::{rgb, tone_map};
@@ -46,14 +47,32 @@ pub fn write_glb(
     let factor = exposure.factor_for_mesh(display);
     let mut file = Contents::default();
     file.add_mesh(display, factor);
-    let near = 1e-3 * extent(display.scene.vertices()).1;
+    let near = 1e-3 * median_extent(display.scene.vertices()).1;
     file.add_cameras(cameras, near);
     let json = file.json(up);
     file.write(path, &json)
 }
 
+/// Returns the point of a patch that is nearest to a position in its plane.
+fn nearest_point(
+    display: &DisplayMesh<'_>,
+    (triangle, patch): (TriangleId, PatchId),
+    position: DVec3,
+) -> (TriangleId, Barycentric) {
+    let mut nearest = (f64::INFINITY, triangle, Barycentric { v: 0.0, w: 0.0 });
+    for piece in display.mesh.pieces(triangle, patch) {
+        let corners = display.scene.corners(piece.triangle);
+        let point = nearest_in_triangle(corners, position);
+        let distance = point.point(corners).distance_squared(position);
+        if distance < nearest.0 {
+            nearest = (distance, piece.triangle, point);
+        }
+    }
+    (nearest.1, nearest.2)
+}
+
 /// Returns the barycentric coordinates of a position on a triangle, clamped to the triangle.
-fn nearest_point([a, b, c]: [DVec3; 3], position: DVec3) -> Barycentric {
+fn nearest_in_triangle([a, b, c]: [DVec3; 3], position: DVec3) -> Barycentric {
     let normal = (b - a).cross(c - a);
     let v = (position - a).cross(c - a).dot(normal) / normal.length_squared();
     let w = (b - a).cross(position - a).dot(normal) / normal.length_squared();
@@ -93,7 +112,7 @@ impl Contents {
                 }
                 let is_varied = display.mesh.is_varied(t);
                 let owner = (material_index, is_varied.then_some(t));
-                let width = display.mesh.patch_area(t).sqrt();
+                let width = display.mesh.patch_area(t, patch).sqrt();
                 for &v in piece.triangles.iter().flatten() {
                     let number = match numbers[v as usize] {
                         Some((last, number)) if last == owner => number,
@@ -102,7 +121,7 @@ impl Contents {
                             let e = rgb(&vertex.irradiance);
                             let position = display.positions()[vertex.position as usize];
                             let b = if is_varied {
-                                let point = nearest_point(scene.corners(t), position);
+                                let (t, point) = nearest_point(display, (t, patch), position);
                                 display.radiosity_at(t, point, piece.side, e, width)
                             } else {
                                 display.radiosity_of(&piece, e)

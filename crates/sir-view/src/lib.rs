@@ -34,14 +34,14 @@
 //! use glam::DVec3;
 //! use sir_accel::{Accel, Options};
 //! use sir_geom::{Material, Rgb, SceneBuilder, shapes::{self, Facing}};
-//! use sir_mesh::{PatchMesh, Subdivision};
+//! use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 //! use sir_view::{DisplayMesh, Exposure, PictureSettings, default_camera, render};
 //!
 //! let mut builder = SceneBuilder::new();
 //! let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));
 //! shapes::cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [gray; 6], Facing::Inward);
 //! let scene = builder.build()?.scene;
-//! let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01))?;
+//! let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.01)))?;
 //!
 //! // Uniform irradiance, instead of the result of a solver.
 //! let irradiance = vec![Rgb::splat(2.0); mesh.side_count()];

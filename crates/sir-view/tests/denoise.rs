@@ -5,7 +5,7 @@
 use glam::DVec3;
 use sir_geom::{Material, Rgb, Scene, SceneBuilder, Sides, shapes};
 use sir_lines::{Purpose, Streams};
-use sir_mesh::{PatchMesh, Subdivision};
+use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 use sir_view::DisplayMesh;
 
 /// Relative standard error of the patches.
@@ -22,7 +22,7 @@ fn sheet() -> (Scene, PatchMesh) {
         gray,
     );
     let scene = builder.build().unwrap().scene;
-    let mesh = PatchMesh::new(&scene, Subdivision::Patches(20_000)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(20_000))).unwrap();
     (scene, mesh)
 }
 
@@ -32,8 +32,7 @@ fn noisy(scene: &Scene, mesh: &PatchMesh, real: impl Fn(DVec3) -> f64) -> [Vec<f
     let streams = Streams::new(7, Purpose::PICTURE);
     let mut all = [const { Vec::new() }; 4];
     mesh.for_each_side(|t, patch, _, id| {
-        let c = mesh.patch_corners(t, patch).map(|b| b.point(scene.corners(t)));
-        let middle = (c[0] + c[1] + c[2]) / 3.0;
+        let middle = mesh.center(scene, t, patch);
         let mut stream = streams.line(id.index() as u64);
         // The sum of twelve uniform numbers has the variance one.
         let normal = (0..12).map(|_| stream.unit()).sum::<f64>() - 6.0;
@@ -147,7 +146,7 @@ fn what_is_too_small_to_know_shows_the_light_beyond_its_edges() {
         gray,
     );
     let scene = builder.build().unwrap().scene;
-    let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.01))).unwrap();
     let (mut computed, mut errors) = (Vec::new(), Vec::new());
     mesh.for_each_side(|t, _, _, _| {
         let lit = t.0 < 2;

@@ -8,7 +8,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Barycentric, Material, MaterialId, Rgb, Scene, SceneBuilder, Side, Sides, TriangleId};
-use sir_mesh::{PatchMesh, SideId, Subdivision};
+use sir_mesh::{PatchMesh, PatchSize, SideId, Subdivision};
 use sir_view::DisplayMesh;
 
 fn scene(build: impl FnOnce(&mut SceneBuilder, MaterialId)) -> Scene {
@@ -26,8 +26,7 @@ fn scene_with(sides: Sides, build: impl FnOnce(&mut SceneBuilder, MaterialId)) -
 fn field(scene: &Scene, mesh: &PatchMesh, value: impl Fn(TriangleId, Side, DVec3) -> f64) -> Vec<Rgb> {
     let mut irradiance = Vec::new();
     mesh.for_each_side(|t, patch, side, _| {
-        let c = mesh.patch_corners(t, patch).map(|b| b.point(scene.corners(t)));
-        irradiance.push(Rgb::splat(value(t, side, (c[0] + c[1] + c[2]) / 3.0)));
+        irradiance.push(Rgb::splat(value(t, side, mesh.center(scene, t, patch))));
     });
     irradiance
 }
@@ -59,30 +58,30 @@ fn is_between(p: DVec3, [a, b]: [DVec3; 2]) -> bool {
 }
 
 /// Asserts that along the edges of the scene's triangles, no corner of a triangle lies inside an edge of another one.
-/// (Where the inside of a triangle touches something, it is covered, and there can be no crack.)
+/// (Where the inside of a patch touches something, it is covered, and there can be no crack.)
 fn assert_conforming(display: &DisplayMesh<'_>, scene: &Scene) {
     let edges_of = |t: TriangleId| {
         let c = scene.corners(t);
         [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]
     };
-    let mut on_edges: Vec<DVec3> = Vec::new();
+    // Edges of patches, not those between the triangles of one.
+    let mut edges: Vec<(TriangleId, [DVec3; 2])> = Vec::new();
     for piece in display.pieces() {
-        let corners = piece.triangles.iter().flatten().map(|&v| position(display, v));
-        on_edges.extend(corners.filter(|&p| edges_of(piece.triangle).iter().any(|&e| is_between(p, e))));
+        let of_piece = |t: &[u32; 3]| [0, 1, 2].map(|e| (t[e], t[(e + 1) % 3]));
+        let all: BTreeSet<(u32, u32)> = piece.triangles.iter().flat_map(of_piece).collect();
+        let outer = all.iter().filter(|&&(from, to)| !all.contains(&(to, from)));
+        edges.extend(outer.map(|&(from, to)| (piece.triangle, [from, to].map(|v| position(display, v)))));
     }
+    let is_on_edge = |t: TriangleId, p: DVec3| edges_of(t).iter().any(|&e| is_between(p, e));
+    let ends = edges.iter().flat_map(|(t, ends)| ends.iter().filter(|&&p| is_on_edge(*t, p)));
+    let mut on_edges: Vec<DVec3> = ends.copied().collect();
     on_edges.sort_by(|p, q| p.to_array().partial_cmp(&q.to_array()).unwrap());
     on_edges.dedup();
-    for piece in display.pieces() {
-        for t in piece.triangles {
-            for e in 0..3 {
-                let ends = [t[e], t[(e + 1) % 3]].map(|v| position(display, v));
-                let on_one_edge = |&edge: &[DVec3; 2]| ends.iter().all(|&p| is_between(p, edge));
-                if edges_of(piece.triangle).iter().any(on_one_edge) {
-                    for &p in &on_edges {
-                        let is_end = ends.iter().any(|end| end.distance(p) < 1e-6);
-                        assert!(is_end || !is_between(p, ends), "{p} lies on the edge {ends:?}");
-                    }
-                }
+    for (t, ends) in edges {
+        if edges_of(t).iter().any(|&edge| ends.iter().all(|&p| is_between(p, edge))) {
+            for &p in &on_edges {
+                let is_end = ends.iter().any(|end| end.distance(p) < 1e-6);
+                assert!(is_end || !is_between(p, ends), "{p} lies on the edge {ends:?}");
             }
         }
     }
@@ -100,7 +99,7 @@ fn different_divisions_meet_without_t_junctions() {
     });
     let mut fans = 0;
     for max in [9.0, 0.3, 0.05] {
-        let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(max)).unwrap();
+        let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(max))).unwrap();
         let irradiance = field(&scene, &mesh, |_, _, _| 1.0);
         let display = DisplayMesh::new(&scene, &mesh, &irradiance);
         assert_conforming(&display, &scene);
@@ -114,7 +113,7 @@ fn different_divisions_meet_without_t_junctions() {
 #[test]
 fn patches_that_fit_stay_one_triangle() {
     let scene = scene(|b, m| rectangle(b, m, DVec3::ZERO, 2.0 * DVec3::X, DVec3::Y));
-    let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.01)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.01))).unwrap();
     let irradiance = field(&scene, &mesh, |_, _, _| 1.0);
     let display = DisplayMesh::new(&scene, &mesh, &irradiance);
     assert_eq!(display.triangles().len(), mesh.patch_count());
@@ -124,7 +123,7 @@ fn patches_that_fit_stay_one_triangle() {
 fn a_linear_field_is_reproduced_inside() {
     let linear = |p: DVec3| 3.0 + p.x - 2.0 * p.y;
     let scene = scene(|b, m| rectangle(b, m, DVec3::ZERO, 2.0 * DVec3::X, DVec3::new(0.3, 1.0, 0.0)));
-    let mesh = PatchMesh::new(&scene, Subdivision::Patches(2 * 9 * 9)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(2 * 9 * 9))).unwrap();
     let irradiance = field(&scene, &mesh, |_, _, p| linear(p));
     let display = DisplayMesh::new(&scene, &mesh, &irradiance);
     let mut inside = 0;
@@ -151,7 +150,7 @@ fn shared_values(degrees: f64) -> Vec<f32> {
         rectangle(b, m, DVec3::ZERO, DVec3::X, DVec3::Y);
         rectangle(b, m, DVec3::ZERO, DVec3::Y, DVec3::new(cos, 0.0, sin));
     });
-    let mesh = PatchMesh::new(&scene, Subdivision::Patches(4 * 10 * 10)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(4 * 10 * 10))).unwrap();
     let irradiance = field(&scene, &mesh, |t, _, _| f64::from(t.0 / 2));
     values(&DisplayMesh::new(&scene, &mesh, &irradiance))
 }
@@ -202,7 +201,7 @@ fn a_wall_between_two_halves_of_a_ceiling_keeps_their_light_apart() {
                 rectangle(b, m, DVec3::X, DVec3::Y, -DVec3::Z);
             }
         });
-        let mesh = PatchMesh::new(&scene, Subdivision::Patches(300)).unwrap();
+        let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(300))).unwrap();
         let irradiance = field(&scene, &mesh, |t, _, _| if t.0 / 2 == 0 { 0.0 } else { 1.0 });
         let display = DisplayMesh::new(&scene, &mesh, &irradiance);
         assert_eq!(values(&display).iter().any(|&v| v != 0.0 && v != 1.0), mixed, "wall: {wall}");
@@ -215,7 +214,7 @@ fn front_and_back_are_never_averaged() {
         shapes::sphere(b, DVec3::ZERO, 1.0, 2, Facing::Outward, |_| m);
         rectangle(b, m, DVec3::X, DVec3::X, DVec3::Y);
     });
-    let mesh = PatchMesh::new(&scene, Subdivision::Patches(2000)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(2000))).unwrap();
     let irradiance = field(&scene, &mesh, |_, side, _| if side == Side::Front { 1.0 } else { 2.0 });
     let display = DisplayMesh::new(&scene, &mesh, &irradiance);
     for piece in display.pieces() {
@@ -236,7 +235,7 @@ fn front_and_back_are_never_averaged() {
 #[test]
 fn a_sphere_is_smooth() {
     let scene = scene(|b, m| shapes::sphere(b, DVec3::ZERO, 1.0, 2, Facing::Outward, |_| m));
-    for subdivision in [Subdivision::PerTriangle, Subdivision::Patches(5000)] {
+    for subdivision in [Subdivision::PerTriangle, Subdivision::Triangles(PatchSize::Count(5000))] {
         let mesh = PatchMesh::new(&scene, subdivision).unwrap();
         let irradiance = field(&scene, &mesh, |_, _, p| 1.0 + p.z);
         let display = DisplayMesh::new(&scene, &mesh, &irradiance);
@@ -254,7 +253,7 @@ fn what_covers_a_surface_is_not_darkened_by_it() {
             rectangle(b, m, DVec3::X, DVec3::X, DVec3::Y);
         }
     });
-    let mesh = PatchMesh::new(&scene, Subdivision::Patches(400)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::Count(400))).unwrap();
     let irradiance = field(&scene, &mesh, |t, _, _| if t.0 < 4 { 0.0 } else { 1.0 });
     let display = DisplayMesh::new(&scene, &mesh, &irradiance);
     for piece in display.pieces().filter(|p| p.triangle.0 >= 4) {
@@ -282,6 +281,53 @@ fn faces_as_patches_are_covered_by_their_triangles() {
     assert_eq!(display.pieces().map(|p| p.id).collect::<BTreeSet<SideId>>().len(), 6);
 }
 
+/// A rectangle of 2 m x 1 m in two triangles, or in slivers.
+fn floor(slivers: u32) -> Scene {
+    scene(|b, m| {
+        let corners = |n: u32| {
+            (0..=n).map(move |i| DVec3::new(2.0 * f64::from(i) / f64::from(n), 1.0, 0.0)).collect::<Vec<_>>()
+        };
+        let start = b.add_vertex(DVec3::ZERO);
+        let far: Vec<_> = corners(slivers).into_iter().map(|p| b.add_vertex(p)).collect();
+        for ends in far.windows(2) {
+            b.add_polygon(&[start, ends[1], ends[0]], m);
+        }
+        let right = b.add_vertex(2.0 * DVec3::X);
+        b.add_polygon(&[start, right, far[far.len() - 1]], m);
+    })
+}
+
+#[test]
+fn cells_are_squares_whatever_the_triangles() {
+    let linear = |p: DVec3| 3.0 + p.x - 2.0 * p.y;
+    for slivers in [1, 40] {
+        let scene = floor(slivers);
+        let mesh = PatchMesh::new(&scene, Subdivision::Surfaces(PatchSize::MaxEdge(0.1))).unwrap();
+        let irradiance = field(&scene, &mesh, |_, _, p| linear(p));
+        let display = DisplayMesh::new(&scene, &mesh, &irradiance);
+        assert_eq!((mesh.patch_count(), display.pieces().count()), (200, 200));
+        assert!((area(&display) - 2.0).abs() < 1e-12);
+        assert_conforming(&display, &scene);
+        // The points of the slivers on the upper edge divide it.
+        let on_edge = if slivers == 1 { 21 } else { 41 };
+        assert_eq!(display.positions().iter().filter(|p| (p.y - 1.0).abs() < 1e-9).count(), on_edge);
+        let inside = |x: f64, y: f64| x > 0.099 && x < 1.901 && y > 0.099 && y < 0.901;
+        for v in display.vertices() {
+            let p = display.positions()[v.position as usize];
+            if inside(p.x, p.y) {
+                assert!((f64::from(v.irradiance[1]) - linear(p)).abs() < 1e-6, "at {p}");
+            }
+        }
+        for t in scene.triangle_ids() {
+            for point in [(0.4, 0.3), (0.31, 0.45), (0.5, 0.25)].map(|(v, w)| Barycentric { v, w }) {
+                let p = point.point(scene.corners(t));
+                let e = display.irradiance_at(t, point, Side::Front).unwrap();
+                assert!(!inside(p.x, p.y) || (e.z - linear(p)).abs() < 1e-6, "at {p}");
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
@@ -291,6 +337,7 @@ proptest! {
         boxes in prop::collection::vec((prop::array::uniform3(0u8..4), prop::array::uniform3(1u8..4)), 1..4),
         both in any::<bool>(),
         max_area in 0.5..12.0f64,
+        of_surfaces in any::<bool>(),
         seed in 0u32..1000,
     ) {
         let vector = |v: [u8; 3]| DVec3::from_array(v.map(f64::from));
@@ -299,7 +346,9 @@ proptest! {
                 shapes::cuboid(b, vector(min), vector(min) + vector(size), [m; 6], Facing::Outward);
             }
         });
-        let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(max_area)).unwrap();
+        let size = PatchSize::MaxArea(max_area);
+        let rule = if of_surfaces { Subdivision::Surfaces(size) } else { Subdivision::Triangles(size) };
+        let mesh = PatchMesh::new(&scene, rule).unwrap();
         let mut next = seed;
         let mut random = || {
             next = next.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -310,7 +359,10 @@ proptest! {
         assert_conforming(&display, &scene);
         let sides = if both { 2.0 } else { 1.0 };
         prop_assert!((area(&display) / (sides * scene.total_area()) - 1.0).abs() < 1e-9);
-        prop_assert!(values(&display).iter().all(|&v| (0.999_999..=2.0).contains(&v)));
+        for (vertex, value) in values(&display).into_iter().enumerate() {
+            let place = position(&display, vertex as u32);
+            prop_assert!((0.999_999..=2.0).contains(&value), "{value} at {place}");
+        }
         for t in scene.triangle_ids() {
             let point = Barycentric { v: 0.5 * random(), w: 0.5 * random() };
             let e = display.irradiance_at(t, point, Side::Front).unwrap();

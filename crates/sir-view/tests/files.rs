@@ -7,7 +7,7 @@ use std::fs;
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Camera, Material, Rgb, Scene, SceneBuilder, Sides};
-use sir_mesh::{PatchMesh, Subdivision};
+use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 use sir_view::{COLUMNS, DisplayMesh, Exposure, Table, compare, write_glb};
 
 fn scene() -> Scene {
@@ -33,7 +33,7 @@ fn table(scene: &Scene, subdivision: Subdivision) -> Table {
 #[test]
 fn a_glb_holds_the_light_by_material() {
     let scene = scene();
-    let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.02)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.02))).unwrap();
     let e = irradiance(&mesh);
     let display = DisplayMesh::new(&scene, &mesh, &e);
     let camera = Camera::looking_at(DVec3::new(0.5, 0.6, 0.9), DVec3::splat(0.5), DVec3::Y, 1.0).unwrap();
@@ -85,7 +85,7 @@ fn a_glb_holds_the_light_by_material() {
 #[test]
 fn tables_add_up_and_have_a_row_for_each_side() {
     let scene = scene();
-    for subdivision in [Subdivision::MaxArea(0.01), Subdivision::PerFace] {
+    for subdivision in [Subdivision::Triangles(PatchSize::MaxArea(0.01)), Subdivision::PerFace] {
         let rows = table(&scene, subdivision).rows;
         let area: f64 = rows.iter().map(|r| r.area).sum();
         assert!((area - 7.0).abs() < 1e-9, "the white face has two sides: {area}");
@@ -111,7 +111,7 @@ fn tables_add_up_and_have_a_row_for_each_side() {
 
 #[test]
 fn tables_are_read_back_to_the_last_bit() {
-    let written = table(&scene(), Subdivision::MaxArea(0.03));
+    let written = table(&scene(), Subdivision::Triangles(PatchSize::MaxArea(0.03)));
     let dir = tempfile::tempdir().unwrap();
     let (csv, npy) = (dir.path().join("t.csv"), dir.path().join("t.npy"));
     written.write_csv(&csv).unwrap();

@@ -5,7 +5,7 @@
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Camera, Material, MaterialId, Projection, Rgb, Scene, SceneBuilder, Sides, Sky, SkyModel};
-use sir_mesh::{PatchMesh, Subdivision};
+use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 use sir_radiosity::build_accel;
 use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, default_camera, render};
 
@@ -36,7 +36,7 @@ fn assert_between(picture: &Picture, ends: [[f32; 3]; 2]) {
 
 /// Renders the room with an irradiance of π everywhere.
 fn uniform(scene: &Scene, camera: &Camera, threads: usize) -> Picture {
-    let mesh = PatchMesh::new(scene, Subdivision::MaxArea(0.07)).unwrap();
+    let mesh = PatchMesh::new(scene, Subdivision::Triangles(PatchSize::MaxArea(0.07))).unwrap();
     let irradiance = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
     let display = DisplayMesh::new(scene, &mesh, &irradiance);
     render(&display, &build_accel(scene).unwrap(), camera, settings(threads)).unwrap()
@@ -49,7 +49,7 @@ fn a_picture_of_errors_is_without_what_surfaces_emit() {
     let lamp = builder.add_material(lamp);
     shapes::cuboid(&mut builder, DVec3::ZERO, SIZE, [lamp; 6], Facing::Inward);
     let scene = builder.build().unwrap().scene;
-    let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.07)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.07))).unwrap();
     let errors = vec![Rgb::splat(std::f64::consts::PI); mesh.side_count()];
     let camera = Camera::looking_at(DVec3::new(3.7, 2.0, 0.2), DVec3::ONE, DVec3::Y, 1.2).unwrap();
     let display = DisplayMesh::of_errors(&scene, &mesh, &errors);
@@ -231,7 +231,7 @@ fn an_empty_picture_is_refused() {
 fn the_default_camera_stands_in_a_lit_closed_room() {
     for sides in [Sides::Front, Sides::Both] {
         let scene = room(sides);
-        let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.5)).unwrap();
+        let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.5))).unwrap();
         let mut irradiance = Vec::new();
         // Dark outside of the room and inside of the box, as computed by the solver.
         mesh.for_each_side(|_, _, side, _| {

@@ -9,7 +9,7 @@ use sir_geom::{
     Camera, ColorMap, Material, MaterialId, Opacity, Projection, Rgb, Scene, SceneBuilder, Sky, Texture,
     TextureId, TextureMap, Wrap,
 };
-use sir_mesh::{PatchMesh, Subdivision};
+use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 use sir_radiosity::build_accel;
 use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, render, write_glb};
 
@@ -130,14 +130,14 @@ fn gaps_show_what_is_behind_in_proportion() {
     let front = 0.5 * (0.25 + 0.75 * 0.25);
     let behind = 0.75 * 0.75;
     for of_errors in [false, true] {
-        let picture = picture(&walled, Subdivision::MaxArea(0.1), 16, 2, of_errors);
+        let picture = picture(&walled, Subdivision::Triangles(PatchSize::MaxArea(0.1)), 16, 2, of_errors);
         assert_eq!(picture.surface, [1.0; 256]);
         for (i, &pixel) in picture.radiance.iter().enumerate() {
             let last = if i % 16 < 8 { [0.9, 0.6, 0.3] } else { [0.1, 0.2, 0.1] };
             assert_near(pixel, last.map(|last| front + behind * last), 1e-6);
         }
     }
-    let picture = picture(&bare, Subdivision::MaxArea(0.1), 16, 2, false);
+    let picture = picture(&bare, Subdivision::Triangles(PatchSize::MaxArea(0.1)), 16, 2, false);
     for (i, (&pixel, &surface)) in picture.radiance.iter().zip(&picture.surface).enumerate() {
         let is_open = i % 16 < 8;
         let last = if is_open { [7.0; 3] } else { [0.1, 0.2, 0.1] };
@@ -157,7 +157,7 @@ fn tables_have_the_means_of_patches() {
     let m = b.add_material(Material { reflectance_map, exitance_map, ..m });
     square(&mut b, 0.0, m, 1.0);
     let scene = b.build().unwrap().scene;
-    let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.13)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.13))).unwrap();
     let e = Rgb::new(1.0, 2.0, 3.0);
     let table = Table::new(&scene, &mesh, &[e; 8], &[0.1 * e; 8]);
     for row in &table.rows {
@@ -188,7 +188,7 @@ fn gaps_have_no_color() {
     for row in Table::new(&scene, &whole, &[Rgb::ONE; 2], &[Rgb::ZERO; 2]).rows {
         assert!((row.radiosity - Rgb::splat(0.6)).length() < 1e-6 && row.area == 0.5, "{row:?}");
     }
-    let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.13)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.13))).unwrap();
     let vertices = exported(&DisplayMesh::new(&scene, &mesh, &[Rgb::ONE; 8]));
     assert!(vertices.len() >= 4 && vertices.iter().all(|(position, _)| position.x <= 0.5), "{vertices:?}");
 }
@@ -225,7 +225,7 @@ fn vertices_of_a_mesh_have_the_color_of_their_place() {
         b.set_corners(&[], Some(fan.map(|i| Vec4::new(corners[i].0 as f32, green, 0.0, 1.0))));
     }
     let scene = b.build().unwrap().scene;
-    let mesh = PatchMesh::new(&scene, Subdivision::MaxArea(0.02)).unwrap();
+    let mesh = PatchMesh::new(&scene, Subdivision::Triangles(PatchSize::MaxArea(0.02))).unwrap();
     let irradiance = vec![Rgb::splat(10.0); mesh.side_count()];
     let vertices = exported(&DisplayMesh::new(&scene, &mesh, &irradiance));
     let (mut lower, mut upper) = (0, 0);

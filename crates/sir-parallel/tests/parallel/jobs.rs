@@ -7,7 +7,7 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{BoundingBox, Light, LightKind, Material, Rgb, SceneBuilder, Sides, Sky, SkyModel, Spread};
 use sir_lines::{Domain, Focus, GlobalLines, LocalLines};
-use sir_mesh::{SideId, Subdivision};
+use sir_mesh::{PatchSize, SideId, Subdivision};
 use sir_parallel::{Communicator, Executor, RunError, Saved, StageRun, StageTime, Start};
 use sir_radiosity::{
     Balance, BatchSettings, Batches, Counts, FirstShot, Model, OneWorker, Points, Quanta, Received,
@@ -125,7 +125,8 @@ impl Room {
         let sun = SkyModel::General { kind: 12, sun: -direction };
         b.set_sky(Sky::new(DVec3::Z, sun, Rgb::new(0.1, 0.2, 0.4), Rgb::splat(0.05)).unwrap());
 
-        let model = Model::new(b.build().unwrap().scene, Subdivision::Patches(patches)).unwrap();
+        let model =
+            Model::new(b.build().unwrap().scene, Subdivision::Triangles(PatchSize::Count(patches))).unwrap();
         let shot = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, LINES, SEED), ()).unwrap();
         let domain = Domain::hull(model.scene.vertices());
         Self { model, shot, domain }

@@ -27,7 +27,7 @@ use peak_alloc::PeakAlloc;
 use seeds::Target;
 use sir_geom::{Built, LoadOptions, load};
 use sir_lines::Domain;
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_pipeline::plan::Pipeline;
 use sir_radiosity::{FirstShot, Model, ShotSettings, run_stage};
 
@@ -191,7 +191,7 @@ fn light(built: Option<Built>) {
     else {
         return;
     };
-    let Ok(model) = Model::new(scene, Subdivision::Patches(50)) else { return };
+    let Ok(model) = Model::new(scene, Subdivision::Triangles(PatchSize::Count(50))) else { return };
     drop(Domain::hull(model.scene.vertices()));
     // An error, such as too much power, is no finding.
     let _ = run_stage::<FirstShot<'_>>(ShotSettings::new(&model, 200, 1), ());

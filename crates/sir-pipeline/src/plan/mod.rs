@@ -36,4 +36,4 @@ pub use scene_light::SceneLight;
 pub use sensors::{Grid, Place, Plane, Points, SensorPoint, Sensors};
 pub use sky::{Cie, Environment, Sky, SkyModel};
 pub use stage::{Action, Repeat, Stage, Until};
-pub use subdivide::Subdivide;
+pub use subdivide::{Divided, Division, Subdivide};

@@ -1,46 +1,89 @@
 //! The stage `Subdivide`.
 
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 
 use crate::text::field::{Format, OneOf};
-use crate::text::formats::{count, positive};
-use crate::text::reader::Reader;
+use crate::text::formats::{Choice, count, positive};
+use crate::text::reader::{Fields, Reader};
 use crate::text::record::record;
 use crate::text::ron_tree::{Node, Value};
 
 record! {
-    /// Stage that divides the triangles into patches.
-    pub struct Subdivide {
+    /// Stage that divides the surfaces into patches.
+    pub struct Subdivide, check Subdivide::check {
         /// Size or number of patches.
-        pub how: Subdivision = how();
+        pub how: Division = division();
+        /// What is divided: flat surfaces, whatever their triangles, into square cells; or each triangle into congruent
+        /// triangles. See below.
+        pub of: Divided = DIVIDED.or(Divided::Triangles);
     }
 }
 
-fn how() -> OneOf<Subdivision> {
+/// Size or number of patches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Division {
+    /// Patches of this size.
+    Into(PatchSize),
+    /// One patch for every flat polygon.
+    PerFace,
+}
+
+/// What is divided into patches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Divided {
+    /// Surfaces.
+    Surfaces,
+    /// Triangles.
+    Triangles,
+}
+
+const DIVIDED: Choice<Divided> =
+    Choice(&[("Surfaces", Divided::Surfaces), ("Triangles", Divided::Triangles)]);
+
+impl Subdivide {
+    /// Returns the rule.
+    #[must_use]
+    pub fn subdivision(&self) -> Subdivision {
+        match (self.how, self.of) {
+            (Division::PerFace, _) => Subdivision::PerFace,
+            (Division::Into(size), Divided::Surfaces) => Subdivision::Surfaces(size),
+            (Division::Into(size), Divided::Triangles) => Subdivision::Triangles(size),
+        }
+    }
+
+    fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
+        if let (Division::PerFace, Some(of)) = (self.how, fields.get("of")) {
+            let message = "`of` has no effect with `per_face`, which divides nothing";
+            reader.problem(of.text, message, "leave it out");
+        }
+    }
+}
+
+fn division() -> OneOf<Division> {
     OneOf::new()
         .field(
             "patches",
             count::<u32>(1, u64::from(u32::MAX), 20_000),
             "",
-            "Approximate number of patches, of areas as equal as possible; never less than the number of triangles.",
-            |n| Subdivision::Patches(n.into()),
-            |how| if let Subdivision::Patches(n) = how { u32::try_from(*n).ok() } else { None },
+            "Approximate number of patches, of areas as equal as possible.",
+            |n| Division::Into(PatchSize::Count(n.into())),
+            |how| if let Division::Into(PatchSize::Count(n)) = how { u32::try_from(*n).ok() } else { None },
         )
         .field(
             "max_area",
             positive(0.01),
             "m²",
             "Maximum area of a patch.",
-            Subdivision::MaxArea,
-            |how| if let Subdivision::MaxArea(area) = how { Some(*area) } else { None },
+            |area| Division::Into(PatchSize::MaxArea(area)),
+            |how| if let Division::Into(PatchSize::MaxArea(area)) = how { Some(*area) } else { None },
         )
         .field(
             "max_edge",
             positive(0.1),
             "m",
             "Maximum edge length of a patch.",
-            Subdivision::MaxEdge,
-            |how| if let Subdivision::MaxEdge(edge) = how { Some(*edge) } else { None },
+            |edge| Division::Into(PatchSize::MaxEdge(edge)),
+            |how| if let Division::Into(PatchSize::MaxEdge(edge)) = how { Some(*edge) } else { None },
         )
         .field(
             "per_face",
@@ -48,8 +91,8 @@ fn how() -> OneOf<Subdivision> {
             "",
             "One patch for every flat polygon of the file, regardless of its number of triangles; polygons that are not flat are \
              divided into their triangles.",
-            |()| Subdivision::PerFace,
-            |how| (*how == Subdivision::PerFace).then_some(()),
+            |()| Division::PerFace,
+            |how| (*how == Division::PerFace).then_some(()),
         )
 }
 

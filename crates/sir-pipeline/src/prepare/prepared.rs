@@ -75,7 +75,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                     );
                 }
             }
-            Action::Subdivide(subdivide) => subdivision = (subdivide.how, stage.span.0.clone()),
+            Action::Subdivide(subdivide) => subdivision = (subdivide.subdivision(), stage.span.0.clone()),
             Action::Focus(focus) => requested_focus = Some((focus.bounds(), focus.share)),
             _ => {}
         }

@@ -1,7 +1,6 @@
 //! Warns if few of the global lines meet what is lit.
 
-use glam::DVec3;
-use sir_geom::{BoundingBox, Side};
+use sir_geom::{BoundingBox, TriangleId};
 use sir_lines::Domain;
 use sir_mesh::PatchId;
 use sir_radiosity::{Model, Solution};
@@ -76,31 +75,25 @@ pub(crate) fn few_lines_warning(
 /// Returns the box around the brightest sides that together receive most of the power; `None` if nothing is lit.
 fn lit_box(model: &Model, solution: &Solution) -> Option<BoundingBox> {
     let Model { scene, mesh, .. } = model;
-    let mut sides: Vec<(f64, f64, [DVec3; 3])> = Vec::new();
-    for id in scene.triangle_ids() {
-        let (patches, corners) = (mesh.patches_of(id), scene.corners(id));
-        let area = scene.area(id) / patches.len() as f64;
-        for patch in patches.map(PatchId) {
-            for side in [Side::Front, Side::Back].into_iter().filter_map(|side| mesh.side_of(id, patch, side))
-            {
-                let irradiance = solution.irradiance[side.index()].element_sum();
-                if irradiance > 0.0 {
-                    sides.push((
-                        irradiance,
-                        irradiance * area,
-                        mesh.patch_corners(id, patch).map(|b| b.point(corners)),
-                    ));
-                }
-            }
+    let mut sides: Vec<(f64, f64, TriangleId, PatchId)> = Vec::new();
+    mesh.for_each_side(|triangle, patch, _, side| {
+        let irradiance = solution.irradiance[side.index()].element_sum();
+        if irradiance > 0.0 {
+            sides.push((irradiance, irradiance * mesh.patch_area(triangle, patch), triangle, patch));
         }
-    }
+    });
     sides.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let wanted = MOST * sides.iter().map(|(_, power, _)| power).sum::<f64>();
+    let wanted = MOST * sides.iter().map(|side| side.1).sum::<f64>();
     let mut sum = 0.0;
-    let brightest = sides.iter().take_while(|(_, power, _)| {
+    let brightest = sides.iter().take_while(|(_, power, ..)| {
         let is_part = sum < wanted;
         sum += power;
         is_part
     });
-    BoundingBox::of(brightest.flat_map(|(_, _, corners)| *corners))
+    let pieces = brightest.flat_map(|&(_, _, triangle, patch)| mesh.pieces(triangle, patch));
+    let corners = pieces.flat_map(|piece| {
+        let corners = scene.corners(piece.triangle);
+        piece.corners().iter().map(|point| point.point(corners)).collect::<Vec<_>>()
+    });
+    BoundingBox::of(corners)
 }

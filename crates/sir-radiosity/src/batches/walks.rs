@@ -10,13 +10,13 @@
 
 use std::ops::Range;
 
-use sir_accel::{Hit, Ray};
+use sir_accel::Hit;
 use sir_geom::Rgb;
 use sir_lines::{Allocation, Purpose, Stream, Streams};
 use sir_mesh::SideId;
 
 use crate::model::Model;
-use crate::patch_side::{MergedPatches, PatchSide};
+use crate::patch_side::PatchSide;
 use crate::power::Quanta;
 use crate::tallies::WorkerTallies;
 use crate::totals::StageTotals;
@@ -39,7 +39,6 @@ struct Start {
 #[derive(Debug)]
 pub(super) struct Walks {
     starts: Vec<Start>,
-    merged: MergedPatches,
     streams: Streams,
     count: u64,
     /// Mean power of a walk over a walk's power, per band: Σp²/Σ|p|.
@@ -89,7 +88,7 @@ impl Walks {
         });
         let mean =
             [0, 1, 2].map(|band| if amounts[band] > 0.0 { squares[band] / amounts[band] } else { 0.0 });
-        Self { starts, merged: MergedPatches::of(model), streams: Streams::new(seed, purpose), count, mean }
+        Self { starts, streams: Streams::new(seed, purpose), count, mean }
     }
 
     /// Returns the number of walks.
@@ -123,7 +122,7 @@ impl Walks {
                 }
                 let Start { place, power, .. } = self.starts[start];
                 let mut stream = self.streams.line(number);
-                rays.push(self.ray(model, place, &mut stream));
+                rays.push(place.ray(model, &mut stream));
                 going.push(Walk { stream, power });
             }
             first = end;
@@ -148,17 +147,12 @@ impl Walks {
                     {
                         let patch = model.mesh.patch_at(hit.triangle, hit.point);
                         let place = PatchSide { triangle: hit.triangle, patch, side: hit.side };
-                        rays.push(self.ray(model, place, &mut walk.stream));
+                        rays.push(place.ray(model, &mut walk.stream));
                         going.push(Walk { power, ..walk });
                     }
                 }
             }
         }
-    }
-
-    /// Returns a ray from a random point of a patch.
-    fn ray(&self, model: &Model, place: PatchSide, stream: &mut Stream) -> Ray {
-        self.merged.part_of(place, model, stream).emitter(model).ray(&model.scene, stream)
     }
 }
 

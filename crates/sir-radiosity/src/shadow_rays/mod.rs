@@ -23,12 +23,11 @@ use sir_lines::{LocalLines, Numbers, Purpose};
 use sir_mesh::SideId;
 
 use crate::aimed::Emitters;
-use crate::emitter::point_on_surface;
 use crate::error::SolveError;
 use crate::focus_sides::FocusSides;
 use crate::line_numbers::LineNumbers;
 use crate::model::Model;
-use crate::patch_side::{MergedPatches, PatchSide};
+use crate::patch_side::{PatchPoint, PatchSide};
 use crate::power::Quanta;
 use crate::sensors::SensorStart;
 use crate::shadow_rays::allocation::{POINTS, PointAllocation};
@@ -68,7 +67,6 @@ pub struct ShadowRays<'m> {
     /// Per side, true if there are rays from it.
     with_rays: Vec<bool>,
     sources: Sources,
-    merged: MergedPatches,
     numbers: LineNumbers,
     allocation: PointAllocation,
     /// Per side: received power in three bands [quanta], and the bits of its variance [quanta²]. Each is computed by one
@@ -84,14 +82,12 @@ fn with_rays(
     settings: &ShadowRaySettings<'_>,
     in_focus: &FocusSides,
     sources: &Sources,
-    merged: &MergedPatches,
     workers: &dyn Workers,
 ) -> Vec<bool> {
     let ShadowRaySettings { model, every, .. } = *settings;
     let has_rays = |(triangle, side): (TriangleId, SideId)| {
         (side.index() as u32).is_multiple_of(every) && in_focus.contains(side) && {
-            let place = PatchSide::of(model, triangle, side);
-            merged.parts(place).all(|part| !sources.are_close_to(part.corners(model)))
+            !sources.are_close_to(model, triangle, model.mesh.patch_of_side(triangle, side))
         }
     };
     let blocks = map_sides(workers, &model.mesh, no_items(), |sides, ()| {
@@ -106,7 +102,7 @@ impl ShadowRaySettings<'_> {
     #[must_use]
     pub fn sides(&self, workers: &dyn Workers) -> Vec<bool> {
         let in_focus = FocusSides::of(self.model, self.rays.focus.as_ref());
-        with_rays(self, &in_focus, &Sources::of(self.model), &MergedPatches::of(self.model), workers)
+        with_rays(self, &in_focus, &Sources::of(self.model), workers)
     }
 }
 
@@ -134,14 +130,12 @@ impl<'m> ShadowRays<'m> {
         let sources = Sources::of(model);
         let all = rays.count / sources.rays_per_point().iter().sum::<u64>().max(1);
         let allocation = PointAllocation::new(model, &in_focus, &shot, all, workers);
-        let merged = MergedPatches::of(model);
-        let with_rays = with_rays(&settings, &in_focus, &sources, &merged, workers);
+        let with_rays = with_rays(&settings, &in_focus, &sources, workers);
         Self {
             settings,
             shot,
             with_rays,
             sources,
-            merged,
             numbers: LineNumbers::new(points, seed, Purpose::SHADOW_RAYS),
             allocation,
             gathered: (0..model.mesh.side_count()).map(|_| Default::default()).collect(),
@@ -151,13 +145,10 @@ impl<'m> ShadowRays<'m> {
     /// Adds the rays of all points of a side.
     fn aim(&self, place: PatchSide, side: SideId, points: u64, batch: &mut Batch) {
         let model = self.settings.model;
-        let (of_side, normal) = (place.corners(model), place.normal(model));
         for point in 0..points {
             let numbers = &mut self.numbers.line(side.index() as u64 * POINTS.1 + point);
-            let part = self.merged.part_of(place, model, numbers);
-            let corners = if part == place { of_side } else { part.corners(model) };
-            let origin = point_on_surface(&model.scene, part.triangle, corners, numbers);
-            let start = SensorStart { origin, surface: Some(part.triangle) };
+            let PatchPoint { triangle, position, normal } = place.point(model, numbers);
+            let start = SensorStart { origin: position, surface: Some(triangle) };
             self.sources.aim(start, normal, numbers.point(), model, batch);
         }
     }

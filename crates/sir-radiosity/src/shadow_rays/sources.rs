@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use sir_accel::Ray;
-use sir_geom::{LightKind, Rgb};
+use sir_geom::{LightKind, Rgb, TriangleId};
 use sir_lines::cosine_direction;
+use sir_mesh::PatchId;
 
 use crate::aimed::{Aim, Emitters};
 use crate::model::Model;
@@ -39,7 +40,8 @@ impl Sources {
             LightKind::Point { position, .. } => Some((*position, 0.0)),
             LightKind::Distant { .. } => None,
         };
-        let lamps = local.iter().filter_map(at).chain(surfaces.corners().map(around)).collect();
+        let lamps =
+            local.iter().filter_map(at).chain(surfaces.corners().map(|corners| around(&corners))).collect();
         Self { distant, local, surfaces, has_sky: model.scene.sky().is_some(), lamps }
     }
 
@@ -103,9 +105,16 @@ impl Sources {
         }
     }
 
-    /// True if a small lamp is close to a triangle.
-    pub(super) fn are_close_to(&self, corners: [DVec3; 3]) -> bool {
-        let (center, radius) = around(corners);
+    /// True if a small lamp is close to a patch.
+    pub(super) fn are_close_to(&self, model: &Model, triangle: TriangleId, patch: PatchId) -> bool {
+        let pieces = model.mesh.pieces(triangle, patch);
+        let corners: Vec<DVec3> = pieces
+            .flat_map(|piece| {
+                let corners = model.scene.corners(piece.triangle);
+                piece.corners().iter().map(|b| b.point(corners)).collect::<Vec<_>>()
+            })
+            .collect();
+        let (center, radius) = around(&corners);
         self.lamps
             .iter()
             .any(|&(lamp, size)| size < SMALL * radius && lamp.distance(center) < CLOSE * radius + size)
@@ -118,10 +127,10 @@ impl Sources {
     }
 }
 
-/// Returns the center and the radius of a sphere around a triangle.
-fn around(corners @ [a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
-    let center = (a + b + c) / 3.0;
-    (center, corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max))
+/// Returns the mean of points and the radius of a sphere around it.
+fn around(points: &[DVec3]) -> (DVec3, f64) {
+    let center = points.iter().sum::<DVec3>() / points.len() as f64;
+    (center, points.iter().map(|point| point.distance(center)).fold(0.0, f64::max))
 }
 
 /// Returns the ray to a light without a surface, and the irradiance \[W/m²\] that it brings.

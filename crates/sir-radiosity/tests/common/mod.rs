@@ -157,10 +157,10 @@ pub(crate) fn radiosities(model: &Model, run: &Transported) -> Vec<Rgb> {
     let materials = model.scene.materials().len();
     let (mut sums, mut areas) = (vec![Rgb::ZERO; materials], vec![0.0; materials]);
     let solution = run.solution(model);
-    model.mesh.for_each_side(|triangle, _, side, id| {
+    model.mesh.for_each_side(|triangle, patch, side, id| {
         if side == Side::Front {
             let (m, area) =
-                (model.scene.triangle(triangle).material.index(), model.mesh.patch_area(triangle));
+                (model.scene.triangle(triangle).material.index(), model.mesh.patch_area(triangle, patch));
             sums[m] += solution.radiosity(model, triangle, side, id) * area;
             areas[m] += area;
         }

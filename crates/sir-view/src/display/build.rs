@@ -1,15 +1,15 @@
-//! Construction of the display mesh from patches.
+//! Construction of the display mesh from polygons.
 
+use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use sir_geom::{Rgb, Scene, Side, TriangleId};
-use sir_mesh::{PatchId, PatchMesh};
+use sir_geom::{Rgb, Scene, Side, triangulate};
+use sir_mesh::PatchMesh;
 
 use crate::display::mesh::{DisplayMesh, DisplayVertex, active_sides, rgb};
-use crate::display::outline::{Corner, Outline};
-use crate::display::seams::Seams;
-use crate::display::smooth::{Groups, RimPiece};
+use crate::display::polygons::{Node, Polygons, shown_with};
+use crate::display::smooth::{EdgePiece, Groups};
 
 impl<'a> DisplayMesh<'a> {
     /// Creates the mesh for a solution: the irradiance `E` \[W/m²\] of every [`SideId`](sir_mesh::SideId).
@@ -20,11 +20,8 @@ impl<'a> DisplayMesh<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene, mesh: &'a PatchMesh, irradiance: &'a [Rgb]) -> Self {
         assert_eq!(irradiance.len(), mesh.side_count(), "one irradiance for every side of the mesh");
-        let seams = Seams::new(scene, mesh);
-        let mut rims = Rims::new(scene, mesh, &seams);
-        rims.gather(scene, mesh, &seams, irradiance);
-        rims.groups.join(scene, &seams.points, &mut rims.pieces);
-        rims.pieces = Vec::new();
+        let polygons = Polygons::new(scene, mesh);
+        let mut groups = groups(scene, mesh, &polygons, irradiance);
         let mut display = Self {
             scene,
             mesh,
@@ -34,212 +31,183 @@ impl<'a> DisplayMesh<'a> {
             vertices: Vec::new(),
             triangles: Vec::with_capacity(mesh.side_count()),
             piece_starts: Vec::with_capacity(mesh.side_count() + 1),
-            first_pieces: Vec::with_capacity(scene.triangles().len() + 1),
+            first_pieces: Vec::with_capacity(scene.triangles().len()),
             levels: OnceLock::new(),
         };
-        display.emit(&seams, &mut rims);
+        display.emit(&polygons, &mut groups);
         display
     }
 
-    fn emit(&mut self, seams: &Seams, rims: &mut Rims) {
-        self.positions.clone_from(&seams.points);
-        let mut outline = Outline::default();
-        let mut polygon = Vec::new();
-        let (mut nodes, mut inner) = (Vec::new(), Vec::new());
-        for t in self.scene.triangle_ids() {
-            outline.set(self.scene, self.mesh, seams, t);
-            self.first_pieces.push(self.piece_starts.len() as u32);
-            let rim_len = outline.rim().len();
-            let first_inner = self.positions.len() as u32;
-            self.positions.extend(&outline.positions[rim_len..]);
-            let sides = active_sides(self.scene, t);
-            let mut vertices_of_sides = [Vec::new(), Vec::new()];
-            for (&side, vertices) in sides.iter().zip(&mut vertices_of_sides) {
-                inner.clear();
-                inner.resize(outline.positions.len() - rim_len, (Rgb::ZERO, 0.0));
-                weigh(self.scene, self.mesh, &outline, t, &mut polygon, |corner, patch, weight| {
-                    if let (Some(i), Some(id)) =
-                        ((corner.node as usize).checked_sub(rim_len), self.mesh.side_of(t, patch, side))
-                    {
-                        let (sum, weights) = &mut inner[i];
-                        *sum += weight * self.irradiance[id.index()];
-                        *weights += weight;
-                    }
-                });
-                self.add_rim(rims, &outline, t, side, vertices);
-                for (point, &(sum, weight)) in (first_inner..).zip(&inner) {
-                    vertices.push(push(&mut self.vertices, point, sum / weight));
+    fn emit(&mut self, polygons: &Polygons, groups: &mut Groups) {
+        let Self { scene, mesh, .. } = *self;
+        self.positions.clone_from(&polygons.points);
+        // Vertex of each group, if it exists already.
+        let mut known = vec![None; groups.len()];
+        let mut waiting = polygons.iter().peekable();
+        let (mut of_patch, mut vertices, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+        for t in scene.triangle_ids() {
+            let (first, _) = mesh.surface_of(t);
+            let is_shown_elsewhere = mesh.divisions(t).is_none() && first != t;
+            self.first_pieces.push(if is_shown_elsewhere {
+                self.first_pieces[first.index()]
+            } else {
+                self.piece_starts.len() as u32
+            });
+            let is_own = |triangle| mesh.divisions(t).is_none() || triangle == t;
+            for patch in shown_with(mesh, t) {
+                of_patch.clear();
+                while let Some(next) =
+                    waiting.next_if(|(polygon, ..)| polygon.patch.0 == patch && is_own(polygon.triangle))
+                {
+                    of_patch.push(next);
                 }
-            }
-            for patch in self.mesh.patches_of(t).map(PatchId) {
-                outline.polygon(self.mesh, t, patch, &mut polygon);
-                let center = self.add_center(&outline, &polygon);
-                for (&side, vertices) in sides.iter().zip(&vertices_of_sides) {
+                // Both sides share the centers of polygons.
+                let centers: Vec<Option<u32>> =
+                    of_patch.iter().map(|(.., nodes)| self.add_center(nodes)).collect();
+                for &side in active_sides(scene, t) {
                     self.piece_starts.push(self.triangles.len() as u32);
-                    nodes.clear();
-                    nodes.extend(polygon.iter().map(|c| (vertices[c.node as usize], c.corner.is_some())));
-                    if side == Side::Back {
-                        nodes.reverse();
+                    for (&(_, start, nodes), center) in of_patch.iter().zip(&centers) {
+                        vertices.clear();
+                        self.add_vertices(groups, &mut known, (start, nodes), side, &mut vertices);
+                        triangles.clear();
+                        self.triangulate(nodes, &vertices, *center, &mut triangles);
+                        let turned =
+                            |[a, b, c]: [u32; 3]| if side == Side::Back { [b, a, c] } else { [a, b, c] };
+                        self.triangles.extend(triangles.iter().copied().map(turned));
                     }
-                    self.add_polygon(&nodes, center);
                 }
             }
         }
         self.piece_starts.push(self.triangles.len() as u32);
-        self.first_pieces.push(self.piece_starts.len() as u32 - 1);
     }
 
-    /// Appends the vertices on the rim of a side of a triangle to `vertices`, in the order of its nodes.
-    fn add_rim(
+    /// Appends the vertices of the nodes of a polygon.
+    fn add_vertices(
         &mut self,
-        rims: &mut Rims,
-        outline: &Outline,
-        t: TriangleId,
+        groups: &mut Groups,
+        known: &mut [Option<u32>],
+        (start, nodes): (u32, &[Node]),
         side: Side,
         vertices: &mut Vec<u32>,
     ) {
         let mut cuts = Vec::new();
-        for (node, &point) in (0..).zip(outline.rim()) {
-            let (group, irradiance) = rims.groups.find(rims.first_nodes[t.index()] + node, side);
-            let known = rims.vertices[group];
-            let number = known.or_else(|| irradiance.map(|e| push(&mut self.vertices, point, e)));
-            rims.vertices[group] = number;
-            if number.is_none() {
-                cuts.push((node, group));
+        for (number, node) in (start..).zip(nodes) {
+            let (group, irradiance) = groups.find(number, side);
+            let vertex = known[group].or_else(|| irradiance.map(|e| self.push(node.point, e)));
+            known[group] = vertex;
+            if vertex.is_none() {
+                cuts.push(((number - start) as usize, group));
             }
-            vertices.push(number.unwrap_or_default());
+            vertices.push(vertex.unwrap_or_default());
         }
         // Where only surfaces beyond a crease divide an edge of a patch, irradiance is interpolated along the edge.
-        for (node, group) in cuts {
-            let [a, b] = outline.ends_around(node);
-            let [from, at, to] = [a, node, b].map(|i| outline.positions[i as usize]);
+        for (i, group) in cuts {
+            let len = nodes.len();
+            let corner = |step: usize| {
+                let around = (1..len).map(|k| (i + k * step) % len);
+                around.into_iter().find(|&k| nodes[k].is_corner).unwrap_or(i)
+            };
+            let ends = [corner(len - 1), corner(1)];
+            let [from, to, at] = [ends[0], ends[1], i].map(|k| self.positions[nodes[k].point as usize]);
             let share = from.distance(at) / (from.distance(at) + at.distance(to));
-            let [e, f] = [a, b].map(|i| rgb(self.vertices[vertices[i as usize] as usize].irradiance));
-            let number = push(&mut self.vertices, outline.rim()[node as usize], e.lerp(f, share));
-            rims.vertices[group] = Some(number);
-            vertices[node as usize] = number;
+            let [e, f] = ends.map(|k| rgb(self.vertices[vertices[k] as usize].irradiance));
+            let vertex = self.push(nodes[i].point, e.lerp(f, share));
+            known[group] = Some(vertex);
+            vertices[i] = vertex;
         }
     }
 
-    /// Adds the center of a polygon of more than three nodes to the positions, and returns its number.
-    fn add_center(&mut self, outline: &Outline, polygon: &[Corner]) -> Option<u32> {
-        if polygon.len() < 4 {
+    /// Adds the center of a polygon of more than three nodes to the positions, and returns its number; `None` for a polygon
+    /// that needs none.
+    fn add_center(&mut self, nodes: &[Node]) -> Option<u32> {
+        if nodes.len() < 4 {
             return None;
         }
-        let corners = || polygon.iter().filter(|c| c.corner.is_some());
-        let sum: DVec3 = corners().map(|c| outline.positions[c.node as usize]).sum();
-        self.positions.push(sum / corners().count() as f64);
+        let corners = nodes.iter().filter(|node| node.is_corner);
+        let corners: Vec<DVec3> = corners.map(|node| self.positions[node.point as usize]).collect();
+        let center = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        // The center sees all corners of a convex polygon.
+        let turns: Vec<DVec3> = (0..corners.len())
+            .map(|i| (corners[i] - center).cross(corners[(i + 1) % corners.len()] - center))
+            .collect();
+        let normal: DVec3 = turns.iter().sum();
+        if turns.iter().any(|turn| turn.dot(normal) <= 0.0) {
+            return None;
+        }
+        self.positions.push(center);
         Some(self.positions.len() as u32 - 1)
     }
 
-    /// Adds a triangle, or a fan of triangles around the center of a polygon. A node is a vertex, with true if it is a
-    /// corner of the patch.
-    fn add_polygon(&mut self, nodes: &[(u32, bool)], center: Option<u32>) {
-        if let Some(position) = center {
-            // The center has the value that the triangle of the corners alone would have there. The fan therefore
-            // differs from the patches next to it only along the edge that has more points.
-            let corners =
-                || nodes.iter().filter(|n| n.1).map(|n| rgb(self.vertices[n.0 as usize].irradiance));
-            let mean = corners().sum::<Rgb>() / corners().count() as f64;
-            let center = push(&mut self.vertices, position, mean);
-            for (i, node) in nodes.iter().enumerate() {
-                self.triangles.push([node.0, nodes[(i + 1) % nodes.len()].0, center]);
+    /// Cuts a polygon into triangles: a fan around its center, if it has one.
+    fn triangulate(
+        &mut self,
+        nodes: &[Node],
+        vertices: &[u32],
+        center: Option<u32>,
+        triangles: &mut Vec<[u32; 3]>,
+    ) {
+        match (center, vertices) {
+            (None, &[a, b, c]) => triangles.push([a, b, c]),
+            (None, [_, _, _, ..]) => {
+                let positions: Vec<DVec3> =
+                    nodes.iter().map(|node| self.positions[node.point as usize]).collect();
+                triangles.extend(triangulate(&positions).iter().map(|t| t.map(|i| vertices[i])));
             }
-        } else if let &[a, b, c] = nodes {
-            self.triangles.push([a.0, b.0, c.0]);
-        }
-    }
-}
-
-/// Rims of all triangles.
-struct Rims {
-    /// Number of the first rim node of each triangle.
-    first_nodes: Vec<u32>,
-    groups: Groups,
-    pieces: Vec<RimPiece>,
-    /// Vertex of each group, if it exists already.
-    vertices: Vec<Option<u32>>,
-}
-
-impl Rims {
-    fn new(scene: &Scene, mesh: &PatchMesh, seams: &Seams) -> Self {
-        let mut outline = Outline::default();
-        let mut first_nodes = Vec::with_capacity(scene.triangles().len());
-        let mut pieces = Vec::new();
-        let mut count = 0;
-        for t in scene.triangle_ids() {
-            outline.set(scene, mesh, seams, t);
-            let rim = outline.rim();
-            let len = rim.len() as u32;
-            let node = |i: u32| (rim[i as usize], count + i);
-            if len >= 3 {
-                pieces.extend((0..len).map(|i| RimPiece::new(t, node(i), node((i + 1) % len))));
-            }
-            first_nodes.push(count);
-            count += len;
-        }
-        let groups = Groups::new(count as usize);
-        let vertices = vec![None; groups.len()];
-        Self { first_nodes, groups, pieces, vertices }
-    }
-
-    fn gather(&mut self, scene: &Scene, mesh: &PatchMesh, seams: &Seams, irradiance: &[Rgb]) {
-        let mut outline = Outline::default();
-        let mut polygon = Vec::new();
-        for (t, &first) in scene.triangle_ids().zip(&self.first_nodes) {
-            outline.set(scene, mesh, seams, t);
-            let rim = outline.rim().len() as u32;
-            weigh(scene, mesh, &outline, t, &mut polygon, |corner, patch, weight| {
-                if corner.node < rim {
-                    for &side in active_sides(scene, t) {
-                        if let Some(id) = mesh.side_of(t, patch, side) {
-                            let e = irradiance[id.index()];
-                            self.groups.add(first + corner.node, side, e, weight, corner.corner.is_some());
-                        }
-                    }
+            (None, _) => {}
+            (Some(position), _) => {
+                // The center has the value that the corners alone would give it. The fan therefore differs from the patches
+                // next to it only along the edge that has more points.
+                let corners = || nodes.iter().zip(vertices).filter(|(node, _)| node.is_corner);
+                let values = corners().map(|(_, &v)| rgb(self.vertices[v as usize].irradiance));
+                let mean = values.sum::<Rgb>() / corners().count() as f64;
+                let center = self.push(position, mean);
+                for (i, &vertex) in vertices.iter().enumerate() {
+                    triangles.push([vertex, vertices[(i + 1) % vertices.len()], center]);
                 }
-            });
+            }
         }
+    }
+
+    fn push(&mut self, position: u32, irradiance: Rgb) -> u32 {
+        self.vertices.push(DisplayVertex { position, irradiance: irradiance.as_vec3().to_array() });
+        self.vertices.len() as u32 - 1
     }
 }
 
-/// Calls `add` with every node of every patch of a triangle and the weight of the patch there: the angle at the node
-/// over the distance to the center of the patch.
-fn weigh(
-    scene: &Scene,
-    mesh: &PatchMesh,
-    outline: &Outline,
-    triangle: TriangleId,
-    polygon: &mut Vec<Corner>,
-    mut add: impl FnMut(Corner, PatchId, f64),
-) {
-    let corners = scene.corners(triangle);
-    let n = f64::from(mesh.divisions(triangle));
-    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    // All patches of a triangle are congruent, so they share these weights.
-    let at_corner: [f64; 3] = std::array::from_fn(|i| {
-        let [u, v] = [1, 2].map(|k| corners[(i + k) % 3] - corners[i]);
-        u.cross(v).length().atan2(u.dot(v)) * n / middle.distance(corners[i])
-    });
-    for patch in mesh.patches_of(triangle).map(PatchId) {
-        outline.polygon(mesh, triangle, patch, polygon);
-        let on_edge = polygon.iter().any(|c| c.corner.is_none());
-        let center = || {
-            let c = mesh.patch_corners(triangle, patch).map(|b| b.point(corners));
-            (c[0] + c[1] + c[2]) / 3.0
-        };
-        let center = if on_edge { center() } else { DVec3::ZERO };
-        for c in &*polygon {
-            let weight = match c.corner {
-                Some(i) => at_corner[usize::from(i)],
-                None => std::f64::consts::PI / center.distance(outline.positions[c.node as usize]),
-            };
-            add(*c, patch, weight);
+/// Returns the groups of nodes that share one irradiance.
+fn groups(scene: &Scene, mesh: &PatchMesh, polygons: &Polygons, irradiance: &[Rgb]) -> Groups {
+    let mut groups = Groups::new(polygons.node_count());
+    let mut pieces = Vec::with_capacity(polygons.node_count());
+    for (polygon, start, nodes) in polygons.iter().filter(|(.., nodes)| nodes.len() > 2) {
+        let len = nodes.len();
+        let node = |i: usize| (nodes[i].point, start + i as u32);
+        pieces.extend((0..len).map(|i| EdgePiece::new(polygon.triangle, node(i), node((i + 1) % len))));
+        let corners = || nodes.iter().filter(|node| node.is_corner);
+        let center = corners().map(|node| polygons.points[node.point as usize]).sum::<DVec3>()
+            / corners().count() as f64;
+        for i in 0..len {
+            let weight = weight(&polygons.points, nodes, i, center);
+            for &side in active_sides(scene, polygon.triangle) {
+                if let Some(id) = mesh.side_of(polygon.triangle, polygon.patch, side) {
+                    groups.add(start + i as u32, side, irradiance[id.index()], weight, nodes[i].is_corner);
+                }
+            }
         }
     }
+    groups.join(scene, &polygons.points, &mut pieces);
+    groups
 }
 
-fn push(vertices: &mut Vec<DisplayVertex>, position: u32, irradiance: Rgb) -> u32 {
-    vertices.push(DisplayVertex { position, irradiance: irradiance.as_vec3().to_array() });
-    vertices.len() as u32 - 1
+/// Returns the weight of a polygon at a node: the angle there over the distance to the center of the polygon.
+fn weight(points: &[DVec3], nodes: &[Node], i: usize, center: DVec3) -> f64 {
+    let len = nodes.len();
+    let at = points[nodes[i].point as usize];
+    let angle = if nodes[i].is_corner {
+        let [u, v] = [(i + 1) % len, (i + len - 1) % len].map(|k| points[nodes[k].point as usize] - at);
+        u.cross(v).length().atan2(u.dot(v))
+    } else {
+        PI
+    };
+    // The center of an outline that is not convex may be anywhere.
+    angle.max(f64::EPSILON) / center.distance(at).max(f64::EPSILON)
 }

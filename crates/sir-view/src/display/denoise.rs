@@ -71,7 +71,7 @@ impl DisplayMesh<'_> {
         assert_eq!(errors.len(), self.irradiance.len(), "one error for every side of the mesh");
         let ring = Ring::new(self, |vertex| vertex);
         let mut areas = vec![0.0; errors.len()];
-        self.mesh.for_each_side(|t, _, _, id| areas[id.index()] += self.mesh.patch_area(t));
+        self.mesh.for_each_side(|t, patch, _, id| areas[id.index()] += self.mesh.patch_area(t, patch));
         let each = |work: &(dyn Fn(usize) -> State + Sync), out: &mut [State]| {
             let share = out.len().div_ceil(threads.max(1)).max(1);
             thread::scope(|scope| {

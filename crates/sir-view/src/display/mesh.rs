@@ -7,6 +7,7 @@ use sir_geom::{Barycentric, Rgb, Scene, Side, TriangleId};
 use sir_mesh::{PatchId, PatchMesh, SideId};
 
 use crate::display::levels::Levels;
+use crate::display::polygons::shown_with;
 
 /// A vertex of a [`DisplayMesh`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +21,7 @@ pub struct DisplayVertex {
 /// Triangles of one side of one patch.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplayPiece<'a> {
-    /// Triangle of the scene.
+    /// Triangle of the scene with which it is shown, in whose plane it lies.
     pub triangle: TriangleId,
     /// Side of the triangle.
     pub side: Side,
@@ -51,10 +52,10 @@ pub struct DisplayMesh<'a> {
     pub(super) positions: Vec<DVec3>,
     pub(super) vertices: Vec<DisplayVertex>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Offset of the triangles of each piece, and their total number at the end. Pieces are ordered by triangle, patch
-    /// and side.
+    /// Offset of the triangles of each piece, and their total number at the end. Pieces are ordered by the triangle with
+    /// which they are shown, patch and side.
     pub(super) piece_starts: Vec<u32>,
-    /// Offset of the pieces of each triangle, and their total number at the end.
+    /// Offset of the pieces of the surface of each triangle.
     pub(super) first_pieces: Vec<u32>,
     /// Mipmaps, made when first needed.
     pub(super) levels: OnceLock<Levels>,
@@ -93,16 +94,17 @@ impl<'a> DisplayMesh<'a> {
         &self.triangles
     }
 
-    /// Returns every side of every patch with its triangles. With
-    /// [`Subdivision::PerFace`](sir_mesh::Subdivision::PerFace), a side occurs once for each triangle of its face.
+    /// Returns every side of every patch with its triangles. A side of a patch that joins several triangles of the scene
+    /// occurs once for each; one that is a cell of a flat surface occurs once.
     pub fn pieces(&self) -> impl Iterator<Item = DisplayPiece<'_>> {
         self.scene.triangle_ids().flat_map(|t| self.pieces_of(t))
     }
 
-    /// Returns the pieces of one triangle of the scene.
+    /// Returns the pieces that are shown with one triangle of the scene. All cells of a flat surface are shown with its
+    /// first triangle.
     pub fn pieces_of(&self, t: TriangleId) -> impl Iterator<Item = DisplayPiece<'_>> {
         let sides = active_sides(self.scene, t);
-        self.mesh.patches_of(t).map(PatchId).flat_map(move |patch| {
+        shown_with(self.mesh, t).map(PatchId).flat_map(move |patch| {
             sides.iter().filter_map(move |&side| {
                 let id = self.mesh.side_of(t, patch, side)?;
                 Some(DisplayPiece { triangle: t, side, id, triangles: self.triangles_of(t, patch, side) })
@@ -183,7 +185,7 @@ impl<'a> DisplayMesh<'a> {
 
     fn triangles_of(&self, triangle: TriangleId, patch: PatchId, side: Side) -> &[[u32; 3]] {
         let sides = active_sides(self.scene, triangle).len() as u32;
-        let patch = patch.0 - self.mesh.patches_of(triangle).start;
+        let patch = self.mesh.number_in_surface(triangle, patch);
         let piece = self.first_pieces[triangle.index()] + patch * sides + u32::from(side == Side::Back);
         let [start, end] = [piece, piece + 1].map(|p| self.piece_starts[p as usize] as usize);
         &self.triangles[start..end]

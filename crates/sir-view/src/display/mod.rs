@@ -4,10 +4,8 @@ mod build;
 mod denoise;
 mod levels;
 mod mesh;
-mod outline;
-mod points;
-mod seams;
+mod outlines;
+mod polygons;
 mod smooth;
 
 pub use mesh::{DisplayMesh, DisplayPiece, DisplayVertex};
-pub(crate) use seams::extent;

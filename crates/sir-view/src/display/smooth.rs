@@ -17,21 +17,21 @@ const CREASE: f64 = PI / 6.0;
 /// tracer treats surfaces as parallel.
 const SAME_SHEET: f64 = 1e-3;
 
-/// A piece of an edge as a part of the rim of one triangle.
+/// A piece of an edge of one polygon.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct RimPiece {
+pub(super) struct EdgePiece {
     /// End with the smaller point number.
     low: u32,
     high: u32,
-    /// Rim nodes at the low and the high end, numbered over all triangles.
+    /// Nodes at the low and the high end, numbered over all polygons.
     nodes: [u32; 2],
     triangle: u32,
-    /// True if the triangle runs from the low to the high end.
+    /// True if the polygon runs from the low to the high end.
     forward: bool,
 }
 
-impl RimPiece {
-    /// Creates the piece of a triangle from one rim node to the next; each is a pair (point, node).
+impl EdgePiece {
+    /// Creates the piece of a polygon in the plane of a triangle from one node to the next; each is a pair (point, node).
     pub(super) fn new(triangle: TriangleId, from: (u32, u32), to: (u32, u32)) -> Self {
         let forward = from.0 < to.0;
         let (low, high) = if forward { (from, to) } else { (to, from) };
@@ -39,7 +39,7 @@ impl RimPiece {
     }
 }
 
-/// Disjoint sets (union-find) of pairs (rim node, side) that share one irradiance, with the sums that determine it.
+/// Disjoint sets (union-find) of pairs (node, side) that share one irradiance, with the sums that determine it.
 pub(super) struct Groups {
     parents: Vec<u32>,
     sums: Vec<Sum>,
@@ -69,13 +69,13 @@ impl Groups {
         Self { parents: (0..2 * nodes as u32).collect(), sums: vec![Sum::default(); 2 * nodes] }
     }
 
-    /// Adds the irradiance of a patch at a node of its rim, which is a corner of the patch or lies on an edge of it.
+    /// Adds the irradiance of a patch at a node of its polygon, which is a corner or lies on an edge.
     pub(super) fn add(&mut self, node: u32, side: Side, irradiance: Rgb, weight: f64, is_corner: bool) {
         self.sums[slot(node, side)] += Sum { irradiance: weight * irradiance, weight, has_corner: is_corner };
     }
 
     /// Unites the sides that continue each other, and adds up their sums.
-    pub(super) fn join(&mut self, scene: &Scene, points: &[DVec3], pieces: &mut [RimPiece]) {
+    pub(super) fn join(&mut self, scene: &Scene, points: &[DVec3], pieces: &mut [EdgePiece]) {
         pieces.sort_unstable();
         let mut sheets = Vec::new();
         for around in pieces.chunk_by(|x, y| (x.low, x.high) == (y.low, y.high)) {
@@ -105,8 +105,8 @@ impl Groups {
         }
     }
 
-    fn unite(&mut self, scene: &Scene, (a, side_a): (RimPiece, Side), (b, side_b): (RimPiece, Side)) {
-        let is_active = |p: RimPiece, side| scene.is_active(TriangleId(p.triangle), side);
+    fn unite(&mut self, scene: &Scene, (a, side_a): (EdgePiece, Side), (b, side_b): (EdgePiece, Side)) {
+        let is_active = |p: EdgePiece, side| scene.is_active(TriangleId(p.triangle), side);
         if is_active(a, side_a) && is_active(b, side_b) {
             for end in 0..2 {
                 let (x, y) = (self.root(slot(a.nodes[end], side_a)), self.root(slot(b.nodes[end], side_b)));
@@ -144,13 +144,13 @@ struct Sheet {
     /// Angle of the half-plane about the edge \[rad\].
     angle: f64,
     /// Uppermost triangle and its side, seen from larger angles.
-    rising: (RimPiece, Side),
+    rising: (EdgePiece, Side),
     /// The same, seen from smaller angles.
-    falling: (RimPiece, Side),
+    falling: (EdgePiece, Side),
 }
 
 impl Sheet {
-    fn new(angle: f64, piece: RimPiece) -> Self {
+    fn new(angle: f64, piece: EdgePiece) -> Self {
         // A triangle that runs forward shows its front in the direction of increasing angle.
         let side = if piece.forward { Side::Front } else { Side::Back };
         Self { angle, rising: (piece, side), falling: (piece, side.flip()) }
@@ -160,7 +160,7 @@ impl Sheet {
     /// shows its front, otherwise the first (the rule of [`sir_accel::Hit`]). The others stay dark and must not darken
     /// their neighbors.
     fn cover(&mut self, other: &Self) {
-        let upper = |a: (RimPiece, Side), b: (RimPiece, Side)| match (a.1, b.1) {
+        let upper = |a: (EdgePiece, Side), b: (EdgePiece, Side)| match (a.1, b.1) {
             (Side::Front, Side::Back) => a,
             (Side::Back, Side::Front) => b,
             (Side::Front, Side::Front) => {
@@ -184,8 +184,8 @@ impl Sheet {
 }
 
 /// Collects the sheets around an edge, sorted by angle from the first triangle.
-fn sheets_around(scene: &Scene, along: DVec3, around: &[RimPiece], sheets: &mut Vec<Sheet>) {
-    let inward = |p: &RimPiece| {
+fn sheets_around(scene: &Scene, along: DVec3, around: &[EdgePiece], sheets: &mut Vec<Sheet>) {
+    let inward = |p: &EdgePiece| {
         let m = scene.normal(TriangleId(p.triangle)).cross(along);
         if p.forward { m } else { -m }
     };

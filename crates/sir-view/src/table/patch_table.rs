@@ -4,9 +4,8 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
-use glam::DVec3;
 use sir_geom::{Rgb, Scene, Side};
-use sir_mesh::{PatchId, PatchMesh};
+use sir_mesh::PatchMesh;
 
 use crate::atomic_file::write_atomically;
 use crate::error::ViewError;
@@ -24,8 +23,8 @@ impl Table {
     /// Creates the table of a solution: the irradiance `E` \[W/m²\] of every [`SideId`](sir_mesh::SideId), and its
     /// standard error.
     ///
-    /// A two-sided patch has two rows with opposite normals. A face that is one patch has the center and the mean
-    /// normal of all its triangles, and the number of the first one.
+    /// A two-sided patch has two rows with opposite normals. A patch in several triangles has its center and mean normal, and
+    /// the number of the first one.
     ///
     /// # Panics
     ///
@@ -38,36 +37,19 @@ impl Table {
         mesh.for_each_side(|t, patch, side, id| {
             let (e, se) = (irradiance[id.index()], error[id.index()]);
             let reflectance = mesh.reflectance(scene, t, patch);
+            let (center, normal) = mesh.center_and_normal(scene, t, patch);
+            let triangle = mesh.pieces(t, patch).next().map_or(t, |piece| piece.triangle);
             rows.push(Row {
                 patch: patch.0,
-                triangle: scene.triangle(t).source,
-                area: mesh.patch_area(t),
-                center: DVec3::ZERO,
-                normal: DVec3::ZERO,
+                triangle: scene.triangle(triangle).source,
+                area: mesh.patch_area(t, patch),
+                center,
+                normal: if side == Side::Front { normal } else { -normal }.normalize_or_zero(),
                 radiosity: mesh.exitance(scene, t, patch, side) + reflectance * e,
                 irradiance: e,
                 error: reflectance * se,
             });
         });
-        // Centers and normals are means over all triangles of a patch: more than one if faces are patches.
-        for t in scene.triangle_ids() {
-            let (corners, normal) = (scene.corners(t), scene.normal(t));
-            let patches = mesh.patches_of(t);
-            let part = scene.area(t) / patches.len() as f64;
-            for patch in patches.map(PatchId) {
-                let c = mesh.patch_corners(t, patch).map(|b| b.point(corners));
-                for (side, outward) in [(Side::Front, normal), (Side::Back, -normal)] {
-                    if let Some(id) = mesh.side_of(t, patch, side) {
-                        let row = &mut rows[id.index()];
-                        row.center += part / row.area * (c[0] + c[1] + c[2]) / 3.0;
-                        row.normal += part / row.area * outward;
-                    }
-                }
-            }
-        }
-        for row in &mut rows {
-            row.normal = row.normal.normalize_or_zero();
-        }
         Self { rows }
     }
 

@@ -1,11 +1,28 @@
-//! Points in space: welding of points that are equal up to rounding, and search for points on a segment.
+//! Points in space: their extent, welding of points that are equal up to rounding, and search for points on a segment.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 
+/// Returns the middle of points, and their typical distance from it: medians, which a few points far away do not change.
+/// Both are zero without points.
+#[must_use]
+pub fn median_extent(points: &[DVec3]) -> (DVec3, f64) {
+    if points.is_empty() {
+        return (DVec3::ZERO, 0.0);
+    }
+    let median = |mut numbers: Vec<f64>| {
+        let middle = numbers.len() / 2;
+        *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    let along = |axis: usize| median(points.iter().map(|point| point[axis]).collect());
+    let middle = DVec3::new(along(0), along(1), along(2));
+    (middle, median(points.iter().map(|point| point.distance(middle)).collect()))
+}
+
 /// Set of points of which no two are closer than a tolerance.
-pub(super) struct Weld {
+#[derive(Debug)]
+pub struct Weld {
     tolerance: f64,
     origin: DVec3,
     points: Vec<DVec3>,
@@ -14,12 +31,13 @@ pub(super) struct Weld {
 
 impl Weld {
     /// Creates an empty set; `origin` is any point near the others.
-    pub(super) fn new(origin: DVec3, tolerance: f64) -> Self {
+    #[must_use]
+    pub fn new(origin: DVec3, tolerance: f64) -> Self {
         Self { tolerance, origin, points: Vec::new(), cells: HashMap::new() }
     }
 
     /// Returns the number of the point at this position: the first one within the tolerance, otherwise a new one.
-    pub(super) fn add(&mut self, p: DVec3) -> u32 {
+    pub fn add(&mut self, p: DVec3) -> u32 {
         // Cells are several tolerances wide, so most points require a search of one cell, and none of more than eight.
         let cell =
             |q: DVec3| ((q - self.origin) / (8.0 * self.tolerance)).floor().to_array().map(|x| x as i64);
@@ -44,14 +62,16 @@ impl Weld {
     }
 
     /// Returns the points by number.
-    pub(super) fn into_points(self) -> Vec<DVec3> {
+    #[must_use]
+    pub fn into_points(self) -> Vec<DVec3> {
         self.points
     }
 }
 
 /// A k-d tree over points, to find those near a segment. A grid would need one cell size for both millimeters and
 /// halls.
-pub(super) struct PointTree<'a> {
+#[derive(Debug)]
+pub struct PointTree<'a> {
     points: &'a [DVec3],
     /// Point numbers. A node is a range of them, and its children are the two halves.
     order: Vec<u32>,
@@ -63,7 +83,9 @@ pub(super) struct PointTree<'a> {
 const LEAF: usize = 8;
 
 impl<'a> PointTree<'a> {
-    pub(super) fn new(points: &'a [DVec3]) -> Self {
+    /// Creates the tree.
+    #[must_use]
+    pub fn new(points: &'a [DVec3]) -> Self {
         let mut tree = Self { points, order: (0..points.len() as u32).collect(), boxes: Vec::new() };
         let mut order = std::mem::take(&mut tree.order);
         tree.build(&mut order, 0);
@@ -97,7 +119,7 @@ impl<'a> PointTree<'a> {
 
     /// Appends to `found` the points whose distance to the segment `ab` is at most `tolerance`, with their parameter
     /// along it: 0 at `a`, 1 at `b`, none beyond.
-    pub(super) fn near_segment(&self, a: DVec3, b: DVec3, tolerance: f64, found: &mut Vec<(f64, u32)>) {
+    pub fn near_segment(&self, a: DVec3, b: DVec3, tolerance: f64, found: &mut Vec<(f64, u32)>) {
         self.visit(0, 0..self.order.len(), &Segment { a, along: b - a, tolerance }, found);
     }
 

@@ -1,4 +1,4 @@
-//! Subdivision of each triangle.
+//! Rules for the division of a scene into patches.
 
 use glam::DVec3;
 use sir_geom::{BoundingBox, Scene, TriangleId};
@@ -8,49 +8,47 @@ use crate::error::MeshError;
 /// Largest number of parts of an edge: `n²` must fit in 32 bits.
 pub(crate) const MAX_DIVISIONS: u32 = 65_535;
 
-/// Rule for the division of triangles into patches.
+/// Rule for the division of a scene into patches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Subdivision {
     /// Every triangle is one patch.
     PerTriangle,
     /// Every flat polygon of the file is one patch, regardless of the number of triangles that it was cut into. The
-    /// triangles of a bent polygon are separate patches, because a line must not cross a patch twice.
+    /// triangles of a bent polygon are separate patches.
     PerFace,
+    /// Every triangle is cut into congruent triangles. There are never fewer patches than triangles.
+    Triangles(PatchSize),
+    /// Flat surfaces are cut into square cells, regardless of their triangles; small triangles of bent surfaces are
+    /// joined.
+    Surfaces(PatchSize),
+}
+
+/// Size of patches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PatchSize {
     /// No patch is larger than this area.
     MaxArea(f64),
-    /// No edge of a patch is longer than this length.
+    /// No edge of a patch is longer than this length. With [`Subdivision::Surfaces`], this is the edge of a cell; a cell
+    /// that slight fragments have joined may be longer.
     MaxEdge(f64),
-    /// Total number of patches, met as nearly as whole subdivisions allow, with areas as equal as possible. There are
-    /// never fewer patches than triangles.
-    Patches(u64),
+    /// Total number of patches, met as nearly as the rule allows, with areas as equal as possible.
+    Count(u64),
 }
 
 impl Subdivision {
-    /// Returns the number of parts of an edge per triangle. It is 1 for triangles whose centroid is not in the box
-    /// `within`, if one is given.
+    /// Returns the number of parts of an edge per triangle, for rules that cut triangles. It is 1 for triangles whose
+    /// centroid is not in the box `within`, if one is given.
     pub(crate) fn divisions(self, scene: &Scene, within: Option<BoundingBox>) -> Result<Vec<u32>, MeshError> {
         let matters = |t: &TriangleId| within.is_none_or(|bounds| bounds.contains(centroid(scene, *t)));
         let of_each = |n: &dyn Fn(TriangleId) -> Result<u32, MeshError>| {
             scene.triangle_ids().map(|t| if matters(&t) { n(t) } else { Ok(1) }).collect()
         };
-        let positive = |what: &'static str, x: f64| {
-            if x.is_finite() && x > 0.0 { Ok(x) } else { Err(MeshError::NotPositive { what, value: x }) }
-        };
-        match self {
-            Self::PerTriangle | Self::PerFace => Ok(vec![1; scene.triangles().len()]),
-            Self::MaxArea(max) => {
-                let max = positive("area", max)?;
-                of_each(&|t| parts((scene.area(t) / max).sqrt()))
-            }
-            Self::MaxEdge(max) => {
-                let max = positive("edge", max)?;
-                let longest = |t| {
-                    let [a, b, c] = scene.corners(t);
-                    a.distance(b).max(b.distance(c)).max(c.distance(a))
-                };
-                of_each(&|t| parts(longest(t) / max))
-            }
-            Self::Patches(target) => {
+        let Self::Triangles(size) = self else { return Ok(vec![1; scene.triangles().len()]) };
+        size.check()?;
+        match size {
+            PatchSize::MaxArea(max) => of_each(&|t| parts((scene.area(t) / max).sqrt())),
+            PatchSize::MaxEdge(max) => of_each(&|t| parts(longest_edge(scene, t) / max)),
+            PatchSize::Count(target) => {
                 // Triangles of area zero are not cut.
                 let area = |t| if matters(&t) { scene.area(t) } else { 0.0 };
                 let areas: Vec<f64> = scene.triangle_ids().map(area).collect();
@@ -60,13 +58,31 @@ impl Subdivision {
     }
 }
 
-fn centroid(scene: &Scene, triangle: TriangleId) -> DVec3 {
+impl PatchSize {
+    /// Returns an error if a limit is not positive.
+    pub(crate) fn check(self) -> Result<(), MeshError> {
+        let (what, value) = match self {
+            Self::MaxArea(value) => ("area", value),
+            Self::MaxEdge(value) => ("edge", value),
+            Self::Count(_) => return Ok(()),
+        };
+        if value.is_finite() && value > 0.0 { Ok(()) } else { Err(MeshError::NotPositive { what, value }) }
+    }
+}
+
+/// Returns the length of the longest edge of a triangle.
+pub(crate) fn longest_edge(scene: &Scene, triangle: TriangleId) -> f64 {
+    let [a, b, c] = scene.corners(triangle);
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
+}
+
+pub(crate) fn centroid(scene: &Scene, triangle: TriangleId) -> DVec3 {
     let [a, b, c] = scene.corners(triangle);
     (a + b + c) / 3.0
 }
 
 /// Returns the smallest number of equal parts of a length of `x` units that are each at most one unit long.
-fn parts(x: f64) -> Result<u32, MeshError> {
+pub(crate) fn parts(x: f64) -> Result<u32, MeshError> {
     // Rounding errors above a whole number must not add a part.
     let n = (x * (1.0 - 1e-12)).ceil().max(1.0);
     if n <= f64::from(MAX_DIVISIONS) { Ok(n as u32) } else { Err(MeshError::TooMany) }
