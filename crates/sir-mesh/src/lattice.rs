@@ -30,13 +30,14 @@ pub(crate) struct Frame {
     pub(crate) axes: [DVec3; 2],
 }
 
-/// A triangle in the coordinates of a lattice.
+/// A triangle in the coordinates of a lattice, rounded to single precision, so that more of them stay in the cache. All
+/// computations use the same rounded numbers, so that they agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Placement {
     /// First corner.
-    start: [f64; 2],
+    start: [f32; 2],
     /// Edges from the first corner to the second and to the third.
-    edges: [[f64; 2]; 2],
+    edges: [[f32; 2]; 2],
 }
 
 /// A point of a triangle, with its coordinates in the lattice.
@@ -116,17 +117,24 @@ impl Point {
 }
 
 impl Placement {
+    /// Placement in which all points are the origin.
+    pub(crate) const NOWHERE: Self = Self { start: [0.0; 2], edges: [[0.0; 2]; 2] };
+
     /// Returns the placement of a triangle with these corners.
     pub(crate) fn new(frame: &Frame, corners: [DVec3; 3]) -> Self {
         let [a, b, c] = corners.map(|p| frame.axes.map(|axis| (p - frame.origin).dot(axis)));
-        let to = |p: [f64; 2]| [p[0] - a[0], p[1] - a[1]];
-        Self { start: a, edges: [to(b), to(c)] }
+        let to = |p: [f64; 2]| [(p[0] - a[0]) as f32, (p[1] - a[1]) as f32];
+        Self { start: a.map(|x| x as f32), edges: [to(b), to(c)] }
     }
 
     /// Returns the coordinates of a point.
     #[inline]
     pub(crate) fn at(&self, p: Barycentric) -> [f64; 2] {
-        let along = |axis: usize| self.start[axis] + p.v * self.edges[0][axis] + p.w * self.edges[1][axis];
+        let along = |axis: usize| {
+            let [start, first, second] =
+                [self.start[axis], self.edges[0][axis], self.edges[1][axis]].map(f64::from);
+            start + p.v * first + p.w * second
+        };
         [along(0), along(1)]
     }
 

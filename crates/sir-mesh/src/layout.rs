@@ -66,35 +66,24 @@ fn search(
 ) -> Result<Vec<Region>, MeshError> {
     let count = |regions: &[Region]| regions.iter().map(|region| region.patches() as f64).sum::<f64>();
     // Without surfaces to cut, all widths are the same.
-    let mut width = if start > 0.0 { start } else { 1.0 };
-    let mut best = of_width(width)?;
+    let first = if start > 0.0 { start } else { 1.0 };
+    let mut best = of_width(first)?;
     let mut nearest = count(&best);
-    // Ends of the range of logarithms of widths with too many and with too few patches, with their numbers.
-    let (mut many, mut few): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
-    let mut now = nearest;
-    for _ in 1..MAX_TRIES {
-        if (now / target - 1.0).abs() <= CLOSE_ENOUGH {
+    // The number is about linear in the number of cells per area: the secant method finds where it is the target.
+    let mut tried = vec![(1.0 / (first * first), nearest)];
+    while (nearest / target - 1.0).abs() > CLOSE_ENOUGH && tried.len() < MAX_TRIES {
+        let &(density, now) = &tried[tried.len() - 1];
+        let slope = match tried.len().checked_sub(2).map(|before| tried[before]) {
+            Some((other, then)) if (now - then) * (density - other) > 0.0 => (now - then) / (density - other),
+            _ => now / density,
+        };
+        let next = (density + (target - now) / slope).clamp(density / 16.0, 4.0 * density);
+        if next == density {
             break;
         }
-        if now > target {
-            many = Some((width, now))
-        } else {
-            few = Some((width, now))
-        }
-        width = match (many, few) {
-            // The number falls with the square of the width, if at all.
-            (Some((wide, n)), None) => wide * (n / target).sqrt().clamp(1.05, 4.0),
-            (None, Some((narrow, n))) => narrow * (n / target).sqrt().clamp(0.25, 0.95),
-            (Some((narrow, n)), Some((wide, m))) => {
-                // Between both, the number is about linear in the reciprocal square of the width.
-                let [x, y] = [narrow, wide].map(|width| 1.0 / (width * width));
-                let share = ((target - m) / (n - m)).clamp(0.05, 0.95);
-                (1.0 / (y + share * (x - y))).sqrt()
-            }
-            (None, None) => break,
-        };
-        let regions = of_width(width)?;
-        now = count(&regions);
+        let regions = of_width((1.0 / next).sqrt())?;
+        let now = count(&regions);
+        tried.push((next, now));
         if (now - target).abs() < (nearest - target).abs() {
             (best, nearest) = (regions, now);
         }

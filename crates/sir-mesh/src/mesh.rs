@@ -254,11 +254,18 @@ impl PatchMesh {
         }
     }
 
-    /// Returns the entry that [`sides_at`](Self::sides_at) reads for a triangle, so that callers can prefetch it.
+    /// Returns the entry that [`sides_at`](Self::sides_at) reads first for a triangle, so that callers can prefetch it.
     #[inline]
     #[must_use]
-    pub fn place_of(&self, triangle: TriangleId) -> &impl Sized {
+    pub fn first_entry(&self, triangle: TriangleId) -> &impl Sized {
         self.numbering.cut(triangle)
+    }
+
+    /// Returns the entry that [`sides_at`](Self::sides_at) reads after the first, so that callers can prefetch it.
+    #[inline]
+    #[must_use]
+    pub fn second_entry(&self, triangle: TriangleId) -> &impl Sized {
+        self.numbering.place(*self.numbering.cut(triangle))
     }
 
     /// Returns the front and, if it takes part in light transport, the back of the patch in which a point of a triangle

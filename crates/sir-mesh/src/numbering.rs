@@ -1,6 +1,7 @@
 //! Numbering of the patches and sides of a scene.
 
 use std::collections::HashMap;
+use std::hint::select_unpredictable;
 use std::ops::Range;
 
 use sir_geom::{Barycentric, BoundingBox, FaceId, Scene, Sides, TriangleId};
@@ -34,15 +35,30 @@ impl Cut {
     }
 }
 
-/// A triangle in the lattice of its surface: one cache line.
+/// A triangle in the lattice of its surface: half a cache line.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
+#[repr(align(32))]
 pub(crate) struct Place {
     placement: Placement,
+    /// Number of the lattice.
+    lattice: u32,
+}
+
+/// The lattice of a surface.
+#[derive(Clone, Copy, Debug)]
+struct Lattice {
     size: Size,
-    /// Offset of the patches of the cells of the lattice in [`Numbering::tables`], or [`NONE`] if each cell is a patch.
+    /// Offset of the patches of its cells in [`Numbering::tables`], or [`NONE`] if each cell is a patch.
     table: u32,
     first_side: u32,
+}
+
+impl Place {
+    const NOWHERE: Self = Self { placement: Placement::NOWHERE, lattice: 0 };
+}
+
+impl Lattice {
+    const NOWHERE: Self = Self { size: Size { columns: 1, rows: 1 }, table: NONE, first_side: 0 };
 }
 
 /// The patches of a triangle.
@@ -58,14 +74,17 @@ pub(crate) struct Patches {
 /// Mark of what does not exist.
 const NONE: u32 = u32::MAX;
 
-/// Cuts and first numbers of all triangles. Uses 28 bytes per triangle, 64 more per triangle that is cut into cells, up to
+/// Cuts and first numbers of all triangles. Uses 28 bytes per triangle, 32 more per triangle that is cut into cells, up to
 /// 4 per cell, and for patches that are cells or have several triangles 4 per patch and 16 per triangle of each.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbering {
     cuts: Vec<Cut>,
     patches_of: Vec<Patches>,
+    /// The first one is that of triangles that are not cut into cells.
     places: Vec<Place>,
-    /// Patches of cells, numbered within their surface, or splits.
+    /// The first one is that of triangles that are not cut into cells.
+    lattices: Vec<Lattice>,
+    /// Patches of cells, numbered within their surface, or splits. The first one is that of lattices without a table.
     tables: Vec<u32>,
     splits: Vec<Split>,
     parts: Parts,
@@ -94,6 +113,9 @@ impl Numbering {
         let mut numbering = Self {
             cuts: vec![Cut { first: 0, divisions: 1, sides: 1 }; count],
             patches_of: vec![Patches { first: 0, listed: NONE, area: 0.0 }; count],
+            places: vec![Place::NOWHERE],
+            lattices: vec![Lattice::NOWHERE],
+            tables: vec![0],
             surfaces: Vec::with_capacity(regions.len()),
             ..Self::default()
         };
@@ -136,11 +158,13 @@ impl Numbering {
                 let moved = |&entry: &u32| if entry & SPLIT != 0 { entry + first_split } else { entry };
                 self.tables.extend(cells.table.iter().map(moved));
                 self.splits.extend_from_slice(&cells.splits);
+                let lattice = self.lattices.len() as u32;
+                self.lattices.push(Lattice { size: *size, table, first_side });
                 for &(triangle, placement) in &cells.placements {
                     let place = self.places.len() as u32;
                     self.cuts[triangle.index()] = Cut { first: place, divisions: 0, sides };
                     self.patches_of[triangle.index()] = Patches { first, listed, area: 0.0 };
-                    self.places.push(Place { placement, size: *size, table, first_side });
+                    self.places.push(Place { placement, lattice });
                 }
             }
         }
@@ -149,11 +173,6 @@ impl Numbering {
             .chunk_by(|a, b| a.0 == b.0)
             .for_each(|parts| self.parts.add(parts.iter().map(|(_, part)| *part)));
         Ok(())
-    }
-
-    #[inline]
-    fn place(&self, cut: Cut) -> &Place {
-        &self.places[cut.first as usize]
     }
 
     /// Returns the record that finds the sides of a triangle.
@@ -185,7 +204,7 @@ impl Numbering {
     #[inline]
     pub(crate) fn first_side(&self, triangle: TriangleId) -> u32 {
         let cut = self.cuts[triangle.index()];
-        if cut.divisions > 0 { cut.first } else { self.place(cut).first_side }
+        if cut.divisions > 0 { cut.first } else { self.lattice(self.place(cut)).first_side }
     }
 
     /// Returns the number of a patch among those with parts; `None` if it has none.
@@ -206,20 +225,34 @@ impl Numbering {
     #[inline]
     pub(crate) fn locate(&self, triangle: TriangleId, point: Barycentric) -> (u32, u32) {
         let cut = self.cuts[triangle.index()];
-        if cut.divisions > 0 {
+        if self.places.len() == 1 {
             return (barycentric::locate(cut.divisions.into(), point), cut.first);
         }
+        // Both ways are gone, as the processor cannot predict which is needed.
+        let regular = barycentric::locate(u32::from(cut.divisions).max(1), point);
         let place = self.place(cut);
-        let cell = place.placement.cell_at(place.size, point);
-        (self.in_table(place, cell, triangle), place.first_side)
+        let lattice = self.lattice(place);
+        let entry = self.in_table(lattice, place.placement.cell_at(lattice.size, point), triangle);
+        select_unpredictable(cut.divisions > 0, (regular, cut.first), (entry, lattice.first_side))
     }
 
     #[inline]
-    fn in_table(&self, place: &Place, cell: u32, triangle: TriangleId) -> u32 {
-        if place.table == NONE {
-            return cell;
-        }
-        let entry = self.tables[(place.table + cell) as usize];
+    fn lattice(&self, place: &Place) -> &Lattice {
+        &self.lattices[place.lattice as usize]
+    }
+
+    /// Returns the place of a triangle, or a place that is none if it is not cut into cells.
+    #[inline]
+    pub(crate) fn place(&self, cut: Cut) -> &Place {
+        &self.places[select_unpredictable(cut.divisions == 0, cut.first as usize, 0)]
+    }
+
+    #[inline]
+    fn in_table(&self, lattice: &Lattice, cell: u32, triangle: TriangleId) -> u32 {
+        let is_plain = lattice.table == NONE;
+        let entry = self.tables[select_unpredictable(is_plain, 0, lattice.table as usize + cell as usize)];
+        let entry = select_unpredictable(is_plain, cell, entry);
+        // Few cells are split.
         if entry & SPLIT == 0 { entry } else { self.in_split(entry, triangle) }
     }
 
@@ -236,7 +269,7 @@ impl Numbering {
             return Some(Piece::whole(part.triangle));
         }
         let place = self.place(self.cuts[part.triangle.index()]);
-        place.placement.piece_in(place.size, part.cell, part.triangle)
+        place.placement.piece_in(self.lattice(place).size, part.cell, part.triangle)
     }
 
     /// Returns the pieces of a patch.
@@ -267,8 +300,9 @@ impl Numbering {
         let cut = self.cuts[triangle.index()];
         if cut.divisions == 0 {
             let place = self.place(cut);
-            place.placement.for_each_cell(place.size, triangle, |cut| {
-                visit(PatchId(first + self.in_table(place, cut.cell, triangle)), cut.piece);
+            let lattice = self.lattice(place);
+            place.placement.for_each_cell(lattice.size, triangle, |cut| {
+                visit(PatchId(first + self.in_table(lattice, cut.cell, triangle)), cut.piece);
             });
         } else if listed != NONE {
             visit(PatchId(first), Piece::whole(triangle));
@@ -308,6 +342,7 @@ impl Numbering {
         size_of_val(&self.cuts[..])
             + size_of_val(&self.patches_of[..])
             + size_of_val(&self.places[..])
+            + size_of_val(&self.lattices[..])
             + size_of_val(&self.tables[..])
             + self.splits.iter().map(|split| size_of_val(&split[..]) + size_of::<Split>()).sum::<usize>()
             + size_of_val(&self.surfaces[..])

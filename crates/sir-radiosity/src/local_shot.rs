@@ -216,7 +216,10 @@ impl<'m, I: ShotInput<S>, S: LineSource> Stage for LocalShot<'m, I, S> {
             totals.counts.crossings += hits.len() as u64;
             for (i, &(hit, power)) in hits.iter().enumerate() {
                 if let Some((ahead, _)) = hits.get(i + PREFETCH_DISTANCE) {
-                    sir_accel::prefetch(mesh.place_of(ahead.triangle));
+                    sir_accel::prefetch(mesh.first_entry(ahead.triangle));
+                }
+                if let Some((ahead, _)) = hits.get(i + PREFETCH_DISTANCE / 2) {
+                    sir_accel::prefetch(mesh.second_entry(ahead.triangle));
                 }
                 match mesh.side_at(hit.triangle, hit.point, hit.side) {
                     Some(side) => deposits.push((side, power)),

@@ -69,8 +69,9 @@ impl Segments {
         self.ends.clear();
         let found = hits.hits();
         self.ends.extend(found.iter().enumerate().map(|(i, hit)| {
-            let ahead = found[(i + PREFETCH_DISTANCE).min(count - 1)].triangle;
-            sir_accel::prefetch(mesh.place_of(ahead));
+            let ahead = |distance: usize| found[(i + distance).min(count - 1)].triangle;
+            sir_accel::prefetch(mesh.first_entry(ahead(PREFETCH_DISTANCE)));
+            sir_accel::prefetch(mesh.second_entry(ahead(PREFETCH_DISTANCE / 2)));
             let (front, back) = mesh.sides_at(hit.triangle, hit.point);
             let front = Packed(front.0, hit.triangle.0);
             let back = Packed(back.map_or(Packed::INACTIVE.0, |back| back.0), hit.triangle.0);
