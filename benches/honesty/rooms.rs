@@ -152,7 +152,7 @@ pub(crate) fn rooms() -> Vec<Room> {
             name,
             scene: Scene::File(data.join("sunlit-room/r.obj")),
             stages: format!(
-                "Light([Distant(direction: (0, -0.5, 0.866025404), irradiance: 800)]), {focus} Subdivide(patches: 400)"
+                "Light([Distant(direction: (0, -0.5, 0.866025404), irradiance: 800)]), {focus} Subdivide(patches: 400, of: Triangles)"
             ),
             lines,
             sensors: vec![
@@ -171,7 +171,7 @@ pub(crate) fn rooms() -> Vec<Room> {
         rooms.push(Room {
             name,
             scene: Scene::Surfaces(cube),
-            stages: "Subdivide(patches: 600)".into(),
+            stages: "Subdivide(patches: 600, of: Triangles)".into(),
             lines: 100_000,
             sensors: vec![sensor("middle", [0.5, 0.0, 0.5], up, Some(all))],
             exact: Some(all),
@@ -187,7 +187,7 @@ pub(crate) fn rooms() -> Vec<Room> {
         scene: Scene::File(
             Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/reading-room/reading-room.glb"),
         ),
-        stages: "Subdivide(patches: 63_552)".into(),
+        stages: "Subdivide(patches: 63_552, of: Triangles)".into(),
         lines: 8_000_000,
         sensors: Vec::new(),
         exact: None,
@@ -205,7 +205,8 @@ fn lit_cube() -> Room {
     Room {
         name: "CIE 5.8, .95",
         scene: Scene::Surfaces(cube),
-        stages: "Light([Point(position: (2, 2, 2), power: 10000)]), Subdivide(patches: 600)".into(),
+        stages: "Light([Point(position: (2, 2, 2), power: 10000)]), Subdivide(patches: 600, of: Triangles)"
+            .into(),
         lines: 100_000,
         sensors: vec![
             sensor("middle", [2.0, 0.0, 2.0], up, None),
@@ -225,7 +226,7 @@ fn behind_a_hole() -> Room {
     Room {
         name: "hole",
         scene: Scene::Surfaces(rooms),
-        stages: "Subdivide(patches: 600)".into(),
+        stages: "Subdivide(patches: 600, of: Triangles)".into(),
         lines: 8_000_000,
         sensors: vec![
             sensor("bright", [2.0, 0.8, 2.0], [0.0, 1.0, 0.0], None),
@@ -279,7 +280,7 @@ fn trapped_lamp() -> Room {
     Room {
         name: "trapped lamp",
         scene: Scene::Surfaces(rooms),
-        stages: "Subdivide(patches: 1000)".into(),
+        stages: "Subdivide(patches: 1000, of: Triangles)".into(),
         lines: 1_000_000,
         sensors: vec![
             sensor("bright", [0.5, 0.8, 2.0], [0.0, 1.0, 0.0], None),

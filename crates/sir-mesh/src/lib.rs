@@ -2,19 +2,23 @@
 //!
 //! # Design
 //!
-//! *Trace coarse, record fine.* A patch is a piece of an input triangle, cut by a regular subdivision: each edge
-//! into `n` equal parts, which gives `n²` congruent triangles. Nothing is stored per patch: area, corners and number
-//! follow from the triangle's `n` and the barycentric coordinates of a hit, in constant time. An acceleration
-//! structure therefore holds the input triangles only, however fine the patches are.
+//! *Trace coarse, record fine.* An acceleration structure holds the triangles of the file only, however fine the patches
+//! are. The patch of a hit follows from its triangle and barycentric coordinates, in constant time.
 //!
-//! Power lives on *sides* ([`SideId`]): a patch of a one-sided triangle has one, of a two-sided triangle two.
-//! The sides of one triangle are consecutive numbers.
+//! [`Subdivision::Surfaces`] divides surfaces, regardless of their triangles: flat ones into square cells that their outline
+//! cuts, and small triangles of bent ones are joined. A patch is a list of [`Piece`]s: convex polygons in triangles.
+//! [`Subdivision::Triangles`] cuts each triangle into `n²` congruent ones, for which nothing is stored.
+//! [`Subdivision::PerFace`] makes one patch of all triangles of a flat polygon, as in classic radiosity systems with one
+//! element per rectangle.
 //!
-//! If a triangle has a texture, each of its patches has its own reflectance, exitance and covered share: the means over
-//! its area.
+//! Power lives on *sides* ([`SideId`]): a patch of a one-sided triangle has one, of a two-sided triangle two. The patches of
+//! a surface have consecutive numbers, and so have their sides.
 //!
-//! Instead of cutting triangles, [`Subdivision::PerFace`] makes one patch of all triangles of a flat polygon, as in
-//! classic radiosity systems with one element per rectangle.
+//! If a triangle has a texture, each patch of its surface has its own reflectance, exitance and covered share: the means
+//! over its area.
+//!
+//! `surfaces/` finds the surfaces, `layout.rs` decides how each is divided, `cells.rs` and `lattice.rs` cut it, and
+//! `numbering.rs` holds what a lookup needs.
 //!
 //! # Example
 //!

@@ -61,6 +61,12 @@ impl PatchMesh {
         self.numbering.sides as usize
     }
 
+    /// True if some patches are not flat: a line may cross them twice.
+    #[must_use]
+    pub fn has_bent_patches(&self) -> bool {
+        self.numbering.is_bent
+    }
+
     /// Returns the number of parts into which each edge of a triangle is cut; `None` if the triangle is cut into cells.
     #[must_use]
     pub fn divisions(&self, triangle: TriangleId) -> Option<u32> {

@@ -92,6 +92,8 @@ pub(crate) struct Numbering {
     pub(crate) surfaces: Vec<(TriangleId, u32)>,
     pub(crate) patches: u32,
     pub(crate) sides: u32,
+    /// True if a patch is not flat.
+    pub(crate) is_bent: bool,
 }
 
 impl Numbering {
@@ -147,6 +149,7 @@ impl Numbering {
                 self.patches_of[triangle.index()] = Patches { first, listed: NONE, area };
             }
             Region::Joined(triangles) => {
+                self.is_bent |= !is_flat(scene, triangles);
                 for triangle in triangles {
                     self.cuts[triangle.index()] = Cut { first: first_side, divisions: 1, sides };
                     self.patches_of[triangle.index()] = Patches { first, listed, area: 0.0 };

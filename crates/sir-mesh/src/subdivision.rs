@@ -36,6 +36,20 @@ pub enum PatchSize {
 }
 
 impl Subdivision {
+    /// Returns an estimate of the number of patches of a scene whose surfaces are divided, before anything is; `None` for
+    /// other rules, whose patches take no memory.
+    #[must_use]
+    pub fn estimated_cells(self, scene: &Scene, within: Option<BoundingBox>) -> Option<f64> {
+        let Self::Surfaces(size) = self else { return None };
+        let matters = |t: &TriangleId| within.is_none_or(|bounds| bounds.contains(centroid(scene, *t)));
+        let area: f64 = scene.triangle_ids().filter(matters).map(|t| scene.area(t)).sum();
+        Some(match size {
+            PatchSize::MaxArea(max) => area / max,
+            PatchSize::MaxEdge(max) => area / (max * max),
+            PatchSize::Count(count) => count as f64,
+        })
+    }
+
     /// Returns the number of parts of an edge per triangle, for rules that cut triangles. It is 1 for triangles whose
     /// centroid is not in the box `within`, if one is given.
     pub(crate) fn divisions(self, scene: &Scene, within: Option<BoundingBox>) -> Result<Vec<u32>, MeshError> {

@@ -71,8 +71,7 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     });
     let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles()) + scene.appearance_bytes()),
-        // See `PatchMesh`: 28 bytes per triangle.
-        ("patches", 28 * scene.triangles().len() + mesh.paint_bytes()),
+        ("patches", mesh.bytes() + mesh.paint_bytes()),
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing),
         (

@@ -4,18 +4,18 @@ use sir_mesh::{PatchSize, Subdivision};
 
 use crate::text::field::{Format, OneOf};
 use crate::text::formats::{Choice, count, positive};
-use crate::text::reader::{Fields, Reader};
+use crate::text::reader::Reader;
 use crate::text::record::record;
 use crate::text::ron_tree::{Node, Value};
 
 record! {
     /// Stage that divides the surfaces into patches.
-    pub struct Subdivide, check Subdivide::check {
+    pub struct Subdivide {
         /// Size or number of patches.
         pub how: Division = division();
         /// What is divided: flat surfaces, whatever their triangles, into square cells; or each triangle into congruent
-        /// triangles. See below.
-        pub of: Divided = DIVIDED.or(Divided::Triangles);
+        /// triangles. It has no effect on `per_face`. See below.
+        pub of: Divided = DIVIDED.or(Divided::Surfaces);
     }
 }
 
@@ -48,13 +48,6 @@ impl Subdivide {
             (Division::PerFace, _) => Subdivision::PerFace,
             (Division::Into(size), Divided::Surfaces) => Subdivision::Surfaces(size),
             (Division::Into(size), Divided::Triangles) => Subdivision::Triangles(size),
-        }
-    }
-
-    fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
-        if let (Division::PerFace, Some(of)) = (self.how, fields.get("of")) {
-            let message = "`of` has no effect with `per_face`, which divides nothing";
-            reader.problem(of.text, message, "leave it out");
         }
     }
 }

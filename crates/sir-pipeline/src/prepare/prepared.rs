@@ -10,17 +10,21 @@ use sir_radiosity::{FocusSides, Model, ModelError, SolveError, Source, emits, so
 
 use crate::error::Error;
 use crate::info::survey::Survey;
+use crate::memory::refuse_more_than_available;
 use crate::prepare::cameras::camera_problems;
 use crate::prepare::up::{Up, sky_doubt};
 use crate::text::diagnostic::Diagnostic;
 
-use crate::plan::{Action, Pipeline, SceneLight, Stage};
+use crate::plan::{Action, Pipeline, SceneLight, Stage, Transport};
 use crate::prepare::layout::Layout;
 use crate::progress::Progress;
 use crate::stopwatch::Stopwatch;
 
 /// Number of lines from lamps that show what is suspicious. They take a few hundredths of a second.
 const SURVEY_LINES: u64 = 10_000;
+
+/// Memory that a cell of a surface needs while surfaces are divided: measured on a million cells, rounded up.
+const BYTES_PER_CELL: f64 = 200.0;
 
 /// Scene of a pipeline, ready for tracing.
 #[derive(Clone, Debug)]
@@ -100,6 +104,8 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
         focus.ok_or_else(|| pipeline.diagnostics(nothing_inside(pipeline, &built.scene)))
     });
     let focus = focus.transpose()?;
+    let cells = how.estimated_cells(&built.scene, focus.map(|focus| focus.bounds()));
+    refuse_more_than_available((BYTES_PER_CELL * cells.unwrap_or(0.0)) as usize)?;
     match Model::within(built.scene, how, focus.map(|focus| focus.bounds())) {
         Ok(model) if problems.is_empty() => {
             let build_seconds = watch.seconds();
@@ -116,6 +122,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
             let mut suspicions = survey.suspicions(focus.is_some());
             suspicions.extend(doubt);
             suspicions.extend(sky_doubt(&model.scene, up));
+            suspicions.extend(bent_patches(pipeline, &model));
             progress.warn(&suspicions);
             Ok(Prepared {
                 model,
@@ -192,4 +199,16 @@ fn model_problem(error: ModelError, span: std::ops::Range<usize>) -> Diagnostic 
         ModelError::Accel(_) => "change the scene",
     };
     Diagnostic { span, message: error.to_string(), help: help.into() }
+}
+
+/// Returns a warning if replicas meet patches that are not flat.
+fn bent_patches(pipeline: &Pipeline, model: &Model) -> Option<String> {
+    let has_replicas = pipeline.flat_stages().any(|stage| {
+        matches!(&stage.action, Action::Multipath(multipath) if matches!(multipath.transport, Transport::Replicas(_)))
+    });
+    (has_replicas && model.mesh.has_bent_patches()).then(|| {
+        "some patches join small triangles of bent surfaces, which a line may cross twice; `Replicas` does not foresee this and \
+         may bring such a patch too much light; set `of: Triangles` in `Subdivide`"
+            .into()
+    })
 }

@@ -176,7 +176,8 @@ impl<'a> DisplayMesh<'a> {
 
 /// Returns the groups of nodes that share one irradiance.
 fn groups(scene: &Scene, mesh: &PatchMesh, polygons: &Polygons, irradiance: &[Rgb]) -> Groups {
-    let mut groups = Groups::new(polygons.node_count());
+    let has_backs = scene.triangle_ids().any(|t| scene.is_active(t, Side::Back));
+    let mut groups = Groups::new(polygons.node_count(), 1 + usize::from(has_backs));
     let mut pieces = Vec::with_capacity(polygons.node_count());
     for (polygon, start, nodes) in polygons.iter().filter(|(.., nodes)| nodes.len() > 2) {
         let len = nodes.len();

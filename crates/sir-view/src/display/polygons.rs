@@ -50,11 +50,12 @@ impl Polygons {
     pub(super) fn new(scene: &Scene, mesh: &PatchMesh) -> Self {
         let (middle, distance) = median_extent(scene.vertices());
         let tolerance = TOLERANCE * distance;
-        let (pieces, on_rim) = pieces(scene, mesh, Weld::new(middle, tolerance));
+        let (mut pieces, on_rim) = pieces(scene, mesh, Weld::new(middle, tolerance));
         let seams = Seams::new(&pieces, &on_rim, 2.5 * tolerance);
-        let pieces = seams.divide(&pieces, &on_rim);
-        drop(on_rim);
-        pieces.joined(mesh, 2.5 * tolerance)
+        let points = std::mem::take(&mut pieces.points);
+        let divided = Self { points, ..seams.divide(&pieces, &on_rim) };
+        drop((pieces, on_rim, seams));
+        divided.joined(mesh, 2.5 * tolerance)
     }
 
     /// Returns the polygons with the numbers of their first nodes.
@@ -96,55 +97,61 @@ impl Polygons {
     fn joined(self, mesh: &PatchMesh, tolerance: f64) -> Self {
         let mut outlines = Outlines::default();
         let mut needed = vec![false; self.points.len()];
-        // Which run of pieces is one outline, or empty if its pieces are shown.
-        let mut runs: Vec<(std::ops::Range<usize>, Vec<u32>)> = Vec::new();
-        let all: Vec<usize> = (0..self.list.len()).collect();
-        for run in all.chunk_by(|&a, &b| {
-            self.list[a].patch == self.list[b].patch && mesh.divisions(self.list[a].triangle).is_none()
-        }) {
-            let range = run[0]..run[run.len() - 1] + 1;
-            let is_cell = mesh.divisions(self.list[run[0]].triangle).is_none();
-            let outline = is_cell
-                .then(|| outlines.of(range.clone().map(|i| self.nodes_of(i))))
-                .flatten()
-                .unwrap_or_default();
-            if outline.is_empty() {
-                let nodes = range.clone().flat_map(|i| self.nodes_of(i));
-                nodes.filter(|node| node.is_corner).for_each(|node| needed[node.point as usize] = true);
+        let mut joined = Self { list: Vec::with_capacity(self.list.len()), ..Self::default() };
+        let is_cell = |polygon: &Polygon| mesh.divisions(polygon.triangle).is_none();
+        let mut next = 0;
+        for run in self.list.chunk_by(|a, b| a.patch == b.patch && is_cell(a)) {
+            let range = next..next + run.len();
+            next = range.end;
+            let pieces = || range.clone().map(|i| self.nodes_of(i));
+            let outline = if is_cell(&run[0]) { outlines.of(pieces()) } else { None };
+            if let Some(outline) = outline {
+                joined.begin(run[0].triangle, run[0].patch);
+                let nodes: Vec<Node> =
+                    outline.into_iter().map(|point| Node { point, is_corner: false }).collect();
+                for i in 0..nodes.len() {
+                    needed[nodes[i].point as usize] |= !self.is_straight(around(&nodes, i), tolerance);
+                }
+                joined.nodes.extend(nodes);
             } else {
-                let len = outline.len();
-                for i in 0..len {
-                    let around = [outline[(i + len - 1) % len], outline[i], outline[(i + 1) % len]];
-                    if !is_straight(around.map(|p| self.points[p as usize]), tolerance) {
-                        needed[outline[i] as usize] = true;
-                    }
+                for (polygon, nodes) in run.iter().zip(pieces()) {
+                    joined.begin(polygon.triangle, polygon.patch);
+                    joined.nodes.extend_from_slice(nodes);
+                    nodes.iter().for_each(|node| needed[node.point as usize] |= node.is_corner);
                 }
             }
-            runs.push((range, outline));
         }
-        let mut joined = Self { points: Vec::new(), list: Vec::new(), nodes: Vec::new() };
-        for (range, outline) in runs {
-            if outline.is_empty() {
-                for i in range {
-                    joined.begin(self.list[i].triangle, self.list[i].patch);
-                    let nodes = self.nodes_of(i).iter().copied();
-                    joined.nodes.extend(nodes.filter(|node| needed[node.point as usize]));
-                    joined.end();
-                }
-                continue;
-            }
-            joined.begin(self.list[range.start].triangle, self.list[range.start].patch);
-            let kept: Vec<u32> = outline.into_iter().filter(|&p| needed[p as usize]).collect();
-            let len = kept.len();
-            for i in 0..len {
-                let around = [kept[(i + len - 1) % len], kept[i], kept[(i + 1) % len]];
-                let is_corner = !is_straight(around.map(|p| self.points[p as usize]), tolerance);
-                joined.nodes.push(Node { point: kept[i], is_corner });
-            }
-            joined.end();
-        }
+        joined.reduce(&needed, |around| self.is_straight(around, tolerance));
         Self { points: self.points, ..joined }
     }
+
+    /// True if the middle one of three points lies between the others.
+    fn is_straight(&self, around: [u32; 3], tolerance: f64) -> bool {
+        is_straight(around.map(|point| self.points[point as usize]), tolerance)
+    }
+
+    /// Removes nodes that no polygon needs, and finds the corners of outlines, which have none yet.
+    fn reduce(&mut self, needed: &[bool], is_straight: impl Fn([u32; 3]) -> bool) {
+        let (mut kept, mut nodes) = (0, Vec::new());
+        for polygon in 0..self.list.len() {
+            nodes.clear();
+            nodes.extend(self.nodes_of(polygon).iter().filter(|node| needed[node.point as usize]));
+            let is_outline = nodes.iter().all(|node: &Node| !node.is_corner);
+            self.list[polygon].start = kept as u32;
+            for i in 0..nodes.len() {
+                let is_corner = nodes[i].is_corner || is_outline && !is_straight(around(&nodes, i));
+                self.nodes[kept] = Node { is_corner, ..nodes[i] };
+                kept += 1;
+            }
+        }
+        self.nodes.truncate(kept);
+    }
+}
+
+/// Returns the points of a node and of those before and after it.
+fn around(nodes: &[Node], i: usize) -> [u32; 3] {
+    let len = nodes.len();
+    [(i + len - 1) % len, i, (i + 1) % len].map(|k| nodes[k].point)
 }
 
 /// Returns the pieces of all patches as polygons and, for the edge that begins at each node, true if it lies on an edge of a
@@ -224,7 +231,7 @@ impl Seams {
         Self { edges, between, starts }
     }
 
-    /// Returns polygons with their edges divided.
+    /// Returns polygons with their edges divided, without the points.
     fn divide(&self, polygons: &Polygons, on_rim: &[bool]) -> Polygons {
         let mut divided = Polygons { points: polygons.points.clone(), list: Vec::new(), nodes: Vec::new() };
         for (Polygon { triangle, patch, .. }, start, nodes) in polygons.iter() {

@@ -42,36 +42,38 @@ impl EdgePiece {
 /// Disjoint sets (union-find) of pairs (node, side) that share one irradiance, with the sums that determine it.
 pub(super) struct Groups {
     parents: Vec<u32>,
-    sums: Vec<Sum>,
-}
-
-#[derive(Clone, Copy, Default)]
-struct Sum {
-    irradiance: Rgb,
-    weight: f64,
-    has_corner: bool,
-}
-
-impl std::ops::AddAssign for Sum {
-    fn add_assign(&mut self, other: Self) {
-        self.irradiance += other.irradiance;
-        self.weight += other.weight;
-        self.has_corner |= other.has_corner;
-    }
-}
-
-fn slot(node: u32, side: Side) -> usize {
-    2 * node as usize + usize::from(side == Side::Back)
+    /// Sum of irradiance times weight in three bands, and sum of weights.
+    sums: Vec<[f32; 4]>,
+    has_corner: Vec<bool>,
+    /// Sides per node: 1 if no surface has an active back.
+    sides: usize,
 }
 
 impl Groups {
-    pub(super) fn new(nodes: usize) -> Self {
-        Self { parents: (0..2 * nodes as u32).collect(), sums: vec![Sum::default(); 2 * nodes] }
+    pub(super) fn new(nodes: usize, sides: usize) -> Self {
+        let count = nodes * sides;
+        Self {
+            parents: (0..count as u32).collect(),
+            sums: vec![[0.0; 4]; count],
+            has_corner: vec![false; count],
+            sides,
+        }
+    }
+
+    fn slot(&self, node: u32, side: Side) -> usize {
+        self.sides * node as usize + usize::from(side == Side::Back)
     }
 
     /// Adds the irradiance of a patch at a node of its polygon, which is a corner or lies on an edge.
     pub(super) fn add(&mut self, node: u32, side: Side, irradiance: Rgb, weight: f64, is_corner: bool) {
-        self.sums[slot(node, side)] += Sum { irradiance: weight * irradiance, weight, has_corner: is_corner };
+        let slot = self.slot(node, side);
+        let [r, g, b] = (weight * irradiance).to_array();
+        self.add_to(slot, [r, g, b, weight].map(|x| x as f32), is_corner);
+    }
+
+    fn add_to(&mut self, slot: usize, more: [f32; 4], has_corner: bool) {
+        self.sums[slot].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        self.has_corner[slot] |= has_corner;
     }
 
     /// Unites the sides that continue each other, and adds up their sums.
@@ -88,8 +90,7 @@ impl Groups {
         for i in 0..self.parents.len() {
             let root = self.root(i);
             if root != i {
-                let sum = self.sums[i];
-                self.sums[root] += sum;
+                self.add_to(root, self.sums[i], self.has_corner[i]);
             }
         }
     }
@@ -109,7 +110,8 @@ impl Groups {
         let is_active = |p: EdgePiece, side| scene.is_active(TriangleId(p.triangle), side);
         if is_active(a, side_a) && is_active(b, side_b) {
             for end in 0..2 {
-                let (x, y) = (self.root(slot(a.nodes[end], side_a)), self.root(slot(b.nodes[end], side_b)));
+                let (x, y) =
+                    (self.root(self.slot(a.nodes[end], side_a)), self.root(self.slot(b.nodes[end], side_b)));
                 // The smallest number is the root, regardless of the order of the calls.
                 self.parents[x.max(y)] = x.min(y) as u32;
             }
@@ -132,9 +134,9 @@ impl Groups {
     /// Returns the number of the set of a node and a side, and its irradiance. The irradiance is `None` if no patch of
     /// the set has a corner there, so that the node only divides an edge.
     pub(super) fn find(&mut self, node: u32, side: Side) -> (usize, Option<Rgb>) {
-        let root = self.root(slot(node, side));
-        let sum = self.sums[root];
-        (root, sum.has_corner.then(|| sum.irradiance / sum.weight))
+        let root = self.root(self.slot(node, side));
+        let [r, g, b, weight] = self.sums[root].map(f64::from);
+        (root, self.has_corner[root].then(|| Rgb::new(r, g, b) / weight))
     }
 }
 
