@@ -43,7 +43,14 @@ const CLOSE_ENOUGH: f64 = 2e-3;
 /// Returns the regions of a scene, in the order of their first triangles.
 pub(crate) fn layout(scene: &Scene, surfaces: &Surfaces, size: PatchSize) -> Result<Vec<Region>, MeshError> {
     size.check()?;
-    let whole = |width: f64| Layout { scene, surfaces, size, width }.regions();
+    let inside = surfaces.flat.iter().filter(|surface| surface.is_inside);
+    let area: f64 = inside.map(|surface| surface.area).sum();
+    let whole = |width: f64| {
+        if area / (width * width) > f64::from(u32::MAX) {
+            return Err(MeshError::TooMany);
+        }
+        Layout { scene, surfaces, size, width }.regions()
+    };
     match size {
         PatchSize::MaxArea(area) => whole(area.sqrt()),
         PatchSize::MaxEdge(edge) => whole(edge),
@@ -51,8 +58,6 @@ pub(crate) fn layout(scene: &Scene, surfaces: &Surfaces, size: PatchSize) -> Res
             if target > u64::from(u32::MAX) {
                 return Err(MeshError::TooMany);
             }
-            let inside = surfaces.flat.iter().filter(|surface| surface.is_inside);
-            let area: f64 = inside.map(|surface| surface.area).sum();
             search((area / target.max(1) as f64).sqrt(), target as f64, whole)
         }
     }

@@ -105,6 +105,8 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     });
     let focus = focus.transpose()?;
     let cells = how.estimated_cells(&built.scene, focus.map(|focus| focus.bounds()));
+    // What cannot even be counted is an error of the pipeline.
+    let cells = cells.filter(|&cells| cells <= f64::from(u32::MAX));
     refuse_more_than_available((BYTES_PER_CELL * cells.unwrap_or(0.0)) as usize)?;
     match Model::within(built.scene, how, focus.map(|focus| focus.bounds())) {
         Ok(model) if problems.is_empty() => {
