@@ -20,23 +20,29 @@ pub fn median_extent(points: &[DVec3]) -> (DVec3, f64) {
     (middle, median(points.iter().map(|point| point.distance(middle)).collect()))
 }
 
+/// Mark of no point.
+const NONE: u32 = u32::MAX;
+
 /// Set of points of which no two are closer than a tolerance.
 #[derive(Debug)]
 pub struct Weld {
     tolerance: f64,
     origin: DVec3,
     points: Vec<DVec3>,
-    cells: HashMap<[i64; 3], Vec<u32>>,
+    /// Last point in each cell.
+    cells: HashMap<[i64; 3], u32>,
+    /// Point before each one in its cell, or [`NONE`].
+    before: Vec<u32>,
 }
 
 impl Weld {
     /// Creates an empty set; `origin` is any point near the others.
     #[must_use]
     pub fn new(origin: DVec3, tolerance: f64) -> Self {
-        Self { tolerance, origin, points: Vec::new(), cells: HashMap::new() }
+        Self { tolerance, origin, points: Vec::new(), cells: HashMap::new(), before: Vec::new() }
     }
 
-    /// Returns the number of the point at this position: the first one within the tolerance, otherwise a new one.
+    /// Returns the number of the point at this position: one within the tolerance, otherwise a new one.
     pub fn add(&mut self, p: DVec3) -> u32 {
         // Cells are several tolerances wide, so most points require a search of one cell, and none of more than eight.
         let cell =
@@ -45,18 +51,20 @@ impl Weld {
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
-                    let near = self.cells.get(&[x, y, z]).into_iter().flatten();
-                    let is_near = |&&i: &&u32| {
-                        self.points[i as usize].distance_squared(p) <= self.tolerance * self.tolerance
-                    };
-                    if let Some(&i) = near.clone().find(is_near) {
-                        return i;
+                    let mut next = self.cells.get(&[x, y, z]).copied().unwrap_or(NONE);
+                    while next != NONE {
+                        let distance = self.points[next as usize].distance_squared(p);
+                        if distance <= self.tolerance * self.tolerance {
+                            return next;
+                        }
+                        next = self.before[next as usize];
                     }
                 }
             }
         }
         let number = self.points.len() as u32;
-        self.cells.entry(cell(p)).or_default().push(number);
+        let before = self.cells.insert(cell(p), number);
+        self.before.push(before.unwrap_or(NONE));
         self.points.push(p);
         number
     }

@@ -76,7 +76,7 @@ pub struct Solved {
 /// Light of one side of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SideLight {
-    /// Triangle that contains the patch.
+    /// A triangle of the surface to which the patch belongs.
     pub triangle: TriangleId,
     /// Patch.
     pub patch: PatchId,
@@ -96,7 +96,7 @@ impl Solver {
     pub fn new(scene: Scene) -> Self {
         Self {
             scene,
-            subdivision: Subdivision::Triangles(PatchSize::Count(10_000)),
+            subdivision: Subdivision::Surfaces(PatchSize::Count(10_000)),
             first: 1_000_000.into(),
             second: None,
             global: 2_000_000,
@@ -106,10 +106,10 @@ impl Solver {
         }
     }
 
-    /// Sets the approximate number of patches.
+    /// Sets the approximate number of patches, of surfaces.
     #[must_use]
     pub fn patches(self, count: u64) -> Self {
-        self.subdivision(Subdivision::Triangles(PatchSize::Count(count)))
+        self.subdivision(Subdivision::Surfaces(PatchSize::Count(count)))
     }
 
     /// Sets the subdivision of the scene into patches.

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use sir_geom::BoundingBox;
 
-use crate::surfaces::{FlatSurface, Surfaces};
+use crate::surfaces::beside::Surfaces;
+use crate::surfaces::flat::FlatSurface;
 
 /// Cosine of the largest angle between the normals of a patch and its parts: 15°.
 const MIN_COSINE: f64 = 0.965_925_826_289_068_3;

@@ -2,56 +2,11 @@
 
 mod adjacency;
 mod bent;
+mod beside;
 mod flat;
 mod overlap;
 
-use sir_geom::{BoundingBox, Scene};
-
 pub(crate) use adjacency::Adjacency;
 pub(crate) use bent::join;
+pub(crate) use beside::Surfaces;
 pub(crate) use flat::FlatSurface;
-
-/// Flat surfaces of a scene, with those beside each.
-pub(crate) struct Surfaces {
-    pub(crate) adjacency: Adjacency,
-    /// In the order of their first triangles.
-    pub(crate) flat: Vec<FlatSurface>,
-    /// Offset of the neighbors of each surface, and their number at the end.
-    starts: Vec<u32>,
-    /// Surfaces that a surface continues in, across an edge and bent.
-    neighbors: Vec<u32>,
-}
-
-impl Surfaces {
-    /// Finds the surfaces of a scene. Those whose centroid is not in the box, if one is given, are not to be cut.
-    pub(crate) fn new(scene: &Scene, bounds: Option<BoundingBox>) -> Self {
-        let adjacency = Adjacency::new(scene);
-        let (flat, of_triangle) = flat::flat_surfaces(scene, &adjacency, bounds);
-        let (mut starts, mut neighbors) = (Vec::with_capacity(flat.len() + 1), Vec::new());
-        for (number, surface) in (0..).zip(&flat) {
-            starts.push(neighbors.len() as u32);
-            let first = neighbors.len();
-            let beyond = surface.triangles.iter().flat_map(|&t| adjacency.of(t));
-            neighbors.extend(beyond.map(|(_, t)| of_triangle[t.index()]).filter(|&other| other != number));
-            neighbors[first..].sort_unstable();
-            let mut last = None;
-            let mut kept = first;
-            for i in first..neighbors.len() {
-                if last != Some(neighbors[i]) {
-                    last = Some(neighbors[i]);
-                    neighbors[kept] = neighbors[i];
-                    kept += 1;
-                }
-            }
-            neighbors.truncate(kept);
-        }
-        starts.push(neighbors.len() as u32);
-        Self { adjacency, flat, starts, neighbors }
-    }
-
-    /// Returns the surfaces beside a surface.
-    fn beside(&self, surface: u32) -> &[u32] {
-        let [start, end] = [0, 1].map(|i| self.starts[surface as usize + i] as usize);
-        &self.neighbors[start..end]
-    }
-}

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use sir_geom::Rgb;
+use sir_mesh::Subdivision;
 use sir_radiosity::{Model, Quanta, Repeats};
 
 use crate::error::Error;
@@ -22,8 +23,12 @@ const LINES_BYTES: usize = POWER_BYTES + 64 + 72 + 48;
 /// Bytes of the program itself and of its buffers, of which copies of tallies for several threads are the largest.
 const PROGRAM_BYTES: usize = 32 << 20;
 
-/// Bytes per side of the display mesh of images and lit meshes: measured on two million sides, rounded up.
-const DISPLAY_BYTES: usize = 200;
+/// Bytes per side of the display mesh of images and lit meshes, of patches that are triangles and of patches of surfaces:
+/// measured, rounded up. A cell is shown as four triangles around its center.
+const DISPLAY_BYTES: [usize; 2] = [200, 500];
+
+/// Bytes per triangle that finding the surfaces needs, and that the process keeps: measured, rounded up.
+const SURFACE_BYTES: usize = 200;
 
 /// Bytes per pixel of the largest image: colors while it is rendered and when it is finished, and its file.
 const PIXEL_BYTES: usize = 2 * 24 + 16;
@@ -46,6 +51,11 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     let Model { scene, mesh, accel } = model;
     let sides = mesh.side_count();
     let solution = 2 * size_of::<Rgb>();
+    let has_surfaces = |stage: &Stage| match &stage.action {
+        Action::Subdivide(subdivide) => matches!(subdivide.subdivision(), Subdivision::Surfaces(_)),
+        _ => false,
+    };
+    let surfaces = usize::from(pipeline.stages.iter().any(has_surfaces));
     // The light is summed over repeats wherever it is shown or measured.
     let has_lines = |stage: &Stage| stage.action.lines() > 0;
     let stages = pipeline.stages.iter().zip(pipeline.stages.iter().skip(1).map(Some).chain([None]));
@@ -71,13 +81,13 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     });
     let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles()) + scene.appearance_bytes()),
-        ("patches", mesh.bytes() + mesh.paint_bytes()),
+        ("patches", mesh.bytes() + mesh.paint_bytes() + surfaces * SURFACE_BYTES * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing),
         (
             "pictures and lit meshes",
             sides * displays.min(1) * solution
-                + sides * displays * DISPLAY_BYTES
+                + sides * displays * DISPLAY_BYTES[surfaces]
                 + pixels.max().unwrap_or(0) * PIXEL_BYTES,
         ),
     ];

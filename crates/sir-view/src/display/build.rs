@@ -8,7 +8,8 @@ use sir_geom::{Rgb, Scene, Side, triangulate};
 use sir_mesh::PatchMesh;
 
 use crate::display::mesh::{DisplayMesh, DisplayVertex, active_sides, rgb};
-use crate::display::polygons::{Node, Polygons, shown_with};
+use crate::display::node::Node;
+use crate::display::polygons::{Polygons, shown_with};
 use crate::display::smooth::{EdgePiece, Groups};
 
 impl<'a> DisplayMesh<'a> {

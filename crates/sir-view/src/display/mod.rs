@@ -4,6 +4,7 @@ mod build;
 mod denoise;
 mod levels;
 mod mesh;
+mod node;
 mod outlines;
 mod polygons;
 mod smooth;

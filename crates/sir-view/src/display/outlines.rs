@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::display::polygons::Node;
+use crate::display::node::Node;
 
 /// Finds outlines. The buffers are reused.
 #[derive(Default)]

@@ -10,6 +10,7 @@ use glam::DVec3;
 use sir_geom::{Barycentric, PointTree, Scene, TriangleId, Weld, median_extent};
 use sir_mesh::{PatchId, PatchMesh};
 
+use crate::display::node::Node;
 use crate::display::outlines::{Outlines, is_straight};
 
 /// Distance below which points are welded, in typical distances of vertices from the middle of the scene.
@@ -22,14 +23,6 @@ pub(super) struct Polygon {
     pub(super) triangle: TriangleId,
     pub(super) patch: PatchId,
     start: u32,
-}
-
-/// A node of a polygon.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Node {
-    pub(super) point: u32,
-    /// True for a corner; false if the node only divides an edge.
-    pub(super) is_corner: bool,
 }
 
 /// Polygons of all patches: for each triangle, those of the patches that are shown with it.
