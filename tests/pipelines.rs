@@ -58,7 +58,7 @@ const OPEN_BOX_MATERIALS: &str = "newmtl glow\nKd 0.5 0.5 0.5\nKe 1 2 4\nnewmtl 
 const OPEN_BOX_PIPELINE: &str = r#"Pipeline(
     stages: [
         Load(path: "open.obj", sides: Front),
-        Subdivide(patches: 40),
+        Subdivide(patches: 40, of: Triangles),
         FirstShot(lines: 20_000),
         Multipath(lines: 20_000, transport: Replicas(tail: 4_000)),
         Save([Table(path: "patches.csv")]),

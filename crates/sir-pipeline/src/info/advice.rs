@@ -201,16 +201,17 @@ fn patches(info: &Info) -> Option<Setting> {
     if info.largest_triangle < 0.002 {
         return None;
     }
-    let patches = (2 * info.triangles).max(20_000);
+    // Flat surfaces need few, however many triangles they have.
+    let patches = info.triangles.clamp(20_000, 200_000);
     // Rounded up to one digit, because it is only a suggestion.
     let unit = 10usize.pow(patches.ilog10());
     let patches = patches.div_ceil(unit) * unit;
     Some(Setting {
         set: format!("Subdivide(patches: {})", grouped(patches as u64)),
         why: format!(
-            "the largest triangle has {} of the area, and light is constant on a patch; these patches have edges of about {} m",
+            "the largest triangle has {} of the area, and light is constant on a patch; these patches are about {} m wide",
             percent(info.largest_triangle),
-            length((2.0 * info.area / patches as f64).sqrt())
+            length((info.area / patches as f64).sqrt())
         ),
     })
 }
