@@ -42,8 +42,8 @@ impl EdgePiece {
 /// Disjoint sets (union-find) of pairs (node, side) that share one irradiance, with the sums that determine it.
 pub(super) struct Groups {
     parents: Vec<u32>,
-    /// Sum of irradiance times weight in three bands, and sum of weights.
-    sums: Vec<[f32; 4]>,
+    /// Weighted mean of the irradiance in three bands, and sum of weights. Means of equal values are exact.
+    means: Vec<[f32; 4]>,
     has_corner: Vec<bool>,
     /// Sides per node: 1 if no surface has an active back.
     sides: usize,
@@ -54,7 +54,7 @@ impl Groups {
         let count = nodes * sides;
         Self {
             parents: (0..count as u32).collect(),
-            sums: vec![[0.0; 4]; count],
+            means: vec![[0.0; 4]; count],
             has_corner: vec![false; count],
             sides,
         }
@@ -67,12 +67,17 @@ impl Groups {
     /// Adds the irradiance of a patch at a node of its polygon, which is a corner or lies on an edge.
     pub(super) fn add(&mut self, node: u32, side: Side, irradiance: Rgb, weight: f64, is_corner: bool) {
         let slot = self.slot(node, side);
-        let [r, g, b] = (weight * irradiance).to_array();
+        let [r, g, b] = irradiance.to_array();
         self.add_to(slot, [r, g, b, weight].map(|x| x as f32), is_corner);
     }
 
     fn add_to(&mut self, slot: usize, more: [f32; 4], has_corner: bool) {
-        self.sums[slot].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        let [r, g, b, weight] = more;
+        let mean = &mut self.means[slot];
+        mean[3] += weight;
+        // Without weight there is nothing to add.
+        let share = if weight > 0.0 { weight / mean[3] } else { 0.0 };
+        mean.iter_mut().zip([r, g, b]).for_each(|(mean, more)| *mean += share * (more - *mean));
         self.has_corner[slot] |= has_corner;
     }
 
@@ -90,7 +95,7 @@ impl Groups {
         for i in 0..self.parents.len() {
             let root = self.root(i);
             if root != i {
-                self.add_to(root, self.sums[i], self.has_corner[i]);
+                self.add_to(root, self.means[i], self.has_corner[i]);
             }
         }
     }
@@ -135,8 +140,8 @@ impl Groups {
     /// the set has a corner there, so that the node only divides an edge.
     pub(super) fn find(&mut self, node: u32, side: Side) -> (usize, Option<Rgb>) {
         let root = self.root(self.slot(node, side));
-        let [r, g, b, weight] = self.sums[root].map(f64::from);
-        (root, self.has_corner[root].then(|| Rgb::new(r, g, b) / weight))
+        let [r, g, b, _] = self.means[root].map(f64::from);
+        (root, self.has_corner[root].then(|| Rgb::new(r, g, b)))
     }
 }
 
