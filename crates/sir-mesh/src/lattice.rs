@@ -164,10 +164,30 @@ impl Placement {
     pub(crate) fn piece_in(&self, size: Size, cell: u32, triangle: TriangleId) -> Option<Piece> {
         let (columns, mut found) = (u32::from(size.columns), None);
         let [column, row] = [cell % columns, cell / columns].map(|x| x as u16);
+        if let Some(corners) = self.whole_cell(size, [column, row]) {
+            return Some(Piece::new(triangle, &corners));
+        }
         let strip = between(&self.corners(), 1, row, size.rows);
         let cell = between(&strip, 0, column, size.columns);
         visit_cell(&cell, size, [column, row], triangle, &mut |cut| found = Some(cut.piece));
         found
+    }
+
+    /// Returns the corners of a cell if the triangle covers all of it. This is faster than clipping.
+    fn whole_cell(&self, size: Size, [column, row]: [u16; 2]) -> Option<[Barycentric; 4]> {
+        // Cells on the rim of the lattice reach to infinity.
+        let is_inner = |place: u16, count: u16| place > 0 && place + 1 < count;
+        if !is_inner(column, size.columns) || !is_inner(row, size.rows) {
+            return None;
+        }
+        let [[a, b], [c, d]] = self.edges.map(|edge| edge.map(f64::from));
+        let inverse = 1.0 / (a * d - b * c);
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[right, up]| {
+            let x = f64::from(column) + right - f64::from(self.start[0]);
+            let y = f64::from(row) + up - f64::from(self.start[1]);
+            Barycentric { v: (x * d - y * c) * inverse, w: (a * y - b * x) * inverse }
+        });
+        corners.iter().all(|p| p.v >= 0.0 && p.w >= 0.0 && p.v + p.w <= 1.0).then_some(corners)
     }
 
     fn corners(&self) -> Corners {
