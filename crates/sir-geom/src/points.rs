@@ -131,6 +131,15 @@ impl<'a> PointTree<'a> {
         self.visit(0, 0..self.order.len(), &Segment { a, along: b - a, tolerance }, found);
     }
 
+    /// Replaces `found` by the points between the ends of the segment `ab` whose distance to it is at most `tolerance`,
+    /// from `a` to `b`, with their parameter along it, which is neither 0 nor 1.
+    pub fn between(&self, a: DVec3, b: DVec3, tolerance: f64, found: &mut Vec<(f64, u32)>) {
+        found.clear();
+        self.near_segment(a, b, tolerance, found);
+        found.retain(|&(t, _)| 0.0 < t && t < 1.0);
+        found.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+    }
+
     fn visit(
         &self,
         node: usize,

@@ -106,6 +106,19 @@ impl PatchMesh {
         self.numbering.pieces(triangle, patch)
     }
 
+    /// Returns the corners of all pieces of a patch in space.
+    ///
+    /// `scene` must be the scene that was divided into these patches.
+    #[must_use]
+    pub fn corners(&self, scene: &Scene, triangle: TriangleId, patch: PatchId) -> Vec<DVec3> {
+        let mut all = Vec::new();
+        for piece in self.pieces(triangle, patch) {
+            let corners = scene.corners(piece.triangle);
+            all.extend(piece.corners().iter().map(|point| point.point(corners)));
+        }
+        all
+    }
+
     /// Calls `visit` with all pieces of a triangle, and the patch of each.
     pub fn for_each_piece_of(&self, triangle: TriangleId, visit: impl FnMut(PatchId, Piece)) {
         self.numbering.for_each_piece_of(triangle, visit);

@@ -119,12 +119,9 @@ fn divided(mut edges: Vec<Edge>, positions: &[DVec3], tolerance: f64) -> Vec<Edg
     let (mut parts, mut found) = (Vec::with_capacity(edges.len()), Vec::new());
     for same in edges.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
         let ends = [same[0].low, same[0].high];
-        found.clear();
         let [a, b] = ends.map(|i| positions[i as usize]);
-        tree.near_segment(a, b, 2.5 * tolerance, &mut found);
-        found.retain(|&(t, i)| 0.0 < t && t < 1.0 && !ends.contains(&i));
-        found.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-        let between = found.iter().map(|&(_, i)| i);
+        tree.between(a, b, 2.5 * tolerance, &mut found);
+        let between = found.iter().map(|&(_, i)| i).filter(|i| !ends.contains(i));
         let on: Vec<u32> = std::iter::once(ends[0]).chain(between).chain([ends[1]]).collect();
         for edge in same {
             parts.extend(on.windows(2).map(|ends| Edge {

@@ -1,5 +1,7 @@
 //! Flat surfaces and their neighbors.
 
+use std::collections::BTreeSet;
+
 use sir_geom::{BoundingBox, Scene};
 
 use crate::surfaces::adjacency::Adjacency;
@@ -24,20 +26,9 @@ impl Surfaces {
         let (mut starts, mut neighbors) = (Vec::with_capacity(flat.len() + 1), Vec::new());
         for (number, surface) in (0..).zip(&flat) {
             starts.push(neighbors.len() as u32);
-            let first = neighbors.len();
             let beyond = surface.triangles.iter().flat_map(|&t| adjacency.of(t));
-            neighbors.extend(beyond.map(|(_, t)| of_triangle[t.index()]).filter(|&other| other != number));
-            neighbors[first..].sort_unstable();
-            let mut last = None;
-            let mut kept = first;
-            for i in first..neighbors.len() {
-                if last != Some(neighbors[i]) {
-                    last = Some(neighbors[i]);
-                    neighbors[kept] = neighbors[i];
-                    kept += 1;
-                }
-            }
-            neighbors.truncate(kept);
+            let others = beyond.map(|(_, t)| of_triangle[t.index()]).filter(|&other| other != number);
+            neighbors.extend(others.collect::<BTreeSet<u32>>());
         }
         starts.push(neighbors.len() as u32);
         Self { adjacency, flat, starts, neighbors }

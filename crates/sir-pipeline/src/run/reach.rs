@@ -90,10 +90,5 @@ fn lit_box(model: &Model, solution: &Solution) -> Option<BoundingBox> {
         sum += power;
         is_part
     });
-    let pieces = brightest.flat_map(|&(_, _, triangle, patch)| mesh.pieces(triangle, patch));
-    let corners = pieces.flat_map(|piece| {
-        let corners = scene.corners(piece.triangle);
-        piece.corners().iter().map(|point| point.point(corners)).collect::<Vec<_>>()
-    });
-    BoundingBox::of(corners)
+    BoundingBox::of(brightest.flat_map(|&(_, _, triangle, patch)| mesh.corners(scene, triangle, patch)))
 }

@@ -107,14 +107,7 @@ impl Sources {
 
     /// True if a small lamp is close to a patch.
     pub(super) fn are_close_to(&self, model: &Model, triangle: TriangleId, patch: PatchId) -> bool {
-        let pieces = model.mesh.pieces(triangle, patch);
-        let corners: Vec<DVec3> = pieces
-            .flat_map(|piece| {
-                let corners = model.scene.corners(piece.triangle);
-                piece.corners().iter().map(|b| b.point(corners)).collect::<Vec<_>>()
-            })
-            .collect();
-        let (center, radius) = around(&corners);
+        let (center, radius) = around(&model.mesh.corners(&model.scene, triangle, patch));
         self.lamps
             .iter()
             .any(|&(lamp, size)| size < SMALL * radius && lamp.distance(center) < CLOSE * radius + size)

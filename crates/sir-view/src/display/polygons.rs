@@ -212,13 +212,10 @@ impl Seams {
         let mut found = Vec::new();
         for &(a, b) in &edges {
             starts.push(between.len() as u32);
-            found.clear();
             let [from, to] = [a, b].map(|p| polygons.points[p as usize]);
-            tree.near_segment(from, to, tolerance, &mut found);
-            let mut on: Vec<(f64, u32)> = found.iter().map(|&(t, i)| (t, ends[i as usize])).collect();
-            on.retain(|&(t, p)| 0.0 < t && t < 1.0 && p != a && p != b);
-            on.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-            between.extend(on.iter().map(|point| point.1));
+            tree.between(from, to, tolerance, &mut found);
+            let on = found.iter().map(|&(_, i)| ends[i as usize]);
+            between.extend(on.filter(|&point| point != a && point != b));
         }
         starts.push(between.len() as u32);
         Self { edges, between, starts }
@@ -226,18 +223,15 @@ impl Seams {
 
     /// Returns polygons with their edges divided, without the points.
     fn divide(&self, polygons: &Polygons, on_rim: &[bool]) -> Polygons {
-        let mut divided = Polygons { points: polygons.points.clone(), list: Vec::new(), nodes: Vec::new() };
+        let mut divided = Polygons { list: Vec::with_capacity(polygons.list.len()), ..Polygons::default() };
         for (Polygon { triangle, patch, .. }, start, nodes) in polygons.iter() {
             divided.begin(triangle, patch);
             for (i, node) in nodes.iter().enumerate() {
                 divided.nodes.push(*node);
                 let next = nodes[(i + 1) % nodes.len()];
                 let edge = (node.point.min(next.point), node.point.max(next.point));
-                let Some(place) = on_rim[start as usize + i].then(|| self.edges.binary_search(&edge).ok())
-                else {
-                    continue;
-                };
-                let Some(place) = place else { continue };
+                let place = on_rim[start as usize + i].then(|| self.edges.binary_search(&edge));
+                let Some(Ok(place)) = place else { continue };
                 let [from, to] = [0, 1].map(|k| self.starts[place + k] as usize);
                 let inner = self.between[from..to].iter().map(|&point| Node { point, is_corner: false });
                 if node.point < next.point {
