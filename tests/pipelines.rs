@@ -256,7 +256,7 @@ fn triangles(table: &Table) -> String {
     let mut sides: BTreeMap<(u32, bool), Vec<&Row>> = BTreeMap::new();
     for (i, row) in table.rows.iter().enumerate() {
         // The front of a patch comes first.
-        let back = i > 0 && table.rows[i - 1].patch == row.patch;
+        let back = i > 0 && table.rows[i - 1].number == row.number;
         sides.entry((row.triangle, back)).or_default().push(row);
     }
     for ((triangle, back), rows) in sides {

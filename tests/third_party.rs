@@ -102,7 +102,7 @@ fn solve(model: &Model, effort: &Effort) -> Vec<Vec<Rgb>> {
 
 fn model(path: &Path, effort: &Effort) -> Model {
     let scene = load(path, &LoadOptions::default()).unwrap().scene;
-    Model::new(scene, Subdivision::Triangles(PatchSize::Count(effort.patches))).unwrap()
+    Model::new(scene, Subdivision::Surfaces(PatchSize::Count(effort.patches))).unwrap()
 }
 
 /// Differences in units of their standard errors, each with a description.

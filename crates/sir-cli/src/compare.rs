@@ -24,13 +24,13 @@ pub fn text(c: &Comparison) -> String {
     }
     if !c.worst.is_empty() {
         out += "\nrows that contribute most to the difference in luminance:\n";
-        out += "       row      patch   triangle          first         second      z\n";
+        out += &format!("       row {:>10}   triangle          first         second      z\n", c.of);
         for w in &c.worst {
             let [first, second] = w.luminance;
             let z = w.z.map_or("-".into(), |z| format!("{z:.1}"));
             out += &format!(
                 "{:>10} {:>10} {:>10} {first:>14.6} {second:>14.6} {z:>6}\n",
-                w.row, w.patch, w.triangle
+                w.row, w.part, w.triangle
             );
         }
     }
@@ -46,13 +46,14 @@ pub fn to_json(c: &Comparison) -> Value {
         .iter()
         .map(|w| {
             json!({
-                "row": w.row, "patch": w.patch, "triangle": w.triangle,
+                "row": w.row, "part": w.part, "triangle": w.triangle,
                 "luminance": w.luminance, "z": w.z,
             })
         })
         .collect();
     json!({
-        "version": 1,
+        "version": 2,
+        "of": c.of,
         "rows": c.rows,
         "luminance": band(&c.luminance),
         "red": band(&c.bands[0]),

@@ -54,6 +54,7 @@ mod numbering;
 mod parts;
 mod piece;
 mod properties;
+mod side_sums;
 mod subdivision;
 mod surfaces;
 
@@ -61,4 +62,5 @@ pub use error::MeshError;
 pub use index::{PatchId, SideId};
 pub use mesh::PatchMesh;
 pub use piece::Piece;
+pub use side_sums::{Part, Per, SideSums};
 pub use subdivision::{PatchSize, Subdivision};

@@ -242,6 +242,15 @@ impl PatchMesh {
         PatchId(self.numbering.first_patch(triangle) + self.numbering.locate(triangle, point).0)
     }
 
+    /// Returns the sides of a triangle that take part in light transport.
+    #[must_use]
+    pub fn sides_of(&self, triangle: TriangleId) -> &'static [Side] {
+        match self.numbering.cut(triangle).sides() {
+            2 => &[Side::Front, Side::Back],
+            _ => &[Side::Front],
+        }
+    }
+
     /// Returns the given side of a patch; `None` if that side does not take part in light transport.
     #[inline]
     #[must_use]

@@ -42,7 +42,7 @@ impl Case {
     fn with(points: &str, stages: &str) -> Self {
         let text = format!(
             "(seed: 3, {points}, stages: [Load(path: \"furnace.gltf\"), Subdivide(patches: 200), {stages}, \
-             Save([Table(path: \"patches.npy\"), Image(path: \"view.exr\", width: 12, samples: 1)])])"
+             Save([Table(path: \"patches.npy\"), Table(path: \"triangles.npy\", per: Triangle), Table(path: \"materials.csv\", per: Material), Image(path: \"view.exr\", width: 12, samples: 1)])])"
         );
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/furnace/furnace.gltf");
         let folder = tempfile::tempdir().unwrap();

@@ -72,6 +72,7 @@ mod model;
 mod patch_side;
 mod power;
 mod received;
+mod repeated_sums;
 mod repeated_totals;
 mod repeats;
 mod replicas;

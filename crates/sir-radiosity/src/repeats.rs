@@ -8,14 +8,18 @@
 //! follows Student's t distribution with `k − 1` degrees of freedom. With fewer than [`MIN_REPEATS`], the variance is
 //! therefore the mean of the variances that the runs state, over `k`.
 
+use std::sync::Arc;
+
+use sir_geom::Rgb;
 use sir_lines::GlobalLines;
-use sir_mesh::SideId;
+use sir_mesh::{SideId, SideSums};
 
 use crate::counted::{Counted, CountedPower, common_scale, ratio};
 use crate::focus_sides::FocusSides;
 use crate::model::Model;
-use crate::power::Quanta;
+use crate::power::{PowerUnit, Quanta};
 use crate::received::Received;
+use crate::repeated_sums::RepeatedSums;
 use crate::visitor::Visitor;
 use crate::visitor::{from_word, to_word, visit_counts, visit_floats, visit_slice};
 use crate::workers::{BLOCK, Workers, map_sides};
@@ -37,6 +41,8 @@ pub struct Repeats {
     stated: Vec<[f32; 3]>,
     /// Domain of the lines that are counted, and their number in all repeats.
     lines: Option<(GlobalLines, u64)>,
+    /// Sums over sides whose errors are wanted.
+    sums: Vec<RepeatedSums>,
 }
 
 /// Sums over repeats of one side, in 72 bytes.
@@ -104,10 +110,19 @@ impl Repeats {
     /// Memory per side \[bytes\].
     pub const BYTES_PER_SIDE: usize = size_of::<Sums>() + size_of::<[f32; 3]>();
 
+    /// Memory per part of sums over sides \[bytes\].
+    pub const BYTES_PER_PART: usize = RepeatedSums::BYTES_PER_PART;
+
     /// Returns the sums over no repeats, for runs with this number of sides.
     #[must_use]
     pub fn new(sides: usize) -> Self {
-        Self { count: 0, sides: vec![Sums::default(); sides], stated: vec![[0.0; 3]; sides], lines: None }
+        Self {
+            count: 0,
+            sides: vec![Sums::default(); sides],
+            stated: vec![[0.0; 3]; sides],
+            lines: None,
+            sums: Vec::new(),
+        }
     }
 
     /// Returns the sums over no repeats, of which there will be [`MIN_REPEATS`] at least. The errors that single repeats
@@ -115,6 +130,13 @@ impl Repeats {
     #[must_use]
     pub fn of_many(sides: usize) -> Self {
         Self { stated: Vec::new(), ..Self::new(sides) }
+    }
+
+    /// Adds sums over sides, whose errors [`errors_of_sums`](Self::errors_of_sums) returns. There must be no repeat yet.
+    #[must_use]
+    pub fn with_sums(mut self, sums: &[Arc<SideSums>]) -> Self {
+        self.sums = sums.iter().cloned().map(RepeatedSums::new).collect();
+        self
     }
 
     /// Returns the number of repeats so far.
@@ -139,6 +161,10 @@ impl Repeats {
         counted: Option<&Counted>,
         workers: &dyn Workers,
     ) {
+        for sums in &mut self.sums {
+            let per_crossing = |side: SideId, band: usize| self.sides[side.index()].per_crossing(band);
+            sums.add(model, received, counted, &per_crossing, self.count == 0);
+        }
         let n = self.count as f64;
         map_sides(workers, &model.mesh, self.sides.chunks_mut(BLOCK), |sides, sums| {
             for ((_, side), sums) in sides.iter().zip(sums) {
@@ -249,6 +275,24 @@ impl Repeats {
         })
     }
 
+    /// Returns the standard errors of the irradiance and of the radiosity of each part of the sums with this index
+    /// \[W/m²\], means over the covered area; `None` if there are not enough repeats. `unit` is the unit of the power.
+    #[must_use]
+    pub fn errors_of_sums(
+        &self,
+        index: usize,
+        model: &Model,
+        in_focus: &FocusSides,
+        unit: PowerUnit,
+    ) -> Option<Vec<[Rgb; 2]>> {
+        let sums = self.sums.get(index).filter(|_| self.have_spread())?;
+        let brought = |side: SideId| {
+            let is_counted = self.lines.is_some() && in_focus.contains(side);
+            if is_counted { self.sides[side.index()].brought.map(f64::from) } else { [0.0; 3] }
+        };
+        Some(sums.errors(model, self.count, unit, &brought))
+    }
+
     /// Visits the sums. `domain` is that of the lines that are counted.
     pub fn visit(&mut self, domain: impl FnOnce() -> Option<GlobalLines>, visitor: &mut dyn Visitor) {
         let mut lines = self.lines.as_ref().map_or(0, |(_, lines)| *lines);
@@ -260,6 +304,7 @@ impl Repeats {
             self.stated = Vec::new();
         }
         visit_floats(&mut self.stated, visitor);
+        self.sums.iter_mut().for_each(|sums| sums.visit(visitor));
         visit_slice(
             &mut self.sides,
             visitor,

@@ -6,6 +6,8 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test helpers may panic and print")]
 
+use std::sync::Arc;
+
 mod common;
 
 use common::{batches, gray, replicas, scene, shoot, shoot_again};
@@ -13,7 +15,7 @@ use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_lines::{Domain, seed_of_repeat};
-use sir_mesh::{PatchSize, Subdivision};
+use sir_mesh::{PatchSize, Per, SideSums, Subdivision};
 use sir_radiosity::{
     FocusSides, MIN_REPEATS, Model, OneWorker, PowerUnit, Received, Repeats, ReplicaSettings, Solution,
     Transported,
@@ -26,6 +28,9 @@ const NORMAL: f64 = 1.959_964;
 
 /// The same quantile of Student's t with seven degrees of freedom, and its root mean square: `√(7/5)`.
 const STUDENT: (f64, f64) = (2.364_624, 1.183_216);
+
+/// The same quantile with six degrees of freedom: the first repeat is not among the deviations of sums.
+const STUDENT_OF_SIX: f64 = 2.446_912;
 
 /// A model with the exact irradiance of all its patches: by the sources alone, and in total.
 struct Exact {
@@ -71,6 +76,15 @@ fn lamp_in_a_sphere() -> Exact {
     Exact { name: "lamp in a sphere", model, direct, all: direct / (1.0 - reflectance), per_patch: 60 }
 }
 
+/// Returns a cube with one bright face. Its exact answer is not needed.
+fn lamp_in_a_cube() -> Exact {
+    let mut b = SceneBuilder::new();
+    let [wall, lamp] = [0.0, 1.0].map(|exitance| b.add_material(gray(exitance, 0.8)));
+    shapes::cuboid(&mut b, DVec3::ZERO, DVec3::ONE, [wall, wall, wall, wall, wall, lamp], Facing::Inward);
+    let model = Model::new(scene(b), Subdivision::Surfaces(PatchSize::Count(150))).unwrap();
+    Exact { name: "lamp in a cube", model, direct: Rgb::ZERO, all: Rgb::ZERO, per_patch: 100 }
+}
+
 impl Exact {
     /// Returns the number of lines for which each patch is met by `per_patch` lines on average.
     fn lines(&self, per_patch: u64, ends: u64) -> u64 {
@@ -107,9 +121,9 @@ impl Exact {
         (all.uncounted, all.unit)
     }
 
-    /// Returns the mean of the smallest number of repeats for which errors are computed from their spread.
-    fn repeats(&self, seed: u64) -> Outcome {
-        let mut repeats = Repeats::new(self.model.mesh.side_count());
+    /// Returns the smallest number of repeats for which errors are computed from their spread, and the unit of the power.
+    fn repeated(&self, seed: u64, sums: &[Arc<SideSums>]) -> (Repeats, PowerUnit) {
+        let mut repeats = Repeats::new(self.model.mesh.side_count()).with_sums(sums);
         let mut unit = None;
         for repeat in 0..MIN_REPEATS {
             let all = self.transported(24, seed_of_repeat(seed, repeat));
@@ -117,7 +131,64 @@ impl Exact {
             unit = Some(all.unit);
         }
         assert!(repeats.have_spread());
-        (repeats.mean(&self.model, &FocusSides::all(), &OneWorker), unit.unwrap())
+        (repeats, unit.unwrap())
+    }
+
+    /// Returns the mean of repeats.
+    fn repeats(&self, seed: u64) -> Outcome {
+        let (repeats, unit) = self.repeated(seed, &[]);
+        (repeats.mean(&self.model, &FocusSides::all(), &OneWorker), unit)
+    }
+
+    /// Checks the errors of the mean irradiance of parts of the scene against the deviations from the mean of all seeds.
+    /// Prints how large these are over the errors that follow if patches are independent, too.
+    fn assert_honest_sums(&self, per: Per) {
+        let Model { scene, mesh, .. } = &self.model;
+        let sums = Arc::new(SideSums::new(scene, mesh, per));
+        let parts = sums.parts().len();
+        let (mut means, mut errors) = (vec![Vec::new(); parts], vec![Vec::new(); parts]);
+        let mut independent = 0.0;
+        for seed in 1..=SEEDS {
+            let (repeats, unit) = self.repeated(seed, std::slice::from_ref(&sums));
+            let mean = repeats.mean(&self.model, &FocusSides::all(), &OneWorker);
+            let Solution { irradiance, error } = Solution::new(&self.model, &mean, unit);
+            let of_parts = repeats.errors_of_sums(0, &self.model, &FocusSides::all(), unit).unwrap();
+            let mut totals = vec![(Rgb::ZERO, Rgb::ZERO, 0.0); parts];
+            mesh.for_each_side(|t, patch, _, side| {
+                let (area, e, se) =
+                    (mesh.covered_area(t, patch), irradiance[side.index()], error[side.index()]);
+                for (part, share) in sums.shares(side) {
+                    let (sum, squares, all) = &mut totals[part];
+                    *sum += share * area * e;
+                    *squares += (share * area * se) * (share * area * se);
+                    *all += share * area;
+                }
+            });
+            for (part, (sum, squares, area)) in totals.into_iter().enumerate() {
+                means[part].push(sum / area);
+                errors[part].push(of_parts[part][0]);
+                independent += (squares / (area * area)).element_sum();
+            }
+        }
+        let (mut within, mut deviations, mut stated) = (0.0, 0.0, 0.0);
+        for (means, errors) in means.iter().zip(&errors) {
+            let mean = means.iter().sum::<Rgb>() / SEEDS as f64;
+            for (value, error) in means.iter().zip(errors) {
+                deviations += ((value - mean) * (value - mean)).element_sum();
+                stated += (error * error).element_sum();
+                let z = (value - mean) / error;
+                within += z.to_array().iter().filter(|z| z.abs() <= STUDENT_OF_SIX).count() as f64;
+            }
+        }
+        let (spread, within) =
+            (f64::sqrt(deviations / stated), 100.0 * within / (3 * SEEDS as usize * parts) as f64);
+        let independent = f64::sqrt(deviations / independent);
+        println!(
+            "{}, {per:?}: {spread:.3} of the stated error, within {within:.1} %, independent {independent:.3}",
+            self.name
+        );
+        assert!((0.9..1.1).contains(&spread), "{}, {per:?}: {spread}", self.name);
+        assert!((93.0..97.5).contains(&within), "{}, {per:?}: {within} %", self.name);
     }
 
     /// Checks one way to light the scene. If the stated errors are correct, 5 % of the deviations exceed `quantile`,
@@ -178,6 +249,12 @@ fn errors_of_batches() {
 fn errors_of_replicas() {
     let exact = furnace();
     exact.assert_honest("replicas", exact.all, (NORMAL, 1.0), Exact::replicas);
+}
+
+#[test]
+fn errors_of_sums() {
+    furnace().assert_honest_sums(Per::Face);
+    lamp_in_a_cube().assert_honest_sums(Per::Material);
 }
 
 #[test]

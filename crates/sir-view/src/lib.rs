@@ -85,7 +85,7 @@ pub use picture::{Picture, PictureSettings};
 pub use png::write_png;
 pub use render::render;
 pub use sir_geom::luminance;
-pub use table::{BandComparison, COLUMNS, Comparison, Row, Table, WorstRow, compare};
+pub use table::{BandComparison, Comparison, Row, Table, WorstRow, compare};
 pub use tone::{srgb, tone_map};
 pub use up::{UpClue, more_faces_along_z, up_clues};
 pub use viewpoint::default_camera;

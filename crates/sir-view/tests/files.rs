@@ -7,8 +7,8 @@ use std::fs;
 use glam::DVec3;
 use sir_geom::shapes::{self, Facing};
 use sir_geom::{Camera, Material, Rgb, Scene, SceneBuilder, Sides};
-use sir_mesh::{PatchMesh, PatchSize, Subdivision};
-use sir_view::{COLUMNS, DisplayMesh, Exposure, Table, compare, write_glb};
+use sir_mesh::{PatchMesh, PatchSize, Per, SideSums, Subdivision};
+use sir_view::{DisplayMesh, Exposure, Row, Table, compare, write_glb};
 
 fn scene() -> Scene {
     let mut builder = SceneBuilder::new();
@@ -121,7 +121,59 @@ fn tables_are_read_back_to_the_last_bit() {
     let bytes = fs::read(&npy).unwrap();
     let header = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
     assert_eq!(header % 64, 0);
-    assert_eq!(bytes.len() - header, 136 * written.rows.len());
+    assert_eq!(bytes.len() - header, 160 * written.rows.len());
+}
+
+#[test]
+fn tables_of_parts_are_means_of_patches() {
+    let scene = scene();
+    let mesh = PatchMesh::new(&scene, Subdivision::Surfaces(PatchSize::MaxArea(0.02))).unwrap();
+    let e = irradiance(&mesh);
+    let se: Vec<Rgb> = e.iter().map(|e| 0.01 * *e).collect();
+    let patches = Table::new(&scene, &mesh, &e, &se);
+    let dir = tempfile::tempdir().unwrap();
+    for (per, count) in [(Per::Triangle, 14), (Per::Face, 7), (Per::Material, 3), (Per::Group, 1)] {
+        let sums = SideSums::new(&scene, &mesh, per);
+        let table = Table::of_parts(&scene, &mesh, &sums, &e, &se, None);
+        assert_eq!(table.rows.len(), count);
+        let total =
+            |table: &Table, of: fn(&Row) -> Rgb| table.rows.iter().map(|r| r.area * of(r)).sum::<Rgb>();
+        for of in [|row: &Row| row.radiosity, |row: &Row| row.irradiance, |_: &Row| Rgb::ONE] {
+            let [whole, parts] = [&patches, &table].map(|table| total(table, of));
+            assert!((whole - parts).length() < 1e-5 * whole.length(), "{per:?}: {whole} {parts}");
+        }
+        let squares = |table: &Table| -> f64 {
+            table.rows.iter().map(|r| (r.area * r.irradiance_error).length_squared()).sum()
+        };
+        let [whole, parts] = [&patches, &table].map(squares);
+        if per != Per::Triangle {
+            assert!((whole / parts - 1.0).abs() < 1e-6, "{per:?}: {whole} {parts}");
+        }
+        for name in ["t.csv", "t.npy"] {
+            let path = dir.path().join(name);
+            if name == "t.csv" { table.write_csv(&path) } else { table.write_npy(&path) }.unwrap();
+            assert_eq!(Table::read(&path).unwrap(), table, "{per:?}");
+        }
+        assert_eq!(compare(&table, &table).unwrap().rows, count);
+        assert!(compare(&table, &patches).unwrap_err().to_string().contains("of the second a patch"));
+    }
+}
+
+#[test]
+fn errors_of_parts_are_those_of_repeats() {
+    let scene = scene();
+    let mesh = PatchMesh::new(&scene, Subdivision::PerFace).unwrap();
+    let (e, se) = (vec![Rgb::ONE; 7], vec![Rgb::splat(0.1); 7]);
+    let sums = SideSums::new(&scene, &mesh, Per::Material);
+    let stated: Vec<_> =
+        (0..3).map(|i| [Rgb::splat(f64::from(i)), Rgb::splat(10.0 + f64::from(i))]).collect();
+    let table = Table::of_parts(&scene, &mesh, &sums, &e, &se, Some(&stated));
+    assert_eq!(table.names, ["red \"wall\"", "white", "lamp"]);
+    for (i, row) in table.rows.iter().enumerate() {
+        assert_eq!([row.irradiance_error, row.error], stated[i]);
+    }
+    assert!((table.rows[0].radiosity - Rgb::new(0.8, 0.1, 0.1)).length() < 1e-6);
+    assert!((table.rows[1].area - 2.0).abs() < 1e-12, "both sides");
 }
 
 #[test]
@@ -149,8 +201,10 @@ fn tables_of_other_programs_are_read() {
 fn a_broken_table_names_its_fault() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("broken");
-    let header = COLUMNS.join(",");
-    let row = "0,0,1,0,0,0,0,0,1,1,1,1,1,1,1,0,0,0";
+    let good = table(&scene(), Subdivision::PerFace);
+    good.write_csv(&path).unwrap();
+    let header = fs::read_to_string(&path).unwrap().lines().next().unwrap().to_owned();
+    let row = "0,0,1,0,0,0,0,0,1,1,1,1,1,1,1,0,0,0,0,0,0";
     let faults: [(&str, &[&str]); 6] = [
         ("", &["broken", "column patch"]),
         (&header.replace("E_g", "E_q"), &["column E_g"]),
@@ -167,7 +221,6 @@ fn a_broken_table_names_its_fault() {
         let error = Table::read(&path).unwrap_err().to_string();
         assert!(parts.iter().all(|part| error.contains(part)), "{error}");
     }
-    let good = table(&scene(), Subdivision::PerFace);
     good.write_npy(&path).unwrap();
     let bytes = fs::read(&path).unwrap();
     for (cut, part) in [(bytes.len() - 1, "row 7 of 7"), (8, "broken")] {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sir_geom::Rgb;
-use sir_mesh::Subdivision;
+use sir_mesh::{Per, SideSums, Subdivision};
 use sir_radiosity::{Model, Quanta, Repeats};
 
 use crate::error::Error;
@@ -63,6 +63,12 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     // The pilot of a `Solve` keeps its first shot, before anything is summed.
     let pilot = usize::from(pipeline.flat_stages().any(|stage| matches!(stage.action, Action::Solve(_))));
     let tracing = LINES_BYTES + (pilot * POWER_BYTES).max(used * Repeats::BYTES_PER_SIDE);
+    // Sums of tables: at most two sides of each triangle have one, and a piece of each patch is usual.
+    let sums = pipeline.parts_of_tables().into_iter().map(|per| {
+        let most = if per < Per::Material { 2 * scene.triangles().len() } else { 0 };
+        let pieces = sides + 2 * scene.triangles().len();
+        used * most * Repeats::BYTES_PER_PART + pieces * SideSums::BYTES_PER_PIECE
+    });
     let shown = pipeline.outputs().any(|o| !matches!(o, Output::Table(_)));
     // EXR images need a display mesh of standard errors, too.
     let measured =
@@ -83,7 +89,7 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles()) + scene.appearance_bytes()),
         ("patches", mesh.bytes() + mesh.paint_bytes() + surfaces * SURFACE_BYTES * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
-        ("computing the light", sides * tracing),
+        ("computing the light", sides * tracing + sums.sum::<usize>()),
         (
             "pictures and lit meshes",
             sides * displays.min(1) * solution

@@ -1,8 +1,10 @@
 //! Contents of a pipeline file, with every default filled in.
 
+use std::collections::BTreeSet;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
+use sir_mesh::Per;
 use sir_radiosity::Points;
 
 use crate::error::Error;
@@ -147,6 +149,12 @@ impl Pipeline {
             Action::Save(Save { outputs }) => outputs.as_slice(),
             _ => &[],
         })
+    }
+
+    /// Returns the parts of the scene for which there are tables, each once.
+    pub(crate) fn parts_of_tables(&self) -> BTreeSet<Per> {
+        let per = |output: &Output| if let Output::Table(table) = output { table.per } else { None };
+        self.outputs().filter_map(per).collect()
     }
 
     /// Returns the paths of all files in the run directory that the stages write.

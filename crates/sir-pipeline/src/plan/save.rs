@@ -2,8 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use sir_mesh::Per;
+
 use crate::plan::image::Image;
 use crate::text::field::Format as _;
+use crate::text::formats::Choice;
 use crate::text::paths::OutputFile;
 use crate::text::reader::Reader;
 use crate::text::record::{Body, Choose as _, choice, list_items, record, write_list};
@@ -23,7 +26,7 @@ choice! {
         Image(Image),
         /// Lit mesh, as binary glTF.
         Gltf(Gltf),
-        /// Radiosity, irradiance and error of every patch, as CSV or NPY.
+        /// Radiosity, irradiance and errors of patches or of other parts of the scene, as CSV or NPY.
         Table(Table),
     }
 }
@@ -38,19 +41,31 @@ record! {
 }
 
 record! {
-    /// Radiosity, irradiance and error of every patch.
+    /// Radiosity, irradiance and errors, of patches or of other parts of the scene.
     pub struct Table {
         /// `.csv`: text; `.npy`: the same data as a structured array for NumPy, smaller and faster.
         pub path: PathBuf = OutputFile { extensions: &["csv", "npy"], example: "patches.csv" }.required();
+        /// What has a row: each side of a patch, of a triangle or of a face; or each material or group.
+        pub per: Option<Per> = PER.or(None);
     }
 }
+
+const PER: Choice<Option<Per>> = Choice(&[
+    ("Patch", None),
+    ("Triangle", Some(Per::Triangle)),
+    ("Face", Some(Per::Face)),
+    ("Material", Some(Per::Material)),
+    ("Group", Some(Per::Group)),
+]);
 
 impl Output {
     /// Returns the path of the file inside the run directory.
     #[must_use]
     pub fn path(&self) -> &Path {
         match self {
-            Self::Image(Image { path, .. }) | Self::Gltf(Gltf { path }) | Self::Table(Table { path }) => path,
+            Self::Image(Image { path, .. }) | Self::Gltf(Gltf { path }) | Self::Table(Table { path, .. }) => {
+                path
+            }
         }
     }
 }

@@ -5,7 +5,8 @@
 //!   the stages with lines; `sharing`: their number; `split`: the lines of a `Solve`, `pilot`: how they are found; `reach`: the global lines that met what is lit.
 //! * `save`: images, lit scenes and tables; `sensor_files`: files of sensors.
 
-pub(crate) mod directory;
+pub(crate) mod computed;
+mod directory;
 pub(crate) mod execute;
 mod lighting;
 pub(crate) mod lock;

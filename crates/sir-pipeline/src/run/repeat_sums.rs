@@ -1,10 +1,12 @@
 //! Sums over the repeats of a run: what each stage has brought, and how many repeats there are and should be.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use sir_mesh::SideSums;
 use sir_parallel::{Communicator, StageTime, Threads};
 use sir_radiosity::{
-    MIN_REPEATS, PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, Solution, Visitor, share,
+    MIN_REPEATS, Model, PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, Solution, Visitor, share,
 };
 
 use crate::format::{duration, grouped};
@@ -14,6 +16,7 @@ use crate::report::lines::Facts;
 use crate::report::result::{
     Convergence, DomainReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, StageReport, Time,
 };
+use crate::run::computed::{Computed, PartErrors};
 use crate::run::lighting::{Done, Lighting};
 use crate::run::sharing::{SHARED, Sharing};
 
@@ -35,6 +38,8 @@ pub(super) struct Step<'a> {
 /// Sums over all repeats so far. A checkpoint has them in addition to the state of the current stage.
 pub(super) struct RepeatSums<'a> {
     prepared: &'a Prepared,
+    /// Parts of the scene for which there are tables.
+    parts: Vec<Arc<SideSums>>,
     pub(super) steps: Vec<Step<'a>>,
     until: Until,
     at_most: Option<u64>,
@@ -82,9 +87,13 @@ impl<'a> RepeatSums<'a> {
         let most = at_most.unwrap_or(u64::MAX).min(SHARED);
         let share_rays = if let Until::Times(times) = until { times.min(most) } else { most };
         let sides = prepared.model.mesh.side_count();
-        let sums = || match until {
-            Until::Times(MIN_REPEATS..) if at_most.is_none() => Repeats::of_many(sides),
-            _ => Repeats::new(sides),
+        let parts = parts_of_tables(pipeline, prepared);
+        let sums = || {
+            let repeats = match until {
+                Until::Times(MIN_REPEATS..) if at_most.is_none() => Repeats::of_many(sides),
+                _ => Repeats::new(sides),
+            };
+            repeats.with_sums(&parts)
         };
         let mut steps = Vec::new();
         for (i, &(place, action)) in places.iter().enumerate() {
@@ -108,6 +117,7 @@ impl<'a> RepeatSums<'a> {
         }
         Self {
             prepared,
+            parts,
             steps,
             until,
             at_most,
@@ -273,7 +283,7 @@ impl<'a> RepeatSums<'a> {
     }
 
     /// Returns the report of a step with lines, and the mean of the light after it, if that is used. Frees the sums.
-    pub(super) fn report(&mut self, number: usize, threads: &Threads) -> (StageReport, Option<Solution>) {
+    pub(super) fn report(&mut self, number: usize, threads: &Threads) -> (StageReport, Option<Computed>) {
         let Prepared { model, inside, .. } = self.prepared;
         let before = self.steps[..=number].iter().map(|step| step.totals.counts().lines).sum();
         let (count, unit) = (self.count, self.unit.unwrap_or_else(|| PowerUnit::for_total(1.0, 0.0)));
@@ -287,11 +297,14 @@ impl<'a> RepeatSums<'a> {
         let (from, samples) =
             if light.have_spread() { (ErrorsFrom::Spread, count) } else { (ErrorsFrom::Lines, before) };
         let mean = light.mean(model, inside, threads);
+        let errors = |index| light.errors_of_sums(index, model, inside, unit);
+        let parts = self.parts.iter().cloned().enumerate();
+        let parts = parts.map(|(i, sums)| PartErrors { sums, errors: errors(i) }).collect();
         drop(light);
         let solution = Solution::new(model, &mean, unit);
         let errors = ErrorsReport { from, samples };
         report.light = Some(LightReport::new(model, inside, &solution, errors, mean.hash()));
-        (report, Some(solution))
+        (report, Some(Computed { solution, parts }))
     }
 
     /// Returns the time of all repeats.
@@ -304,6 +317,13 @@ impl<'a> RepeatSums<'a> {
         let lines = self.steps.iter().map(|step| step.totals.counts().lines).sum();
         Time::of_lines(time, lines)
     }
+}
+
+/// Returns the parts of the scene for which a pipeline has tables.
+fn parts_of_tables(pipeline: &Pipeline, prepared: &Prepared) -> Vec<Arc<SideSums>> {
+    let Model { scene, mesh, .. } = &prepared.model;
+    let kinds = pipeline.parts_of_tables();
+    kinds.into_iter().map(|per| Arc::new(SideSums::new(scene, mesh, per))).collect()
 }
 
 /// Returns the stages of a `Solve`, or the stage itself if it is another one.

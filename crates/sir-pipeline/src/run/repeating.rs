@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use sir_lines::seed_of_repeat;
 use sir_parallel::{Checkpoints, Saved, Start};
-use sir_radiosity::{Points, SensorStage, SensorTask, Solution};
+use sir_radiosity::{Points, SensorStage, SensorTask};
 
 use crate::error::Error;
 use crate::format::{duration, grouped};
@@ -17,6 +17,7 @@ use crate::progress::{PAUSE, StageProgress};
 use crate::ranks::agree;
 use crate::report::result::{StageReport, Time};
 use crate::report::sensors::SensorsReport;
+use crate::run::computed::Computed;
 use crate::run::execute::Run;
 use crate::run::lighting::Lighting;
 use crate::run::reach::{dark_warning, few_lines_warning};
@@ -143,14 +144,14 @@ impl Run<'_> {
 
     /// Reports all stages from number `first` on, and writes their files.
     fn report(&mut self, first: usize, repeating: &mut RepeatSums<'_>) -> Result<(), Error> {
-        let (threads, mut solution) = (self.threads(), None);
+        let (threads, mut computed) = (self.threads(), None);
         for (number, stage) in self.pipeline.stages.iter().enumerate().skip(first) {
             let watch = Stopwatch::start();
             let mut report = StageReport::of(stage.action.name(), Time::of(0.0));
             let steps = repeating.steps_of(number);
             match &stage.action {
                 Action::Save(save) => {
-                    self.save(solution.as_ref(), &save.outputs)?;
+                    self.save(computed.as_ref(), &save.outputs)?;
                     report.time = Time::of(watch.seconds());
                 }
                 Action::Sensors(sensors) => {
@@ -167,7 +168,7 @@ impl Run<'_> {
                     for step in steps {
                         let (part, light) = repeating.report(step, &threads);
                         self.warn_of_lines(repeating.steps[step].action, &part, light.as_ref());
-                        solution = light.or(solution);
+                        computed = light.or(computed);
                         report.stages.push(part);
                     }
                     report.light = report.stages.last_mut().and_then(|stage| stage.light.take());
@@ -184,11 +185,11 @@ impl Run<'_> {
                 }
                 _ => {
                     for step in steps {
-                        // The previous solution is no longer needed, and takes much memory.
-                        drop(solution.take());
+                        // The previous light is no longer needed, and takes much memory.
+                        drop(computed.take());
                         let (part, light) = repeating.report(step, &threads);
                         self.warn_of_lines(&stage.action, &part, light.as_ref());
-                        (report, solution) = (part, light);
+                        (report, computed) = (part, light);
                         if !repeating.is_single() {
                             report.repeats = Some(repeating.count);
                         }
@@ -206,12 +207,12 @@ impl Run<'_> {
     }
 
     /// Warns of what is wrong with the lines of a stage.
-    fn warn_of_lines(&mut self, action: &Action, report: &StageReport, light: Option<&Solution>) {
+    fn warn_of_lines(&mut self, action: &Action, report: &StageReport, light: Option<&Computed>) {
         let Some(lines) = &report.lines else { return };
         self.warn(unshot_warning(action, lines));
         self.warn(dark_warning(action, lines));
         if let Some(light) = light {
-            self.warn(few_lines_warning(self.prepared, lines, light));
+            self.warn(few_lines_warning(self.prepared, lines, &light.solution));
         }
     }
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use sir_geom::Camera;
-use sir_radiosity::{Model, Solution};
+use sir_radiosity::Model;
 use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, ViewError};
 use sir_view::{default_camera, render, write_exr, write_glb, write_png};
 
@@ -16,6 +16,7 @@ use crate::prepare::cameras::chosen_camera;
 use crate::prepare::prepared::Prepared;
 use crate::progress::Progress;
 use crate::report::result::OutputReport;
+use crate::run::computed::{Computed, PartErrors};
 
 /// Ratio of height to width of an image whose camera has no aspect ratio.
 const DEFAULT_SHAPE: f64 = 0.75;
@@ -23,7 +24,7 @@ const DEFAULT_SHAPE: f64 = 0.75;
 /// Writes the outputs of a stage into a directory, one after the other, as long as `written` returns true.
 pub(crate) fn save(
     prepared: &Prepared,
-    solution: &Solution,
+    light: &Computed,
     outputs: &[Output],
     directory: &Path,
     threads: usize,
@@ -31,6 +32,7 @@ pub(crate) fn save(
     written: &mut dyn FnMut(OutputReport) -> bool,
 ) -> Result<(), Error> {
     let Model { scene, mesh, accel } = &prepared.model;
+    let solution = &light.solution;
     let lit = OnceCell::new();
     let display = || lit.get_or_init(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
     let denoised = if outputs.iter().any(is_denoised) {
@@ -78,8 +80,14 @@ pub(crate) fn save(
                 write_glb(&path, display(), Exposure::Auto, scene.cameras(), prepared.up)?;
                 "gltf"
             }
-            Output::Table(_) => {
-                let table = Table::new(scene, mesh, &solution.irradiance, &solution.error);
+            Output::Table(output) => {
+                let (irradiance, error) = (&solution.irradiance, &solution.error);
+                let table = match output.per.and_then(|per| light.parts(per)) {
+                    Some(PartErrors { sums, errors }) => {
+                        Table::of_parts(scene, mesh, sums, irradiance, error, errors.as_deref())
+                    }
+                    None => Table::new(scene, mesh, irradiance, error),
+                };
                 if has_extension(&path, "npy") {
                     table.write_npy(&path)?
                 } else {

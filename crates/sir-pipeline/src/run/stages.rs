@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering::Relaxed;
 
 use sir_parallel::{Checkpoints, Executor, RunError, Saved, Threads, cores};
-use sir_radiosity::{Measurement, Solution};
+use sir_radiosity::Measurement;
 
 use crate::error::Error;
 use crate::plan::{Action, Output, Sensors};
@@ -13,6 +13,7 @@ use crate::report::result::{
     BalanceReport, ErrorsFrom, LightReport, LinesReport, OutputReport, StageReport, Time,
 };
 use crate::report::sensors::SensorsReport;
+use crate::run::computed::Computed;
 use crate::run::execute::Run;
 use crate::run::save::save;
 use crate::run::sensor_files;
@@ -101,9 +102,9 @@ impl Run<'_> {
     }
 
     /// Writes the outputs of a `Save` on rank 0, if there is any light.
-    pub(crate) fn save(&mut self, solution: Option<&Solution>, outputs: &[Output]) -> Result<(), Error> {
-        let saved = match solution {
-            Some(solution) if self.comm.is_first() => self.write(solution, outputs),
+    pub(crate) fn save(&mut self, light: Option<&Computed>, outputs: &[Output]) -> Result<(), Error> {
+        let saved = match light {
+            Some(light) if self.comm.is_first() => self.write(light, outputs),
             _ => Ok(Vec::new()),
         };
         self.head.report.outputs.extend(agree(self.comm, saved)?);
@@ -111,10 +112,10 @@ impl Run<'_> {
     }
 
     /// Writes outputs until the run is asked to stop.
-    fn write(&self, solution: &Solution, outputs: &[Output]) -> Result<Vec<OutputReport>, Error> {
+    fn write(&self, light: &Computed, outputs: &[Output]) -> Result<Vec<OutputReport>, Error> {
         let mut reports = Vec::new();
         let threads = self.threads().0.get();
-        save(self.prepared, solution, outputs, &self.directory, threads, self.progress, &mut |report| {
+        save(self.prepared, light, outputs, &self.directory, threads, self.progress, &mut |report| {
             reports.push(report);
             !self.options.stop.load(Relaxed)
         })?;

@@ -96,7 +96,7 @@ mod tests {
 
     fn table(radiosities: &[f64]) -> Table {
         let row = |(i, &b): (usize, &f64)| Row {
-            patch: i as u32,
+            number: i as u32,
             triangle: 0,
             area: 2.0,
             center: DVec3::ZERO,
@@ -104,8 +104,9 @@ mod tests {
             radiosity: Rgb::splat(b),
             irradiance: Rgb::ZERO,
             error: Rgb::splat(0.5),
+            irradiance_error: Rgb::ZERO,
         };
-        Table { rows: radiosities.iter().enumerate().map(row).collect() }
+        Table { rows: radiosities.iter().enumerate().map(row).collect(), ..Table::default() }
     }
 
     #[test]

@@ -106,7 +106,7 @@ impl Subject {
 
     /// Returns the text of a derived pipeline.
     pub(crate) fn derived(&self, changes: &Changes) -> String {
-        let table = |name: &str| Output::Table(Table { path: PathBuf::from(name) });
+        let table = |name: &str| Output::Table(Table { path: PathBuf::from(name), per: None });
         let mut actions = Vec::new();
         for stage in &self.pipeline.stages {
             match &stage.action {

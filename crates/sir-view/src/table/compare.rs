@@ -1,9 +1,9 @@
-//! Comparison of two solutions of the same patches.
+//! Comparison of two solutions of the same patches, or of the same parts of a scene.
 
 use sir_geom::{Rgb, luminance};
 
 use crate::error::ViewError;
-use crate::table::patch_table::Table;
+use crate::table::row::{Columns, Table};
 
 /// Difference of the radiosities in one band, or in luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,13 +17,13 @@ pub struct BandComparison {
 }
 
 /// A row with a large difference between two tables.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WorstRow {
     /// Index of the row in both tables, from 0.
     pub row: usize,
-    /// Number of the patch.
-    pub patch: u32,
-    /// Number of the triangle in the scene's file.
+    /// Number of the patch, triangle or face, or name of the material or group.
+    pub part: String,
+    /// Number of the triangle in the scene's file; of a patch or face, that of its first one.
     pub triangle: u32,
     /// Luminance of the radiosity in the first and in the second table \[W/m²\].
     pub luminance: [f64; 2],
@@ -35,6 +35,8 @@ pub struct WorstRow {
 /// Result of [`compare`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
+    /// What a row is: `patch`, `triangle`, `face`, `material` or `group`.
+    pub of: &'static str,
     /// Number of rows compared.
     pub rows: usize,
     /// Differences in red, green and blue.
@@ -53,12 +55,12 @@ const MAX_WORST_ROWS: usize = 10;
 /// Largest relative difference of the areas of the same patch in two tables.
 const AREA_TOLERANCE: f64 = 1e-6;
 
-/// Compares the radiosities of two tables of the same patches. Differences are relative to the area-weighted mean
+/// Compares the radiosities of two tables of the same patches or parts. Differences are relative to the area-weighted mean
 /// radiosity of the first table (zero if both are black, infinite if only the first is).
 ///
 /// # Errors
 ///
-/// If the tables differ in the number of rows, or in the patch or area of a row.
+/// If the tables differ in the kind or number of rows, or in the patch (or part) or area of a row.
 pub fn compare(a: &Table, b: &Table) -> Result<Comparison, ViewError> {
     check_match(a, b)?;
     let band = |value: &dyn Fn(Rgb) -> f64| {
@@ -87,6 +89,7 @@ pub fn compare(a: &Table, b: &Table) -> Result<Comparison, ViewError> {
     order.sort_by(|&i, &j| weight(j).total_cmp(&weight(i)).then(i.cmp(&j)));
     order.truncate(MAX_WORST_ROWS);
     Ok(Comparison {
+        of: Columns::of(a.per).key(),
         rows: a.rows.len(),
         bands: [band(&|c| c.x), band(&|c| c.y), band(&|c| c.z)],
         luminance: band(&luminance),
@@ -95,7 +98,7 @@ pub fn compare(a: &Table, b: &Table) -> Result<Comparison, ViewError> {
             .into_iter()
             .map(|row| WorstRow {
                 row,
-                patch: a.rows[row].patch,
+                part: part(a, row),
                 triangle: a.rows[row].triangle,
                 luminance: luminances(row),
                 z: z_scores[row],
@@ -104,22 +107,29 @@ pub fn compare(a: &Table, b: &Table) -> Result<Comparison, ViewError> {
     })
 }
 
+/// Returns the number or name of a row.
+fn part(table: &Table, row: usize) -> String {
+    table.names.get(row).cloned().unwrap_or_else(|| table.rows[row].number.to_string())
+}
+
 fn check_match(a: &Table, b: &Table) -> Result<(), ViewError> {
     let mismatch = |why| Err(ViewError::Mismatch { why });
+    let [kind, other] = [a, b].map(|table| Columns::of(table.per).key());
+    if kind != other {
+        return mismatch(format!("a row of the first is a {kind}, of the second a {other}"));
+    }
     if a.rows.len() != b.rows.len() {
         return mismatch(format!("the first has {} rows, the second {}", a.rows.len(), b.rows.len()));
     }
-    for (number, (x, y)) in (1..).zip(a.rows.iter().zip(&b.rows)) {
-        if x.patch != y.patch {
-            return mismatch(format!(
-                "row {number} is patch {} in the first, {} in the second",
-                x.patch, y.patch
-            ));
+    for (i, (x, y)) in a.rows.iter().zip(&b.rows).enumerate() {
+        let (number, [this, that]) = (i + 1, [a, b].map(|table| part(table, i)));
+        if this != that {
+            return mismatch(format!("row {number} is {kind} {this} in the first, {that} in the second"));
         }
         if (x.area - y.area).abs() > AREA_TOLERANCE * x.area {
             return mismatch(format!(
-                "patch {} (row {number}) has the area {} in the first, {} in the second",
-                x.patch, x.area, y.area
+                "{kind} {this} (row {number}) has the area {} in the first, {} in the second",
+                x.area, y.area
             ));
         }
     }

@@ -1,11 +1,11 @@
-//! The per-patch table: the solution in numbers.
+//! Tables: the light of patches, or of parts of a scene, in numbers.
 
 mod compare;
 mod csv;
+mod files;
+mod light_table;
 mod npy;
-mod patch_table;
 mod row;
 
 pub use compare::{BandComparison, Comparison, WorstRow, compare};
-pub use patch_table::Table;
-pub use row::{COLUMNS, Row};
+pub use row::{Row, Table};
