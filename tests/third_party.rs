@@ -268,6 +268,10 @@ const SODA_IN_CONTACT: [&str; 5] = ["blue_vinyl", "chrome", "khaki", "normal_gla
 /// Frozen batches with and without repeats and random walks agree on it within .1 %.
 const SODA_OPEN: [&str; 1] = ["orange_vinyl"];
 
+/// Side of a cushion that is 5 % darker in the reference, 3.6 standard errors. Path tracing with exact geometry agrees with
+/// this program, with patches of triangles and with cells: .03304 ± .00011 in green, .03277 ± .00015 and .03274 ± .00013.
+const SODA_CUSHION: &str = "68959 ";
+
 /// Materials and triangles of an ice cream store by Greg Ward.
 #[test]
 #[ignore = "needs third-party scenes: set SIR_TEST_DATA to their folder"]
@@ -276,7 +280,8 @@ fn soda() {
     let effort = Effort { patches: 400_000, lines: (2_000_000, 6_000_000), seeds: 8 };
     let compared = Compared::of(folder, "soda.obj", &effort);
     assert_agrees(compared.by_material(&[&SODA_IN_CONTACT[..], &SODA_OPEN].concat()));
-    let triangles = compared.by_triangle(0.0);
+    let mut triangles = compared.by_triangle(0.0);
+    triangles.0.retain(|(what, _)| !what.starts_with(SODA_CUSHION));
     assert!(triangles.0.len() > 3 * 400);
     assert_agrees(triangles);
 }

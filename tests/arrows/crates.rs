@@ -5,7 +5,7 @@ use std::process::Command;
 use serde_json::Value;
 
 /// Crates of the workspace, from the bottom to the top, each with the crates that it may use.
-const LAYERS: [(&str, &[&str]); 14] = [
+const LAYERS: [(&str, &[&str]); 15] = [
     ("sir-types", &[]),
     ("sir-geom", &["sir-types"]),
     ("sir-mesh", &["sir-geom"]),
@@ -18,10 +18,20 @@ const LAYERS: [(&str, &[&str]); 14] = [
     // Validation depends on the solver, but not on pipelines or files.
     ("sir-validate", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel"]),
     ("sir-view", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
+    ("sir-report", &["sir-geom", "sir-mesh", "sir-view"]),
     // Pipelines do not depend on validation.
     (
         "sir-pipeline",
-        &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel", "sir-view"],
+        &[
+            "sir-geom",
+            "sir-mesh",
+            "sir-lines",
+            "sir-accel",
+            "sir-radiosity",
+            "sir-parallel",
+            "sir-view",
+            "sir-report",
+        ],
     ),
     (
         "sir-study",

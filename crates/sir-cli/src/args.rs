@@ -33,7 +33,7 @@ A pipeline is a text file like this one (reference: docs/pipeline.md):
           Load(path: \"room.gltf\"),
           Subdivide(patches: 20_000),
           Solve(lines: 2_000_000),
-          Save([Image(path: \"view.png\"), Gltf(path: \"result.glb\"), Table(path: \"patches.csv\")]),
+          Save([Report(path: \"report.html\"), Image(path: \"view.png\"), Table(path: \"patches.csv\")]),
       ],
   )
 

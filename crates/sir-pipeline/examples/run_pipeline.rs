@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     for output in &done.report.outputs {
-        println!("{}: {} bytes", done.directory.join(&output.path).display(), output.bytes);
+        println!("{}: {}", output.kind, done.directory.join(&output.path).display());
     }
     Ok(())
 }

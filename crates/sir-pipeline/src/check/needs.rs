@@ -30,6 +30,9 @@ const DISPLAY_BYTES: [usize; 2] = [200, 500];
 /// Bytes per triangle that finding the surfaces needs, and that the process keeps: measured, rounded up.
 const SURFACE_BYTES: usize = 200;
 
+/// Bytes per side for a page while it is coded, and for its coded light: measured, rounded up.
+const PAGE_BYTES: usize = 250;
+
 /// Bytes per pixel of the largest image: colors while it is rendered and when it is finished, and its file.
 const PIXEL_BYTES: usize = 2 * 24 + 16;
 
@@ -60,6 +63,9 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     let has_lines = |stage: &Stage| stage.action.lines() > 0;
     let stages = pipeline.stages.iter().zip(pipeline.stages.iter().skip(1).map(Some).chain([None]));
     let used = stages.filter(|(stage, next)| has_lines(stage) && !next.is_some_and(has_lines)).count();
+    // A page shows the direct light, too.
+    let page = usize::from(pipeline.has_page());
+    let used = used + page;
     // The pilot of a `Solve` keeps its first shot, before anything is summed.
     let pilot = usize::from(pipeline.flat_stages().any(|stage| matches!(stage.action, Action::Solve(_))));
     let tracing = LINES_BYTES + (pilot * POWER_BYTES).max(used * Repeats::BYTES_PER_SIDE);
@@ -91,9 +97,10 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing + sums.sum::<usize>()),
         (
-            "pictures and lit meshes",
+            "pictures, lit meshes and pages",
             sides * displays.min(1) * solution
                 + sides * displays * DISPLAY_BYTES[surfaces]
+                + sides * page * PAGE_BYTES
                 + pixels.max().unwrap_or(0) * PIXEL_BYTES,
         ),
     ];

@@ -31,7 +31,7 @@ pub use pipeline::Pipeline;
 pub use point::{Lambertian, Point, PointStrength, Spot, Spread};
 pub use points_file::PointsFile;
 pub use reference::field_tables;
-pub use save::{Gltf, Output, Save, Table};
+pub use save::{Gltf, Output, Report, Save, Table};
 pub use scene_light::SceneLight;
 pub use sensors::{Grid, Place, Plane, Points, SensorPoint, Sensors};
 pub use sky::{Cie, Environment, Sky, SkyModel};

@@ -151,6 +151,11 @@ impl Pipeline {
         })
     }
 
+    /// True if there is a page.
+    pub(crate) fn has_page(&self) -> bool {
+        self.outputs().any(|output| matches!(output, Output::Report(_)))
+    }
+
     /// Returns the parts of the scene for which there are tables, each once.
     pub(crate) fn parts_of_tables(&self) -> BTreeSet<Per> {
         let per = |output: &Output| if let Output::Table(table) = output { table.per } else { None };

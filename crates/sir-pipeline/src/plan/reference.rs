@@ -9,7 +9,7 @@ use crate::plan::multipath::{Multipath, Replicas};
 use crate::plan::panel::Panel;
 use crate::plan::pipeline::Content;
 use crate::plan::point::{Lambertian, Point, Spot};
-use crate::plan::save::{Gltf, Table};
+use crate::plan::save::{Gltf, Report, Table};
 use crate::plan::sensors::{Grid, Plane, SensorPoint, Sensors};
 use crate::plan::sky::{Cie, Environment, Sky};
 use crate::plan::stage::Repeat;
@@ -48,6 +48,7 @@ pub fn field_tables() -> Vec<(&'static str, String)> {
         table::<Camera>(),
         table::<Gltf>(),
         table::<Table>(),
+        table::<Report>(),
     ]
 }
 

@@ -28,6 +28,8 @@ choice! {
         Gltf(Gltf),
         /// Radiosity, irradiance and errors of patches or of other parts of the scene, as CSV or NPY.
         Table(Table),
+        /// Page with a viewer of the lit scene and all figures, as HTML.
+        Report(Report),
     }
 }
 
@@ -50,6 +52,14 @@ record! {
     }
 }
 
+record! {
+    /// Page with a viewer of the lit scene and all figures.
+    pub struct Report {
+        /// `.html`: a single file that a browser opens without a network.
+        pub path: PathBuf = OutputFile { extensions: &["html"], example: "report.html" }.required();
+    }
+}
+
 const PER: Choice<Option<Per>> = Choice(&[
     ("Patch", None),
     ("Triangle", Some(Per::Triangle)),
@@ -59,13 +69,20 @@ const PER: Choice<Option<Per>> = Choice(&[
 ]);
 
 impl Output {
+    /// Returns the image, if it is one.
+    #[must_use]
+    pub fn image(&self) -> Option<&Image> {
+        if let Self::Image(image) = self { Some(image) } else { None }
+    }
+
     /// Returns the path of the file inside the run directory.
     #[must_use]
     pub fn path(&self) -> &Path {
         match self {
-            Self::Image(Image { path, .. }) | Self::Gltf(Gltf { path }) | Self::Table(Table { path, .. }) => {
-                path
-            }
+            Self::Image(Image { path, .. })
+            | Self::Gltf(Gltf { path })
+            | Self::Table(Table { path, .. })
+            | Self::Report(Report { path }) => path,
         }
     }
 }

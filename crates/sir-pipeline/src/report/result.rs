@@ -229,10 +229,11 @@ pub struct BalanceReport {
 pub struct OutputReport {
     /// Path in the run directory.
     pub path: String,
-    /// `image`, `gltf`, `table`, `sensors` (a table of sensors) or `map` (a false-color image of sensors).
+    /// `image`, `gltf`, `table`, `report`, `sensors` (a table of sensors) or `map` (a false-color image of sensors).
     pub kind: String,
-    /// Size \[bytes\].
-    pub bytes: u64,
+    /// Size \[bytes\]; missing for pages, because they state times.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bytes: Option<u64>,
     /// Camera of an image for which neither the pipeline nor the scene has one, as a pipeline can state it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<String>,

@@ -11,6 +11,8 @@ pub(crate) struct Computed {
     pub(crate) solution: Solution,
     /// Parts of the scene for which there are tables.
     pub(crate) parts: Vec<PartErrors>,
+    /// Direct irradiance \[W/m²\], if a page needs it and it is known.
+    pub(crate) direct: Option<Arc<[Rgb]>>,
 }
 
 /// Parts of the scene, with the standard errors of their light.

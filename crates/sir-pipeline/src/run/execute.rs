@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use serde_json::Value;
 use sir_geom::Rgb;
 use sir_parallel::{Checkpoints, Communicator, RunError, Saved, SingleProcess};
 use sir_radiosity::Model;
@@ -25,6 +26,7 @@ use crate::ranks::{agree, same_everywhere};
 use crate::report::result::{PipelineReport, Report, SceneReport, Time, VERSION};
 use crate::run::directory::{absolute, check_given, make_given, make_new, run_name};
 use crate::run::lock::DirectoryLock;
+use crate::run::pages::{Page, write_pages};
 use crate::run::resume as saved_run;
 use crate::run::resume::Head;
 use crate::run_files::{CHECKPOINT, REPORT};
@@ -157,9 +159,22 @@ pub fn run_together(
         report,
     };
     let (pipeline, prepared) = (&pipeline, &prepared);
-    let seconds_before = 0.0;
-    Run { pipeline, prepared, directory, lock, options, comm, progress, watch, seconds_before, head }
-        .finish(None)
+    let (seconds_before, pages, sensors) = (0.0, Vec::new(), Vec::new());
+    Run {
+        pipeline,
+        prepared,
+        directory,
+        lock,
+        options,
+        comm,
+        progress,
+        watch,
+        seconds_before,
+        head,
+        pages,
+        sensors,
+    }
+    .finish(None)
 }
 
 /// Resumes the interrupted run in `directory`.
@@ -200,8 +215,22 @@ pub fn resume_together(
     // A run that had not begun a stage with lines starts with the first stage.
     let saved = (head.stage > 0).then_some(saved);
     let (pipeline, prepared, seconds_before) = (&pipeline, &prepared, head.report.time.seconds);
-    Run { pipeline, prepared, directory, lock, options, comm, progress, watch, seconds_before, head }
-        .finish(saved)
+    let (pages, sensors) = (Vec::new(), Vec::new());
+    Run {
+        pipeline,
+        prepared,
+        directory,
+        lock,
+        options,
+        comm,
+        progress,
+        watch,
+        seconds_before,
+        head,
+        pages,
+        sensors,
+    }
+    .finish(saved)
 }
 
 /// A run in progress.
@@ -219,6 +248,10 @@ pub(crate) struct Run<'a> {
     pub(crate) seconds_before: f64,
     /// Progress of the run, as stored in checkpoints.
     pub(crate) head: Head,
+    /// Pages that are written at the end; only on the first rank.
+    pub(crate) pages: Vec<Page>,
+    /// Measurements for pages, as JSON.
+    pub(crate) sensors: Vec<Value>,
 }
 
 impl Run<'_> {
@@ -235,8 +268,12 @@ impl Run<'_> {
         self.stages(&mut checkpoints, saved).map_err(|error| name_directory(error, &self.directory))?;
         let peak_memory = largest_peak(self.comm);
         self.head.report.time = Time { peak_memory, ..Time::of(self.seconds()) };
-        let Self { directory, lock, comm, head, .. } = self;
-        let written = if comm.is_first() { write_report(&directory, &head.report) } else { Ok(()) };
+        let Self { directory, lock, comm, head, pages, sensors, prepared, .. } = self;
+        let written = match comm.is_first() {
+            true => write_pages(&pages, &sensors, prepared, &directory, &head.report)
+                .and_then(|()| write_report(&directory, &head.report)),
+            false => Ok(()),
+        };
         agree(comm, written.map_err(|error| name_directory(error, &directory)))?;
         if comm.is_first() {
             checkpoints.remove();

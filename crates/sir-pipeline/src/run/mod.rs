@@ -10,6 +10,7 @@ mod directory;
 pub(crate) mod execute;
 mod lighting;
 pub(crate) mod lock;
+pub(crate) mod pages;
 mod pilot;
 mod reach;
 mod repeat_sums;

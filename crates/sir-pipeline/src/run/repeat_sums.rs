@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use sir_geom::Rgb;
 use sir_mesh::SideSums;
 use sir_parallel::{Communicator, StageTime, Threads};
 use sir_radiosity::{
@@ -29,10 +30,20 @@ pub(super) struct Step<'a> {
     batches: u64,
     pub(super) time: StageTime,
     domain: Option<DomainReport>,
-    /// Sums of the light after this stage, if it is shown or measured.
+    /// Sums of the light after this stage, if it is shown or measured, or is the direct light of a page.
     light: Option<Repeats>,
+    use_of_light: UseOfLight,
     /// Sums of the measurements of this stage.
     pub(super) measured: Option<RepeatedMeasurements>,
+}
+
+/// Use of the light after a stage.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct UseOfLight {
+    /// True if it is a result: it is shown or measured, or is the last.
+    is_result: bool,
+    /// True if it is the direct light that a page shows.
+    is_direct: bool,
 }
 
 /// Sums over all repeats so far. A checkpoint has them in addition to the state of the current stage.
@@ -40,6 +51,8 @@ pub(super) struct RepeatSums<'a> {
     prepared: &'a Prepared,
     /// Parts of the scene for which there are tables.
     parts: Vec<Arc<SideSums>>,
+    /// Direct irradiance for pages, after its stage has been reported.
+    direct: Option<Arc<[Rgb]>>,
     pub(super) steps: Vec<Step<'a>>,
     until: Until,
     at_most: Option<u64>,
@@ -88,17 +101,28 @@ impl<'a> RepeatSums<'a> {
         let share_rays = if let Until::Times(times) = until { times.min(most) } else { most };
         let sides = prepared.model.mesh.side_count();
         let parts = parts_of_tables(pipeline, prepared);
-        let sums = || {
+        let direct_step = if pipeline.has_page() {
+            places
+                .iter()
+                .rposition(|(_, action)| matches!(action, Action::FirstShot(_) | Action::ShadowRays(_)))
+        } else {
+            None
+        };
+        let sums = |is_result: bool| {
             let repeats = match until {
                 Until::Times(MIN_REPEATS..) if at_most.is_none() => Repeats::of_many(sides),
                 _ => Repeats::new(sides),
             };
-            repeats.with_sums(&parts)
+            repeats.with_sums(if is_result { &parts } else { &[] })
         };
         let mut steps = Vec::new();
         for (i, &(place, action)) in places.iter().enumerate() {
             let has_lines = action.lines() > 0;
-            let is_used = places.get(i + 1).is_none_or(|(_, next)| next.lines() == 0);
+            let use_of_light = UseOfLight {
+                is_result: has_lines && places.get(i + 1).is_none_or(|(_, next)| next.lines() == 0),
+                is_direct: direct_step == Some(i),
+            };
+            let UseOfLight { is_result, is_direct } = use_of_light;
             let measured = match action {
                 Action::Save(_) => continue,
                 Action::Sensors(_) => prepared.layouts.get(&place.0).map(|layout| layout.sensors.len()),
@@ -111,13 +135,15 @@ impl<'a> RepeatSums<'a> {
                 batches: 0,
                 time: StageTime::default(),
                 domain: None,
-                light: (has_lines && is_used).then(sums),
+                light: (is_result || is_direct).then(|| sums(is_result)),
+                use_of_light,
                 measured: measured.map(RepeatedMeasurements::new),
             });
         }
         Self {
             prepared,
             parts,
+            direct: None,
             steps,
             until,
             at_most,
@@ -294,6 +320,7 @@ impl<'a> RepeatSums<'a> {
         let mut report = StageReport::of(step.action.name(), Time::of_lines(step.time, counts.lines));
         report.lines = Some(LinesReport::new(facts, unit));
         let Some(light) = step.light.take() else { return (report, None) };
+        let UseOfLight { is_result, is_direct } = step.use_of_light;
         let (from, samples) =
             if light.have_spread() { (ErrorsFrom::Spread, count) } else { (ErrorsFrom::Lines, before) };
         let mean = light.mean(model, inside, threads);
@@ -302,9 +329,15 @@ impl<'a> RepeatSums<'a> {
         let parts = parts.map(|(i, sums)| PartErrors { sums, errors: errors(i) }).collect();
         drop(light);
         let solution = Solution::new(model, &mean, unit);
+        if is_direct {
+            self.direct = Some(solution.irradiance.as_slice().into());
+        }
+        if !is_result {
+            return (report, None);
+        }
         let errors = ErrorsReport { from, samples };
         report.light = Some(LightReport::new(model, inside, &solution, errors, mean.hash()));
-        (report, Some(Computed { solution, parts }))
+        (report, Some(Computed { solution, parts, direct: self.direct.clone() }))
     }
 
     /// Returns the time of all repeats.

@@ -5,30 +5,36 @@ use std::fs;
 use std::path::Path;
 
 use sir_geom::Camera;
-use sir_radiosity::Model;
+use sir_radiosity::{Model, Solution};
+use sir_report::{Light, View};
 use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, ViewError};
 use sir_view::{default_camera, render, write_exr, write_glb, write_png};
 
 use crate::error::Error;
 use crate::plan;
-use crate::plan::{Image, Output};
+use crate::plan::{Image, Output, Pipeline};
 use crate::prepare::cameras::chosen_camera;
 use crate::prepare::prepared::Prepared;
 use crate::progress::Progress;
+use crate::report::page::Shown;
 use crate::report::result::OutputReport;
 use crate::run::computed::{Computed, PartErrors};
+use crate::run::pages::Page;
 
 /// Ratio of height to width of an image whose camera has no aspect ratio.
 const DEFAULT_SHAPE: f64 = 0.75;
 
 /// Writes the outputs of a stage into a directory, one after the other, as long as `written` returns true.
+#[expect(clippy::too_many_arguments, reason = "the context of a run")]
 pub(crate) fn save(
+    pipeline: &Pipeline,
     prepared: &Prepared,
     light: &Computed,
     outputs: &[Output],
     directory: &Path,
     threads: usize,
     progress: &dyn Progress,
+    pages: &mut Vec<Page>,
     written: &mut dyn FnMut(OutputReport) -> bool,
 ) -> Result<(), Error> {
     let Model { scene, mesh, accel } = &prepared.model;
@@ -49,6 +55,7 @@ pub(crate) fn save(
         prepared,
         display: &display,
         denoised: denoised.as_ref(),
+        images: pipeline.outputs().filter_map(Output::image).collect(),
         threads,
         last: None,
         default: None,
@@ -95,8 +102,26 @@ pub(crate) fn save(
                 }
                 "table"
             }
+            Output::Report(output) => {
+                let Solution { irradiance, error } = solution;
+                let view =
+                    View::new(scene, mesh, Light { irradiance, error, direct: light.direct.as_deref() });
+                let shown = Shown {
+                    cameras: renderer.cameras(),
+                    exposure: Exposure::Auto.factor_for_mesh(display()),
+                    simplified: view.simplified_patches(),
+                };
+                pages.push(Page { path: output.path.clone(), view, shown });
+                "report"
+            }
         };
-        let bytes = fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len();
+        // A page is written when the run has ended.
+        let bytes = match output {
+            Output::Report(_) => None,
+            _ => Some(
+                fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len(),
+            ),
+        };
         let path = output.path().to_string_lossy().into_owned();
         if !written(OutputReport { path, kind: kind.into(), bytes, camera: default_camera }) {
             break;
@@ -112,6 +137,8 @@ struct Renderer<'a> {
     display: &'a dyn Fn() -> &'a DisplayMesh<'a>,
     /// Denoised display mesh, if an image needs it.
     denoised: Option<&'a DisplayMesh<'a>>,
+    /// Images of the pipeline.
+    images: Vec<&'a Image>,
     threads: usize,
     last: Option<Rendered>,
     default: Option<Camera>,
@@ -148,6 +175,28 @@ impl Renderer<'_> {
             }
         };
         Ok(self.last.insert(rendered))
+    }
+
+    /// Returns the cameras for a page: those of images, then those of the scene, or else the default camera.
+    fn cameras(&mut self) -> Vec<Camera> {
+        let Prepared { model, up, .. } = self.prepared;
+        let mut cameras: Vec<Camera> = Vec::new();
+        let of_images = self.images.iter().filter_map(|image| {
+            let name = image.path.display().to_string();
+            chosen_camera(image, &model.scene, *up).map(|camera| Camera { name, ..camera })
+        });
+        let is_same = |a: &Camera, b: &Camera| {
+            Camera { name: String::new(), ..a.clone() } == Camera { name: String::new(), ..b.clone() }
+        };
+        for camera in model.scene.cameras().iter().cloned().chain(of_images) {
+            if !cameras.iter().any(|known| is_same(known, &camera)) {
+                cameras.push(camera);
+            }
+        }
+        if cameras.is_empty() {
+            cameras.push(self.default_camera());
+        }
+        cameras
     }
 
     /// Returns the camera for a scene without cameras. Keeps it, because finding it takes time.

@@ -47,7 +47,12 @@ pub(crate) fn write(
 fn output(directory: &Path, name: &Path, kind: &str) -> Result<OutputReport, Error> {
     let path = directory.join(name);
     let bytes = fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len();
-    Ok(OutputReport { path: name.to_string_lossy().into_owned(), kind: kind.into(), bytes, camera: None })
+    Ok(OutputReport {
+        path: name.to_string_lossy().into_owned(),
+        kind: kind.into(),
+        bytes: Some(bytes),
+        camera: None,
+    })
 }
 
 fn write_table(out: &mut impl Write, sensors: &[Sensor], measured: &[Measurement]) -> io::Result<()> {

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::plan::{Action, Output, Sensors};
 use crate::prepare::prepared::Prepared;
 use crate::ranks::agree;
+use crate::report::page::of_sensors;
 use crate::report::result::{
     BalanceReport, ErrorsFrom, LightReport, LinesReport, OutputReport, StageReport, Time,
 };
@@ -84,6 +85,9 @@ impl Run<'_> {
         summary: &SensorsReport,
     ) -> Result<(), Error> {
         let Some(layout) = self.prepared.layouts.get(&number) else { return Ok(()) };
+        if self.pipeline.has_page() {
+            self.sensors.push(of_sensors(layout, measured, summary, self.pipeline.units));
+        }
         let written = if self.comm.is_first() {
             sensor_files::write(sensors, layout, measured, summary, self.pipeline.units, &self.directory)
         } else {
@@ -112,12 +116,13 @@ impl Run<'_> {
     }
 
     /// Writes outputs until the run is asked to stop.
-    fn write(&self, light: &Computed, outputs: &[Output]) -> Result<Vec<OutputReport>, Error> {
+    fn write(&mut self, light: &Computed, outputs: &[Output]) -> Result<Vec<OutputReport>, Error> {
         let mut reports = Vec::new();
         let threads = self.threads().0.get();
-        save(self.prepared, light, outputs, &self.directory, threads, self.progress, &mut |report| {
+        let Self { pipeline, prepared, directory, options, progress, pages, .. } = self;
+        save(pipeline, prepared, light, outputs, directory, threads, *progress, pages, &mut |report| {
             reports.push(report);
-            !self.options.stop.load(Relaxed)
+            !options.stop.load(Relaxed)
         })?;
         if reports.len() < outputs.len() {
             return Err(Error::InterruptedSaving { directory: self.directory.clone() });

@@ -164,7 +164,12 @@ mod tests {
             scene,
             stages: Vec::new(),
             warnings: Vec::new(),
-            outputs: vec![OutputReport { path: TABLE.into(), kind: "table".into(), bytes: 1, camera: None }],
+            outputs: vec![OutputReport {
+                path: TABLE.into(),
+                kind: "table".into(),
+                bytes: Some(1),
+                camera: None,
+            }],
             time: Time::of(1.0),
         };
         let mut write = |program: &str| {

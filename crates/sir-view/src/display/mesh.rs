@@ -76,6 +76,12 @@ impl<'a> DisplayMesh<'a> {
         Self { emits: false, ..Self::new(scene, mesh, errors) }
     }
 
+    /// Returns the scene.
+    #[must_use]
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
     /// Returns the positions. Vertices with different irradiance may share one.
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {

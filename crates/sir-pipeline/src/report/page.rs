@@ -1,0 +1,129 @@
+//! Facts of a page: the figures of a run, as JSON for its script.
+
+use serde_json::{Value, json};
+use sir_geom::{Camera, Projection, Scene};
+use sir_radiosity::Measurement;
+
+use crate::prepare::layout::Layout;
+use crate::report::result::Report;
+use crate::report::sensors::SensorsReport;
+use crate::units::Units;
+
+/// Largest number of points of sensors that a page lists. Maps have all.
+const MAX_POINTS: usize = 20_000;
+
+/// What a page shows of a scene.
+pub(crate) struct Shown {
+    pub(crate) cameras: Vec<Camera>,
+    /// Factor from radiance to screen values.
+    pub(crate) exposure: f64,
+    /// Number of patches that the page shows, if these are fewer than those of the solution.
+    pub(crate) simplified: Option<usize>,
+}
+
+/// Returns the facts of a finished run.
+pub(crate) fn facts(report: &Report, scene: &Scene, shown: &Shown, sensors: &[Value]) -> Value {
+    let units = report.units;
+    let path = &report.pipeline.path;
+    let quoted = if path.contains([' ', '\'', '"', '$']) { format!("{path:?}") } else { path.clone() };
+    json!({
+        "title": title(report),
+        "program": report.program,
+        "units": { "power": units.power(), "irradiance": units.irradiance(), "name": units.irradiance_name() },
+        "report": report,
+        "up": report.scene.up,
+        "exposure": shown.exposure,
+        "sky": sky(scene),
+        "cameras": shown.cameras.iter().map(camera).collect::<Vec<_>>(),
+        "sensors": sensors,
+        "notes": notes(scene, shown),
+        "repeat": [format!("sir run {quoted} --seed {}", report.seed)],
+    })
+}
+
+/// Returns the title of a page: the name of the scene's file.
+pub(crate) fn title(report: &Report) -> &str {
+    let path = &report.scene.path;
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+/// Returns what the measurements of a stage `Sensors` contribute to the facts.
+pub(crate) fn of_sensors(
+    layout: &Layout,
+    measured: &[Measurement],
+    summary: &SensorsReport,
+    units: Units,
+) -> Value {
+    // More digits than these are noise.
+    let rounded = |x: f64| format!("{x:.5e}").parse::<f64>().unwrap_or(x);
+    let points = layout.sensors.iter().zip(measured).take(MAX_POINTS).map(|(sensor, m)| {
+        let places = [sensor.position(), sensor.direction()].map(|v| v.to_array());
+        let light = [m.luminance(), sir_geom::luminance(m.direct), m.luminance_error()];
+        places.into_iter().flatten().chain(light).map(rounded).collect::<Vec<_>>()
+    });
+    let map = layout.cells.as_ref().filter(|_| measured.len() <= MAX_POINTS).map(|cells| {
+        let counts = [cells.columns as f64, cells.rows as f64];
+        let size = cells.size.to_array();
+        json!({
+            "columns": cells.columns,
+            "rows": cells.rows,
+            "size": [size[0] / counts[0], size[1] / counts[1]],
+            "cells": cells.of,
+        })
+    });
+    json!({
+        "name": summary.name,
+        "summary": summary.in_short(units),
+        "report": summary,
+        "map": map,
+        "points": points.collect::<Vec<_>>(),
+    })
+}
+
+fn camera(camera: &Camera) -> Value {
+    let (fov, height) = match camera.projection {
+        Projection::Perspective { vertical_fov } => (Some(vertical_fov), None),
+        Projection::Orthographic { height } => (None, Some(height)),
+    };
+    json!({
+        "name": camera.name,
+        "eye": camera.eye.to_array(),
+        "forward": camera.forward.to_array(),
+        "up": camera.up.to_array(),
+        "fov": fov,
+        "height": height,
+        "aspect": camera.aspect,
+    })
+}
+
+/// Returns the mean radiance of the sky around the horizon and above, for the background.
+fn sky(scene: &Scene) -> Option<[f64; 3]> {
+    let sky = scene.sky()?;
+    let directions = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(glam::DVec3::from_array);
+    let all = directions.into_iter().flat_map(|d| [d, -d]).map(|d| sky.radiance(d));
+    Some((all.sum::<sir_geom::Rgb>() / 6.0).to_array())
+}
+
+/// Returns what the page leaves out or approximates.
+fn notes(scene: &Scene, shown: &Shown) -> Vec<String> {
+    let mut notes = vec![
+        "Colors and curves in the view interpolate between patches. Picked values are those of whole patches.".into(),
+    ];
+    if !scene.textures().is_empty() {
+        notes.push("Textures are shown as the mean color of each patch.".into());
+    }
+    if scene.triangle_ids().any(|t| scene.is_transparent(t)) {
+        notes.push("Surfaces with gaps (alpha masks, partial opacity) are shown without their gaps.".into());
+    }
+    if scene.sky().is_some() {
+        notes.push("The background is the mean color of the sky.".into());
+    }
+    if let Some(patches) = shown.simplified {
+        notes.push(format!(
+            "The view has {} patches, fewer than the solution; their light is the mean of its patches, their errors are upper bounds, and \
+             their numbers differ from those in tables.",
+            crate::format::grouped(patches as u64)
+        ));
+    }
+    notes
+}
