@@ -40,6 +40,7 @@ pub(crate) fn means(scene: &Scene, fine: &PatchMesh, coarse: &PatchMesh, values:
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
 mod tests {
     use glam::DVec3;
     use sir_geom::shapes::{Facing, cuboid};
@@ -52,10 +53,8 @@ mod tests {
         let mut builder = SceneBuilder::new();
         let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));
         cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [gray; 6], Facing::Inward);
-        let scene = builder.build().map(|built| built.scene);
-        let Ok(scene) = scene else { return assert!(scene.is_ok()) };
-        let (fine, coarse) = (patches(&scene, 5000), patches(&scene, 300));
-        let (Some(fine), Some(coarse)) = (fine, coarse) else { return assert!(false, "cannot be divided") };
+        let scene = builder.build().unwrap().scene;
+        let [fine, coarse] = [5000, 300].map(|count| patches(&scene, count).unwrap());
         let mut values = vec![Rgb::ZERO; fine.side_count()];
         fine.for_each_side(|t, patch, _, side| values[side.index()] = fine.center(&scene, t, patch));
         let means = means(&scene, &fine, &coarse, &values);

@@ -1,7 +1,7 @@
 // Sensors.
 
 /** Number of rows that a table of sensors shows at first. */
-const FIRST_ROWS = 200;
+const FIRST_ROWS = 50;
 /** Largest number of cells of a map that is drawn with numbers. */
 const CELLS_WITH_NUMBERS = 400;
 

@@ -18,23 +18,31 @@ function makeValues(mesh, facts) {
   };
   const known = {};
 
-  /** Returns limits that leave out the lowest and the highest 2 % of the lit sides. */
+  /** Returns limits that leave out the sides with the lowest and the highest values, each with 2 % of the light. */
   function usualLimits(mode) {
     known[mode] ??= quantiles(mode);
     return known[mode];
   }
 
   function quantiles(mode) {
-    const stride = Math.max(1, Math.floor(header.sides / 200000));
-    const list = new Float32Array(Math.ceil(header.sides / stride));
-    let count = 0;
+    const stride = Math.max(1, Math.floor(header.sides / 50000));
+    const list = [];
+    let total = 0;
     for (let s = 0; s < header.sides; s += stride) {
-      const value = kinds[mode].of(4 * s);
-      if (value > 0 && meanE(4 * s) > 0 && value < Infinity) list[count++] = value;
+      const [value, weight] = [kinds[mode].of(4 * s), meanE(4 * s)];
+      if (value > 0 && weight > 0 && value < Infinity) {
+        list.push([value, weight]);
+        total += weight;
+      }
     }
-    if (count === 0) return [0, 1];
-    const sorted = list.subarray(0, count).sort();
-    const [low, high] = [0.02, 0.98].map((share) => Number(sorted[Math.round(share * (count - 1))].toPrecision(3)));
+    if (list.length === 0) return [0, 1];
+    list.sort((a, b) => a[0] - b[0]);
+    const quantile = (share) => {
+      let sum = 0;
+      const found = list.find(([, weight]) => (sum += weight) >= share * total);
+      return Number((found ?? list.at(-1))[0].toPrecision(3));
+    };
+    const [low, high] = [0.02, 0.98].map(quantile);
     return high > low * 1.001 ? [low, high] : [low * 0.5, high * 1.5];
   }
 
