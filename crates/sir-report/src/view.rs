@@ -111,17 +111,19 @@ fn code(display: &DisplayMesh<'_>, mesh: &PatchMesh, light: Light<'_>, simplifie
     arrays.add("sideIrradiance", &irradiance, 2, Coding::Differences);
 
     let mut logs = json!({ "irradiance": json_of(scale) });
-    let mut add_luminances = |arrays: &mut Arrays, name: &str, array: &str, values: &[Rgb], step: f64| {
-        let values: Vec<f64> = of_sides(values).into_iter().map(luminance).collect();
+    let mut add_values = |arrays: &mut Arrays, name: &str, array: &str, values: Vec<f64>, step: f64| {
         let scale = LogScale::up_to(values.iter().copied().fold(0.0, f64::max), step);
         let codes: Vec<_> = values.into_iter().map(|value| [u32::from(scale.code(value))]).collect();
         arrays.add(array, &codes, 2, Coding::Differences);
         logs[name] = json_of(scale);
     };
-    add_luminances(&mut arrays, "error", "sideError", light.error, LogScale::COARSE);
+    let luminances = |values: &[Rgb]| of_sides(values).into_iter().map(luminance).collect::<Vec<_>>();
+    add_values(&mut arrays, "error", "sideError", luminances(light.error), LogScale::COARSE);
     if let Some(direct) = light.direct {
-        add_luminances(&mut arrays, "direct", "sideDirect", direct, LogScale::FINE);
+        add_values(&mut arrays, "direct", "sideDirect", luminances(direct), LogScale::FINE);
     }
+    let areas = pieces.iter().map(|piece| area(display, piece)).collect();
+    add_values(&mut arrays, "area", "area", areas, LogScale::COARSE);
     let patch = |piece: &DisplayPiece<'_>| mesh.patch_of_side(piece.triangle, piece.id);
     let reflectance = pieces.iter().map(|piece| mesh.reflectance(scene, piece.triangle, patch(piece)));
     let exitance = pieces.iter().map(|piece| mesh.exitance(scene, piece.triangle, patch(piece), piece.side));
@@ -156,6 +158,16 @@ fn code(display: &DisplayMesh<'_>, mesh: &PatchMesh, light: Light<'_>, simplifie
         "simplified": simplified.map(|patches| json!({ "patches": patches })),
     });
     deflated(&arrays.finish(header))
+}
+
+/// Returns the area of the triangles of a side \[m²\].
+fn area(display: &DisplayMesh<'_>, piece: &DisplayPiece<'_>) -> f64 {
+    let position = |v: u32| display.positions()[display.vertices()[v as usize].position as usize];
+    let areas = piece.triangles.iter().map(|t| {
+        let [a, b, c] = t.map(position);
+        0.5 * (b - a).cross(c - a).length()
+    });
+    areas.sum()
 }
 
 /// Adds the triangles, and returns the vertices in the order of their first use, and the number of triangles.

@@ -118,6 +118,7 @@ async function readMesh(text) {
     triangle: get('triangle'),
     material: get('material'),
     object: get('object'),
+    area: get('area'),
   };
   placeVertices(mesh, get('position'));
   await pause();

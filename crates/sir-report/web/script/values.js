@@ -26,10 +26,11 @@ function makeValues(mesh, facts) {
 
   function quantiles(mode) {
     const stride = Math.max(1, Math.floor(header.sides / 50000));
+    const areas = logTable(header.logs.area);
     const list = [];
     let total = 0;
     for (let s = 0; s < header.sides; s += stride) {
-      const [value, weight] = [kinds[mode].of(4 * s), meanE(4 * s)];
+      const [value, weight] = [kinds[mode].of(4 * s), areas[mesh.area[s]] * meanE(4 * s)];
       if (value > 0 && weight > 0 && value < Infinity) {
         list.push([value, weight]);
         total += weight;
