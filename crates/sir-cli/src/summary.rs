@@ -5,11 +5,11 @@ use sir_pipeline::report::{FILE_NAME, LinesReport, Report};
 use sir_pipeline::run::absolute;
 use sir_pipeline::{RunResult, Units};
 
-/// Returns the paths of a run's files, images first, and a summary of each stage that traces lines.
+/// Returns the paths of a run's files, pages and images first, and a summary of each stage that traces lines.
 #[must_use]
 pub fn summary(result: &RunResult) -> String {
     let RunResult { directory, report } = result;
-    let mut files: Vec<&str> = ["image", "map", "gltf", "table", "sensors"]
+    let mut files: Vec<&str> = ["report", "image", "map", "gltf", "table", "sensors"]
         .iter()
         .flat_map(|kind| report.outputs.iter().filter(move |o| o.kind == *kind).map(|o| o.path.as_str()))
         .collect();
