@@ -37,7 +37,7 @@ impl Page {
         let text = fs::read_to_string(page.path("page/report.html")).unwrap();
         let facts = text.split_once("id=\"facts\">").unwrap().1.split_once("</script>").unwrap().0;
         let facts: serde_json::Value = serde_json::from_str(facts).unwrap();
-        page.exposure = facts["exposure"].as_f64().unwrap();
+        page.exposure = facts["cameras"][0]["exposure"].as_f64().unwrap();
         page
     }
 

@@ -233,3 +233,30 @@ fn deflated(bytes: &[u8]) -> String {
     let written = encoder.write_all(bytes).and_then(|()| encoder.finish());
     STANDARD.encode(written.unwrap_or_default())
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a step that fails is a test that fails")]
+mod tests {
+    use sir_geom::shapes::{Facing, cuboid};
+    use sir_geom::{Material, SceneBuilder};
+    use sir_mesh::{PatchSize, Subdivision};
+
+    use super::*;
+
+    #[test]
+    fn too_many_patches_are_shown_as_fewer() {
+        let mut builder = SceneBuilder::new();
+        let gray = builder.add_material(Material::diffuse("gray", Rgb::splat(0.5)));
+        cuboid(&mut builder, DVec3::ZERO, DVec3::ONE, [gray; 6], Facing::Inward);
+        let scene = builder.build().unwrap().scene;
+        let mesh = PatchMesh::new(&scene, Subdivision::Surfaces(PatchSize::Count(2000))).unwrap();
+        let values = vec![Rgb::ONE; mesh.side_count()];
+        let light = Light { irradiance: &values, error: &values, direct: Some(&values) };
+        let view = |most| View::with_at_most(most, &scene, &mesh, light);
+        let [all, fewer] = [usize::MAX, 600].map(view);
+        assert_eq!(all.simplified_patches(), None);
+        let patches = fewer.simplified_patches().unwrap();
+        assert!((250..=350).contains(&patches), "{patches}");
+        assert!(fewer.coded.len() < all.coded.len());
+    }
+}

@@ -14,9 +14,8 @@ const MAX_POINTS: usize = 20_000;
 
 /// What a page shows of a scene.
 pub(crate) struct Shown {
-    pub(crate) cameras: Vec<Camera>,
-    /// Factor from radiance to screen values.
-    pub(crate) exposure: f64,
+    /// Cameras, at least one, each with its exposure: the factor from radiance to screen values.
+    pub(crate) cameras: Vec<(Camera, f64)>,
     /// Number of patches that the page shows, if these are fewer than those of the solution.
     pub(crate) simplified: Option<usize>,
 }
@@ -32,7 +31,6 @@ pub(crate) fn facts(report: &Report, scene: &Scene, shown: &Shown, sensors: &[Va
         "units": { "power": units.power(), "irradiance": units.irradiance(), "name": units.irradiance_name() },
         "report": report,
         "up": report.scene.up,
-        "exposure": shown.exposure,
         "sky": sky(scene),
         "cameras": shown.cameras.iter().map(camera).collect::<Vec<_>>(),
         "sensors": sensors,
@@ -80,7 +78,7 @@ pub(crate) fn of_sensors(
     })
 }
 
-fn camera(camera: &Camera) -> Value {
+fn camera((camera, exposure): &(Camera, f64)) -> Value {
     let (fov, height) = match camera.projection {
         Projection::Perspective { vertical_fov } => (Some(vertical_fov), None),
         Projection::Orthographic { height } => (None, Some(height)),
@@ -93,6 +91,7 @@ fn camera(camera: &Camera) -> Value {
         "fov": fov,
         "height": height,
         "aspect": camera.aspect,
+        "exposure": exposure,
     })
 }
 

@@ -21,6 +21,9 @@ use crate::report::result::OutputReport;
 use crate::run::computed::{Computed, PartErrors};
 use crate::run::pages::Page;
 
+/// Width of the picture from which the exposure of a camera follows.
+const PREVIEW_WIDTH: u32 = 200;
+
 /// Ratio of height to width of an image whose camera has no aspect ratio.
 const DEFAULT_SHAPE: f64 = 0.75;
 
@@ -106,11 +109,7 @@ pub(crate) fn save(
                 let Solution { irradiance, error } = solution;
                 let view =
                     View::new(scene, mesh, Light { irradiance, error, direct: light.direct.as_deref() });
-                let shown = Shown {
-                    cameras: renderer.cameras(),
-                    exposure: Exposure::Auto.factor_for_mesh(display()),
-                    simplified: view.simplified_patches(),
-                };
+                let shown = Shown { cameras: renderer.cameras()?, simplified: view.simplified_patches() };
                 pages.push(Page { path: output.path.clone(), view, shown });
                 "report"
             }
@@ -177,26 +176,42 @@ impl Renderer<'_> {
         Ok(self.last.insert(rendered))
     }
 
-    /// Returns the cameras for a page: those of images, then those of the scene, or else the default camera.
-    fn cameras(&mut self) -> Vec<Camera> {
+    /// Returns the cameras for a page: those of the scene and of images, or else the default camera. Each has the exposure that
+    /// its image states, or the automatic one.
+    fn cameras(&mut self) -> Result<Vec<(Camera, f64)>, Error> {
         let Prepared { model, up, .. } = self.prepared;
-        let mut cameras: Vec<Camera> = Vec::new();
+        let nameless = |camera: &Camera| Camera { name: String::new(), ..camera.clone() };
         let of_images = self.images.iter().filter_map(|image| {
             let name = image.path.display().to_string();
-            chosen_camera(image, &model.scene, *up).map(|camera| Camera { name, ..camera })
+            chosen_camera(image, &model.scene, *up).map(|camera| (Camera { name, ..camera }, image.exposure))
         });
-        let is_same = |a: &Camera, b: &Camera| {
-            Camera { name: String::new(), ..a.clone() } == Camera { name: String::new(), ..b.clone() }
-        };
-        for camera in model.scene.cameras().iter().cloned().chain(of_images) {
-            if !cameras.iter().any(|known| is_same(known, &camera)) {
-                cameras.push(camera);
+        let of_scene = model.scene.cameras().iter().map(|camera| (camera.clone(), Exposure::Auto));
+        let mut cameras: Vec<(Camera, Exposure)> = Vec::new();
+        for (camera, exposure) in of_scene.chain(of_images) {
+            match cameras.iter_mut().find(|(known, _)| nameless(known) == nameless(&camera)) {
+                Some((_, known)) if *known == Exposure::Auto => *known = exposure,
+                Some(_) => {}
+                None => cameras.push((camera, exposure)),
             }
         }
         if cameras.is_empty() {
-            cameras.push(self.default_camera());
+            cameras.push((self.default_camera(), Exposure::Auto));
         }
-        cameras
+        let exposed = cameras.into_iter().map(|(camera, exposure)| {
+            let factor = match exposure {
+                Exposure::Factor(factor) => factor,
+                Exposure::Auto => {
+                    let shape = camera.aspect.map_or(DEFAULT_SHAPE, |aspect| 1.0 / aspect);
+                    let height = (f64::from(PREVIEW_WIDTH) * shape).round().clamp(1.0, 1000.0) as u32;
+                    let settings =
+                        PictureSettings { width: PREVIEW_WIDTH, height, grid: 1, threads: self.threads };
+                    let picture = render((self.display)(), &model.accel, &camera, settings)?;
+                    exposure.factor_for_picture(&picture)
+                }
+            };
+            Ok((camera, factor))
+        });
+        exposed.collect()
     }
 
     /// Returns the camera for a scene without cameras. Keeps it, because finding it takes time.

@@ -121,18 +121,23 @@ function makeViewer(canvas, gl, mesh, facts) {
     return new Float32Array(plane);
   }
 
+  /** Returns the factor from radiance to screen values. */
+  function exposure() {
+    return facts.cameras[state.chosen].exposure * 2 ** state.exposure;
+  }
+
   function look() {
     const mode = MODES.indexOf(state.mode);
     const number = mode === 0 ? [0, 1] : limitsOf().map((x) => (state.logarithmic ? Math.log(x) : x));
     return {
-      mode, flat: mode !== 0 && state.flat, logarithmic: state.logarithmic, exposure: facts.exposure * 2 ** state.exposure,
+      mode, flat: mode !== 0 && state.flat, logarithmic: state.logarithmic, exposure: exposure(),
       limits: [number[0], 1 / Math.max(1e-30, number[1] - number[0])], background: background(mode),
       lines: state.lines, ink: [0, 0, 0, 0.6],
     };
   }
 
   function background(mode) {
-    if (mode === 0 && facts.sky) return screenColor(times(facts.sky, facts.exposure * 2 ** state.exposure));
+    if (mode === 0 && facts.sky) return screenColor(times(facts.sky, exposure()));
     if (mode === 0) return state.full ? [0, 0, 0] : [0.07, 0.08, 0.09];
     if (printing) return [1, 1, 1];
     return root.dataset.theme === 'dark' ? [0.125, 0.149, 0.173] : [0.894, 0.910, 0.925];
