@@ -8,7 +8,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use serde_json::Value;
 use sir_geom::Rgb;
 use sir_parallel::{Checkpoints, Communicator, RunError, Saved, SingleProcess};
 use sir_radiosity::Model;
@@ -26,7 +25,7 @@ use crate::ranks::{agree, same_everywhere};
 use crate::report::result::{PipelineReport, Report, SceneReport, Time, VERSION};
 use crate::run::directory::{absolute, check_given, make_given, make_new, run_name};
 use crate::run::lock::DirectoryLock;
-use crate::run::pages::{Page, write_pages};
+use crate::run::pages::Pages;
 use crate::run::resume as saved_run;
 use crate::run::resume::Head;
 use crate::run_files::{CHECKPOINT, REPORT};
@@ -159,22 +158,9 @@ pub fn run_together(
         report,
     };
     let (pipeline, prepared) = (&pipeline, &prepared);
-    let (seconds_before, pages, sensors) = (0.0, Vec::new(), Vec::new());
-    Run {
-        pipeline,
-        prepared,
-        directory,
-        lock,
-        options,
-        comm,
-        progress,
-        watch,
-        seconds_before,
-        head,
-        pages,
-        sensors,
-    }
-    .finish(None)
+    let (seconds_before, pages) = (0.0, Pages::default());
+    Run { pipeline, prepared, directory, lock, options, comm, progress, watch, seconds_before, head, pages }
+        .finish(None)
 }
 
 /// Resumes the interrupted run in `directory`.
@@ -215,22 +201,9 @@ pub fn resume_together(
     // A run that had not begun a stage with lines starts with the first stage.
     let saved = (head.stage > 0).then_some(saved);
     let (pipeline, prepared, seconds_before) = (&pipeline, &prepared, head.report.time.seconds);
-    let (pages, sensors) = (Vec::new(), Vec::new());
-    Run {
-        pipeline,
-        prepared,
-        directory,
-        lock,
-        options,
-        comm,
-        progress,
-        watch,
-        seconds_before,
-        head,
-        pages,
-        sensors,
-    }
-    .finish(saved)
+    let pages = Pages::default();
+    Run { pipeline, prepared, directory, lock, options, comm, progress, watch, seconds_before, head, pages }
+        .finish(saved)
 }
 
 /// A run in progress.
@@ -248,10 +221,8 @@ pub(crate) struct Run<'a> {
     pub(crate) seconds_before: f64,
     /// Progress of the run, as stored in checkpoints.
     pub(crate) head: Head,
-    /// Pages that are written at the end; only on the first rank.
-    pub(crate) pages: Vec<Page>,
-    /// Measurements for pages, as JSON.
-    pub(crate) sensors: Vec<Value>,
+    /// Pages that are written at the end.
+    pub(crate) pages: Pages,
 }
 
 impl Run<'_> {
@@ -268,9 +239,10 @@ impl Run<'_> {
         self.stages(&mut checkpoints, saved).map_err(|error| name_directory(error, &self.directory))?;
         let peak_memory = largest_peak(self.comm);
         self.head.report.time = Time { peak_memory, ..Time::of(self.seconds()) };
-        let Self { directory, lock, comm, head, pages, sensors, prepared, .. } = self;
+        let Self { directory, lock, comm, head, pages, prepared, .. } = self;
         let written = match comm.is_first() {
-            true => write_pages(&pages, &sensors, prepared, &directory, &head.report)
+            true => pages
+                .write(prepared, &directory, &head.report)
                 .and_then(|()| write_report(&directory, &head.report)),
             false => Ok(()),
         };

@@ -21,6 +21,7 @@ mod sensor_files;
 mod sharing;
 pub(crate) mod split;
 mod stages;
+mod step;
 
 pub use crate::run_files::CHECKPOINT;
 pub use directory::{absolute, make_new, run_name};

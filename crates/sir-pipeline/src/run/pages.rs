@@ -10,6 +10,14 @@ use crate::prepare::prepared::Prepared;
 use crate::report::page::{Shown, facts, title};
 use crate::report::result::Report;
 
+/// Contents of pages, as far as they are known before the run ends. Only on the first rank.
+#[derive(Default)]
+pub(crate) struct Pages {
+    pub(crate) pages: Vec<Page>,
+    /// Measurements of sensors, as JSON.
+    pub(crate) sensors: Vec<Value>,
+}
+
 /// A page whose light is known, but not all figures.
 pub(crate) struct Page {
     /// Path inside the run directory.
@@ -18,17 +26,13 @@ pub(crate) struct Page {
     pub(crate) shown: Shown,
 }
 
-/// Writes pages into a run directory. `sensors` has the measurements.
-pub(crate) fn write_pages(
-    pages: &[Page],
-    sensors: &[Value],
-    prepared: &Prepared,
-    directory: &Path,
-    report: &Report,
-) -> Result<(), Error> {
-    for Page { path, view, shown } in pages {
-        let facts = facts(report, &prepared.model.scene, shown, sensors);
-        write_page(&directory.join(path), title(report), view, &facts)?;
+impl Pages {
+    /// Writes the pages into a run directory.
+    pub(crate) fn write(&self, prepared: &Prepared, directory: &Path, report: &Report) -> Result<(), Error> {
+        for Page { path, view, shown } in &self.pages {
+            let facts = facts(report, &prepared.model.scene, shown, &self.sensors);
+            write_page(&directory.join(path), title(report), view, &facts)?;
+        }
+        Ok(())
     }
-    Ok(())
 }

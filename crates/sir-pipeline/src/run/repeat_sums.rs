@@ -6,45 +6,19 @@ use std::time::{Duration, Instant};
 use sir_geom::Rgb;
 use sir_mesh::SideSums;
 use sir_parallel::{Communicator, StageTime, Threads};
-use sir_radiosity::{
-    MIN_REPEATS, Model, PowerUnit, RepeatedMeasurements, RepeatedTotals, Repeats, Solution, Visitor, share,
-};
+use sir_radiosity::{MIN_REPEATS, Model, PowerUnit, RepeatedMeasurements, Repeats, Solution, Visitor, share};
 
 use crate::format::{duration, grouped};
 use crate::plan::{Action, Pipeline, Until};
 use crate::prepare::prepared::Prepared;
 use crate::report::lines::Facts;
 use crate::report::result::{
-    Convergence, DomainReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, StageReport, Time,
+    Convergence, ErrorsFrom, ErrorsReport, LightReport, LinesReport, StageReport, Time,
 };
 use crate::run::computed::{Computed, PartErrors};
 use crate::run::lighting::{Done, Lighting};
 use crate::run::sharing::{SHARED, Sharing};
-
-/// A stage that is run in every repeat.
-pub(super) struct Step<'a> {
-    /// Number of the stage in the pipeline, and in a `Repeat` or `Solve`.
-    pub(super) place: (usize, usize),
-    pub(super) action: &'a Action,
-    totals: RepeatedTotals,
-    batches: u64,
-    pub(super) time: StageTime,
-    domain: Option<DomainReport>,
-    /// Sums of the light after this stage, if it is shown or measured, or is the direct light of a page.
-    light: Option<Repeats>,
-    use_of_light: UseOfLight,
-    /// Sums of the measurements of this stage.
-    pub(super) measured: Option<RepeatedMeasurements>,
-}
-
-/// Use of the light after a stage.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct UseOfLight {
-    /// True if it is a result: it is shown or measured, or is the last.
-    is_result: bool,
-    /// True if it is the direct light that a page shows.
-    is_direct: bool,
-}
+use crate::run::step::{Step, UseOfLight};
 
 /// Sums over all repeats so far. A checkpoint has them in addition to the state of the current stage.
 pub(super) struct RepeatSums<'a> {
@@ -128,17 +102,9 @@ impl<'a> RepeatSums<'a> {
                 Action::Sensors(_) => prepared.layouts.get(&place.0).map(|layout| layout.sensors.len()),
                 _ => None,
             };
-            steps.push(Step {
-                place,
-                action,
-                totals: RepeatedTotals::default(),
-                batches: 0,
-                time: StageTime::default(),
-                domain: None,
-                light: (is_result || is_direct).then(|| sums(is_result)),
-                use_of_light,
-                measured: measured.map(RepeatedMeasurements::new),
-            });
+            let light = (is_result || is_direct).then(|| sums(is_result));
+            let measured = measured.map(RepeatedMeasurements::new);
+            steps.push(Step::new(place, action, light, use_of_light, measured));
         }
         Self {
             prepared,
@@ -194,23 +160,7 @@ impl<'a> RepeatSums<'a> {
         self.convergence.resize(words[2] as usize, Convergence::default());
         self.convergence.iter_mut().for_each(|point| point.visit(visitor));
         let Prepared { model, focus, .. } = self.prepared;
-        for Step { action, totals, batches, time, light, measured, .. } in &mut self.steps {
-            totals.visit(visitor);
-            let mut word = [*batches as i64];
-            visitor.same(&mut word);
-            *batches = word[0] as u64;
-            time.visit(visitor);
-            if let Some(light) = light {
-                let domain = || match action {
-                    Action::Multipath(multipath) => Some(multipath.domain.lines_around(&model.scene, *focus)),
-                    _ => None,
-                };
-                light.visit(domain, visitor);
-            }
-            if let Some(measured) = measured {
-                measured.visit(visitor);
-            }
-        }
+        self.steps.iter_mut().for_each(|step| step.visit(model, *focus, visitor));
     }
 
     /// Returns the time of all repeats so far, including that before the run was resumed.
@@ -220,16 +170,8 @@ impl<'a> RepeatSums<'a> {
 
     /// Adds the outcome of a stage of lines of a repeat.
     pub(super) fn add(&mut self, step: usize, done: Done, lighting: &Lighting<'_>, threads: &Threads) {
-        let Done { facts: Facts { balance, counts, batches, walked, domain }, unit, time } = done;
-        self.unit = Some(unit);
-        let step = &mut self.steps[step];
-        step.totals.add(&balance, counts, walked);
-        step.batches += batches;
-        step.time += time;
-        step.domain = domain;
-        if let (Some(sums), Some((received, counted))) = (&mut step.light, lighting.received()) {
-            sums.add(&self.prepared.model, received, counted, threads);
-        }
+        self.unit = Some(done.unit);
+        self.steps[step].add(done, &self.prepared.model, lighting, threads);
     }
 
     /// Closes a repeat, and computes the error of the mean if it is needed or comes from the spread.

@@ -27,19 +27,25 @@ const PREVIEW_WIDTH: u32 = 200;
 /// Ratio of height to width of an image whose camera has no aspect ratio.
 const DEFAULT_SHAPE: f64 = 0.75;
 
-/// Writes the outputs of a stage into a directory, one after the other, as long as `written` returns true.
-#[expect(clippy::too_many_arguments, reason = "the context of a run")]
+/// What the outputs of all stages `Save` have in common.
+#[derive(Clone, Copy)]
+pub(crate) struct Saver<'a> {
+    pub(crate) pipeline: &'a Pipeline,
+    pub(crate) prepared: &'a Prepared,
+    pub(crate) directory: &'a Path,
+    pub(crate) threads: usize,
+    pub(crate) progress: &'a dyn Progress,
+}
+
+/// Writes the outputs of a stage, one after the other, as long as `written` returns true. Adds its pages to `pages`.
 pub(crate) fn save(
-    pipeline: &Pipeline,
-    prepared: &Prepared,
+    saver: Saver<'_>,
     light: &Computed,
     outputs: &[Output],
-    directory: &Path,
-    threads: usize,
-    progress: &dyn Progress,
     pages: &mut Vec<Page>,
     written: &mut dyn FnMut(OutputReport) -> bool,
 ) -> Result<(), Error> {
+    let Saver { pipeline, prepared, directory, threads, progress } = saver;
     let Model { scene, mesh, accel } = &prepared.model;
     let solution = &light.solution;
     let lit = OnceCell::new();

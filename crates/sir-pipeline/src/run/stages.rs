@@ -16,7 +16,7 @@ use crate::report::result::{
 use crate::report::sensors::SensorsReport;
 use crate::run::computed::Computed;
 use crate::run::execute::Run;
-use crate::run::save::save;
+use crate::run::save::{Saver, save};
 use crate::run::sensor_files;
 
 impl Run<'_> {
@@ -86,7 +86,7 @@ impl Run<'_> {
     ) -> Result<(), Error> {
         let Some(layout) = self.prepared.layouts.get(&number) else { return Ok(()) };
         if self.pipeline.has_page() {
-            self.sensors.push(of_sensors(layout, measured, summary, self.pipeline.units));
+            self.pages.sensors.push(of_sensors(layout, measured, summary, self.pipeline.units));
         }
         let written = if self.comm.is_first() {
             sensor_files::write(sensors, layout, measured, summary, self.pipeline.units, &self.directory)
@@ -119,8 +119,9 @@ impl Run<'_> {
     fn write(&mut self, light: &Computed, outputs: &[Output]) -> Result<Vec<OutputReport>, Error> {
         let mut reports = Vec::new();
         let threads = self.threads().0.get();
-        let Self { pipeline, prepared, directory, options, progress, pages, .. } = self;
-        save(pipeline, prepared, light, outputs, directory, threads, *progress, pages, &mut |report| {
+        let Self { pipeline, prepared, ref directory, options, progress, ref mut pages, .. } = *self;
+        let saver = Saver { pipeline, prepared, directory, threads, progress };
+        save(saver, light, outputs, &mut pages.pages, &mut |report| {
             reports.push(report);
             !options.stop.load(Relaxed)
         })?;
