@@ -1,0 +1,69 @@
+//! The facts on the page of a run: figures of all stages, also of those after the `Save` of the page.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a step that fails is a test that fails")]
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use sir_pipeline::plan::Pipeline;
+use sir_pipeline::run::{RunOptions, run_pipeline};
+
+/// Runs stages in the furnace, whose irradiance is 2, 5 and 10 W/m², 1 W/m² of it direct. Returns the contents of a page,
+/// and of `result.json`.
+fn run(stages: &str) -> (Vec<String>, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/furnace/furnace.gltf");
+    fs::copy(scene, folder.path().join("a \"b\".gltf")).unwrap();
+    let text = format!("(stages: [Load(path: \"a \\\"b\\\".gltf\"), Subdivide(patches: 200), {stages}])");
+    fs::write(folder.path().join("x.ron"), text).unwrap();
+    let pipeline = Pipeline::read(&folder.path().join("x.ron")).unwrap_or_else(|e| panic!("{e}"));
+    let out = folder.path().join("out");
+    let done = run_pipeline(&pipeline, &RunOptions { out: Some(out.clone()), ..RunOptions::default() }).unwrap();
+    let pages = done.report.outputs.iter().filter(|output| output.kind == "report");
+    let pages = pages.map(|page| {
+        assert_eq!(page.bytes, None, "the size depends on times");
+        fs::read_to_string(out.join(&page.path)).unwrap()
+    });
+    let result = serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
+    (pages.collect(), result)
+}
+
+fn facts(page: &str) -> Value {
+    let text = page.split_once("id=\"facts\">").unwrap().1.split_once("</script>").unwrap().0;
+    serde_json::from_str(text).unwrap()
+}
+
+#[test]
+fn a_page_has_the_figures_of_all_stages() {
+    let (pages, result) = run(
+        "FirstShot(lines: 20_000), Save([Report(path: \"direct/page.html\")]), Multipath(lines: 60_000), \
+         Save([Report(path: \"all.html\")]), \
+         Sensors(name: \"s\", at: Grid(corner: (0.2, 0.5, 0.2), along: (0, 0, 0.6), across: (0.6, 0, 0), spacing: 0.3), rays: 256)",
+    );
+    assert_eq!(pages.len(), 2);
+    for page in &pages {
+        let facts = facts(page);
+        assert_eq!(facts["title"], "a \"b\".gltf");
+        assert_eq!(facts["report"]["stages"].as_array().unwrap().len(), 7);
+        assert_eq!(facts["report"]["stages"], result["stages"], "as in result.json");
+        let [sensors] = &facts["sensors"].as_array().unwrap()[..] else { panic!("one stage of sensors") };
+        assert_eq!(sensors["points"].as_array().unwrap().len(), 4);
+        assert_eq!(sensors["map"]["cells"].as_array().unwrap().len(), 4);
+        assert_eq!(facts["units"]["irradiance"], "W/m²");
+        let cameras = facts["cameras"].as_array().unwrap();
+        assert!(!cameras.is_empty() && cameras.iter().all(|camera| camera["exposure"].as_f64().unwrap() > 0.0));
+    }
+}
+
+#[test]
+fn pages_do_not_change_the_light() {
+    let stages = "Solve(lines: 80_000)";
+    let hash = |result: &Value| {
+        let stages = result["stages"].as_array().unwrap();
+        stages.iter().find_map(|stage| stage["tally_hash"].as_str()).unwrap().to_owned()
+    };
+    let (_, with) = run(&format!("{stages}, Save([Report(path: \"page.html\"), Table(path: \"a.csv\")])"));
+    let (_, without) = run(&format!("{stages}, Save([Table(path: \"a.csv\")])"));
+    assert_eq!(hash(&with), hash(&without));
+}
