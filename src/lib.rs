@@ -33,5 +33,6 @@ pub use sir_mesh as mesh;
 pub use sir_parallel as parallel;
 pub use sir_pipeline as pipeline;
 pub use sir_radiosity as radiosity;
+pub use sir_report as report;
 pub use sir_scenes as scenes;
 pub use sir_view as view;

@@ -22,6 +22,7 @@ Examples:
   sir compare results/cornell-box results/cornell-box-2
   sir resume results/cornell-box                 continue a run stopped by Ctrl-C or a power cut
   mpirun -n 4 sir run room.ron                   run on several machines, if built with --features mpi
+  sir run room.ron --watch                       show the light in the browser while it is computed
   sir scaling room.ron --threads 1,2,4           measure the speed-up by more threads
   sir viewfactors room.obj --by group            compute the view factors between named parts
   sir experiment --scale 0.01                    check the claims of the paper of 2009, with 1 % of the lines
@@ -87,10 +88,11 @@ pub enum Command {
     /// which sides of its surfaces face each other; then likely mistakes and suggested pipeline settings. Writes
     /// nothing.
     Info(InfoArgs),
-    /// Compare two results: relative RMS, bias and the worst patches.
+    /// Compare two results: relative RMS, bias and the worst rows.
     ///
-    /// Both must be of the same scene, cut into the same patches. Differences are relative to the mean radiosity of the
-    /// first; z is the difference of a row in standard errors.
+    /// Both must have the same rows: the same patches, or triangles, faces, materials or groups of the same scene. Of a run
+    /// with several tables, the last one of patches is used. Differences are relative to the mean radiosity of the first; z
+    /// is the difference of a row in standard errors.
     Compare {
         /// A run directory, or a table (.csv or .npy).
         a: PathBuf,
@@ -161,6 +163,10 @@ pub struct HowArgs {
     /// Seconds between checkpoints, from which `sir resume` can continue.
     #[arg(long, value_name = "SECONDS", default_value = "300", value_parser = seconds)]
     pub checkpoint_every: Duration,
+    /// Serve a page on this computer that shows the light after each repeat, and print its address. It has a button that ends
+    /// the run after the current repeat.
+    #[arg(long)]
+    pub watch: bool,
     /// Show no progress; warnings and errors are still shown.
     #[arg(long, short)]
     pub quiet: bool,

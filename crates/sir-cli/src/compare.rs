@@ -7,8 +7,11 @@ use sir_view::{BandComparison, Comparison};
 #[must_use]
 pub fn text(c: &Comparison) -> String {
     let [red, green, blue] = c.bands;
-    let mut out =
-        format!("{} rows; differences of the radiosity, second minus first, weighted by area\n\n", c.rows);
+    let mut out = format!(
+        "{} rows, one per {}; differences of the radiosity, second minus first, weighted by area\n\n",
+        c.rows,
+        row_name(c)
+    );
     out += "            mean of first   relative RMS   relative bias\n";
     for (name, band) in [("luminance", c.luminance), ("red", red), ("green", green), ("blue", blue)] {
         let BandComparison { mean, relative_rms, relative_bias } = band;
@@ -24,17 +27,28 @@ pub fn text(c: &Comparison) -> String {
     }
     if !c.worst.is_empty() {
         out += "\nrows that contribute most to the difference in luminance:\n";
-        out += &format!("       row {:>10}   triangle          first         second      z\n", c.of);
+        // Triangles are what they are, and materials and groups have many.
+        let has_triangle = ["patch", "face"].contains(&c.of);
+        let triangle = |text: String| if has_triangle { format!(" {text:>10}") } else { String::new() };
+        let head = triangle("triangle".into());
+        out += &format!("       row {:>10}{head}          first         second      z\n", c.of);
         for w in &c.worst {
             let [first, second] = w.luminance;
             let z = w.z.map_or("-".into(), |z| format!("{z:.1}"));
             out += &format!(
-                "{:>10} {:>10} {:>10} {first:>14.6} {second:>14.6} {z:>6}\n",
-                w.row, w.part, w.triangle
+                "{:>10} {:>10}{} {first:>14.6} {second:>14.6} {z:>6}\n",
+                w.row,
+                w.part,
+                triangle(w.triangle.to_string())
             );
         }
     }
     out
+}
+
+/// Returns what a row of the tables is.
+fn row_name(c: &Comparison) -> String {
+    if ["material", "group"].contains(&c.of) { c.of.into() } else { format!("side of a {}", c.of) }
 }
 
 /// Returns a comparison as JSON. Non-finite numbers are `null`.

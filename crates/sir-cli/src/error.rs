@@ -20,6 +20,9 @@ pub enum CliError {
     /// Wrong answers, or answers that cannot be checked.
     #[error(transparent)]
     Validation(#[from] ValidationError),
+    /// The page of a run cannot be served.
+    #[error("the page cannot be served on this computer; run it without --watch")]
+    Watch(#[source] std::io::Error),
 }
 
 impl From<ConnectError> for CliError {
@@ -42,6 +45,7 @@ impl CliError {
             Self::Pipeline(error) => error.kind(),
             Self::Study(error) => error.kind(),
             Self::Validation(error) => error.kind(),
+            Self::Watch(_) => ErrorKind::Failed,
         }
     }
 }

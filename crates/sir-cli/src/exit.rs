@@ -41,7 +41,7 @@ fn hint(error: &CliError) -> Option<String> {
         CliError::Study(StudyError::Pipeline(error)) => pipeline_hint(error),
         CliError::Study(StudyError::Scaling(error)) => scaling_hint(error),
         CliError::Study(StudyError::Experiment(error)) => experiment_hint(error),
-        CliError::Study(StudyError::View(_)) | CliError::Validation(_) => None,
+        CliError::Study(StudyError::View(_)) | CliError::Validation(_) | CliError::Watch(_) => None,
     }
 }
 

@@ -30,6 +30,7 @@ pub mod scaling;
 pub mod summary;
 pub mod validate;
 mod viewfactors;
+mod watch;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -41,7 +42,7 @@ use sir_parallel::{Communicator, SingleProcess, connect};
 use sir_pipeline::check::estimate;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::run::{resume_together, run_together};
-use sir_pipeline::{ErrorKind, RunOptions, RunResult, report};
+use sir_pipeline::{ErrorKind, RunOptions, RunResult, Watcher, report};
 
 use args::{Args, Command, HowArgs, RunArgs};
 pub use error::CliError;
@@ -104,12 +105,12 @@ fn show(error: &CliError) -> ExitCode {
 fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Result<String, CliError> {
     match command {
         Command::Run(RunArgs { pipeline, out, seed, force, how }) => {
-            let options = RunOptions { out, seed, force, ..options(&how, stop) };
+            let options = RunOptions { out, seed, force, ..options(&how, stop, comm)? };
             run_together(Pipeline::read(&pipeline), &options, comm)
                 .map(|result| result_text(&result, &how, comm))
                 .map_err(CliError::from)
         }
-        Command::Resume { directory, how } => resume_together(&directory, &options(&how, stop), comm)
+        Command::Resume { directory, how } => resume_together(&directory, &options(&how, stop, comm)?, comm)
             .map(|result| result_text(&result, &how, comm))
             .map_err(CliError::from),
         Command::Check { pipeline } => {
@@ -132,15 +133,22 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
     }
 }
 
-/// Returns the options of a run that `stop` can interrupt.
-fn options(how: &HowArgs, stop: Arc<AtomicBool>) -> RunOptions {
-    RunOptions {
+/// Returns the options of a run that `stop` can interrupt. Starts the server of `--watch`.
+fn options(how: &HowArgs, stop: Arc<AtomicBool>, comm: &dyn Communicator) -> Result<RunOptions, CliError> {
+    let mut watcher: Option<Arc<dyn Watcher>> = None;
+    if how.watch && comm.is_first() {
+        let (page, url) = watch::Page::start().map_err(CliError::Watch)?;
+        output::print_note(format!("watch: {url}"));
+        watcher = Some(Arc::new(page));
+    }
+    Ok(RunOptions {
         threads: how.threads,
         checkpoint_every: how.checkpoint_every,
         stop,
         progress: Arc::new(Stderr::unless(how.quiet)),
+        watcher,
         ..RunOptions::default()
-    }
+    })
 }
 
 /// Returns the text to print after a run; it is empty on all ranks except the first.

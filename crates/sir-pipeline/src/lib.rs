@@ -85,6 +85,7 @@ pub mod stopwatch;
 pub mod text;
 mod units;
 pub mod view_factors;
+mod watcher;
 
 pub use check::check;
 pub use error::{Error, chain};
@@ -92,3 +93,4 @@ pub use error_kind::ErrorKind;
 pub use progress::{NoProgress, Progress};
 pub use run::{RunOptions, RunResult, resume, run};
 pub use units::Units;
+pub use watcher::Watcher;

@@ -4,14 +4,21 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 use serde_json::Value;
+use sir_pipeline::Watcher;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::run::{RunOptions, run_pipeline};
+use sir_report::View;
 
 /// Runs stages in the furnace, whose irradiance is 2, 5 and 10 W/m², 1 W/m² of it direct. Returns the contents of a page,
 /// and of `result.json`.
 fn run(stages: &str) -> (Vec<String>, Value) {
+    watched(stages, None)
+}
+
+fn watched(stages: &str, watcher: Option<Arc<dyn Watcher>>) -> (Vec<String>, Value) {
     let folder = tempfile::tempdir().unwrap();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/furnace/furnace.gltf");
     fs::copy(scene, folder.path().join("a \"b\".gltf")).unwrap();
@@ -19,7 +26,9 @@ fn run(stages: &str) -> (Vec<String>, Value) {
     fs::write(folder.path().join("x.ron"), text).unwrap();
     let pipeline = Pipeline::read(&folder.path().join("x.ron")).unwrap_or_else(|e| panic!("{e}"));
     let out = folder.path().join("out");
-    let done = run_pipeline(&pipeline, &RunOptions { out: Some(out.clone()), ..RunOptions::default() }).unwrap();
+    let done =
+        run_pipeline(&pipeline, &RunOptions { out: Some(out.clone()), watcher, ..RunOptions::default() })
+            .unwrap();
     let pages = done.report.outputs.iter().filter(|output| output.kind == "report");
     let pages = pages.map(|page| {
         assert_eq!(page.bytes, None, "the size depends on times");
@@ -52,8 +61,72 @@ fn a_page_has_the_figures_of_all_stages() {
         assert_eq!(sensors["map"]["cells"].as_array().unwrap().len(), 4);
         assert_eq!(facts["units"]["irradiance"], "W/m²");
         let cameras = facts["cameras"].as_array().unwrap();
-        assert!(!cameras.is_empty() && cameras.iter().all(|camera| camera["exposure"].as_f64().unwrap() > 0.0));
+        assert!(
+            !cameras.is_empty() && cameras.iter().all(|camera| camera["exposure"].as_f64().unwrap() > 0.0)
+        );
     }
+}
+
+/// Watcher that ends the run after a number of updates.
+#[derive(Debug)]
+struct Patience {
+    most: usize,
+    seen: Mutex<Vec<(String, Value)>>,
+    last: Mutex<Option<(bool, Value)>>,
+}
+
+impl Watcher for Patience {
+    fn wants_light(&self) -> bool {
+        true
+    }
+
+    fn show(&self, title: &str, _: View, facts: Value, status: &str) {
+        assert_eq!(title, "a \"b\".gltf");
+        self.seen.lock().unwrap().push((status.into(), facts));
+    }
+
+    fn end(&self, _: &str, view: Option<View>, facts: Value) {
+        *self.last.lock().unwrap() = Some((view.is_some(), facts));
+    }
+
+    fn wants_end(&self) -> bool {
+        self.seen.lock().unwrap().len() >= self.most
+    }
+}
+
+#[test]
+fn a_watcher_sees_each_repeat_and_can_end_the_run() {
+    for (stages, is_page) in [
+        (
+            "Repeat(times: 20, stages: [FirstShot(lines: 5_000), Multipath(lines: 5_000)]), Save([Report(path: \"a.html\")])",
+            true,
+        ),
+        ("Repeat(times: 20, stages: [FirstShot(lines: 5_000)]), Save([Table(path: \"a.csv\")])", false),
+    ] {
+        let watcher = Arc::new(Patience { most: 9, seen: Mutex::default(), last: Mutex::default() });
+        let (pages, result) = watched(stages, Some(Arc::clone(&watcher) as Arc<dyn Watcher>));
+        assert_eq!(pages.len(), usize::from(is_page));
+        let seen = watcher.seen.lock().unwrap();
+        assert_eq!(seen.len(), 9);
+        assert!(seen[0].0.starts_with("Repeat 2 of 20"), "{}", seen[0].0);
+        let repeat =
+            result["stages"].as_array().unwrap().iter().find(|stage| stage["name"] == "Repeat").unwrap();
+        assert_eq!(repeat["repeats"], 10);
+        let warnings = result["warnings"].to_string();
+        assert!(warnings.contains("after 10 repeats") && !warnings.contains("at_most"), "{warnings}");
+        let last = watcher.last.lock().unwrap();
+        let (has_view, facts) = last.as_ref().unwrap();
+        assert_eq!((*has_view, &facts["report"]["stages"]), (is_page, &result["stages"]));
+    }
+}
+
+#[test]
+fn a_page_of_an_earlier_stage_says_so() {
+    let (pages, _) =
+        run("FirstShot(lines: 20_000), Save([Report(path: \"direct.html\")]), Multipath(lines: 60_000), \
+         Save([Report(path: \"all.html\")])");
+    let says = pages.iter().map(|page| facts(page)["notes"].to_string().contains("after FirstShot"));
+    assert_eq!(says.collect::<Vec<_>>(), [true, false]);
 }
 
 #[test]

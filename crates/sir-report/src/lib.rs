@@ -11,14 +11,18 @@
 //! ([`LogScale`]), so that three digits are exact. Arrays are differences of neighbors in planes of bytes, which deflates to a
 //! third. `web/script/mesh.js` reads them.
 //!
+//! [`LiveServer`] serves a page that follows a run.
+//!
 //! Very large meshes are shown with fewer patches: see [`MAX_SIDES`].
 
 mod arrays;
+mod live;
 mod log_scale;
 mod page;
 mod simplified;
 mod view;
 
+pub use live::LiveServer;
 pub use log_scale::LogScale;
 pub use page::write_page;
 pub use view::{Light, MAX_SIDES, View};

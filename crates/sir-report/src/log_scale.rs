@@ -23,11 +23,11 @@ impl LogScale {
         Self { low: high - f64::from(u16::MAX - 1) * step, step }
     }
 
-    /// Returns the code of a number. Numbers below half of the smallest one become zero, and numbers above the largest
-    /// become that.
+    /// Returns the code of a number. Numbers below half of the smallest one and infinite ones become zero, and numbers above
+    /// the largest become that.
     #[must_use]
     pub fn code(self, number: f64) -> u16 {
-        if number.is_nan() || number <= 0.0 {
+        if !number.is_finite() || number <= 0.0 {
             return 0;
         }
         let steps = ((number.ln() - self.low) / self.step).round();
@@ -53,7 +53,7 @@ mod tests {
             let back = scale.number(scale.code(number));
             assert!((back / number - 1.0).abs() < 2.6e-4, "{number} {back}");
         }
-        assert_eq!([0.0, -1.0, f64::NAN, 1e-30].map(|x| scale.code(x)), [0; 4]);
+        assert_eq!([0.0, -1.0, f64::NAN, f64::INFINITY, 1e-30].map(|x| scale.code(x)), [0; 5]);
         assert_eq!(scale.code(1e9), u16::MAX);
         assert_eq!(LogScale::up_to(0.0, LogScale::FINE).code(0.0), 0);
     }

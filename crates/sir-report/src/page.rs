@@ -1,11 +1,12 @@
 //! The page: a template, its script and style sheet, coded light and facts.
 
-use std::io::Write as _;
+use std::borrow::Cow;
+use std::io::{self, Write};
 use std::path::Path;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use serde_json::Value;
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use sir_view::{ViewError, write_atomically};
 
@@ -34,6 +35,7 @@ const SCRIPT: &str = concat!(
     include_str!("../web/script/convergence.js"),
     include_str!("../web/script/sensors.js"),
     include_str!("../web/script/repeat.js"),
+    include_str!("../web/script/live.js"),
     include_str!("../web/script/start.js"),
     "})();\n"
 );
@@ -45,30 +47,50 @@ const STYLE: &str = include_str!("../web/report.css");
 ///
 /// If the file cannot be written.
 pub fn write_page(path: &Path, title: &str, view: &View, facts: &Value) -> Result<(), ViewError> {
-    write_atomically(path, |file| {
-        let mut rest = TEMPLATE;
-        while let Some((before, after)) = rest.split_once("{{") {
-            file.write_all(before.as_bytes())?;
-            let (name, after) = after.split_once("}}").unwrap_or((after, ""));
-            file.write_all(filled(name, title, view, facts).as_bytes())?;
-            rest = after;
-        }
-        file.write_all(rest.as_bytes())
-    })
+    write_atomically(path, |file| fill(file, |name| content(name, title, view, facts, "")))
 }
 
-/// Returns the content of a placeholder of the template.
-fn filled<'a>(name: &str, title: &str, view: &'a View, facts: &Value) -> std::borrow::Cow<'a, str> {
+/// Returns a page for a server. If `live` is its version, it asks the server for newer ones.
+pub(crate) fn served_page(title: &str, view: &View, facts: &Value, live: Option<u64>) -> String {
+    let mut facts = facts.clone();
+    let allowed = if live.is_some() { "; connect-src 'self'" } else { "" };
+    if let Some(version) = live {
+        facts["live"] = json!({ "version": version });
+    }
+    let mut page = Vec::new();
+    // Writing to memory does not fail.
+    let _ = fill(&mut page, |name| content(name, title, view, &facts, allowed));
+    String::from_utf8_lossy(&page).into_owned()
+}
+
+/// Writes the template with its placeholders replaced.
+fn fill<'a>(out: &mut impl Write, content: impl Fn(&str) -> Cow<'a, str>) -> io::Result<()> {
+    let mut rest = TEMPLATE;
+    while let Some((before, after)) = rest.split_once("{{") {
+        out.write_all(before.as_bytes())?;
+        let (name, after) = after.split_once("}}").unwrap_or((after, ""));
+        out.write_all(content(name).as_bytes())?;
+        rest = after;
+    }
+    out.write_all(rest.as_bytes())
+}
+
+/// Returns the content of a placeholder of the template. `allowed` is added to the content security policy.
+fn content<'a>(name: &str, title: &str, view: &'a View, facts: &Value, allowed: &str) -> Cow<'a, str> {
     match name {
         "title" => escaped(title).into(),
-        "csp" => policy().into(),
+        "csp" => (policy() + allowed).into(),
         "style" => STYLE.into(),
         "script" => SCRIPT.into(),
-        // A string in JSON may hold anything, such as the end of a script.
-        "facts" => facts.to_string().replace('<', "\\u003c").into(),
+        "facts" => script_json(facts).into(),
         "mesh" => view.coded.as_str().into(),
         _ => "".into(),
     }
+}
+
+/// Returns JSON for a script element: a string in it may hold anything, such as the end of a script.
+pub(crate) fn script_json(value: &Value) -> String {
+    value.to_string().replace('<', "\\u003c")
 }
 
 /// Returns the content security policy: nothing but the script and the style sheet of the page, and pictures that it draws.

@@ -97,7 +97,9 @@ fn code(display: &DisplayMesh<'_>, mesh: &PatchMesh, light: Light<'_>, simplifie
     let (order, triangles) = add_triangles(&mut arrays, display, &pieces);
     let (origin, step) = add_positions(&mut arrays, display, &order);
 
-    let largest = |values: &mut dyn Iterator<Item = Rgb>| values.map(|v| v.max_element()).fold(0.0, f64::max);
+    let largest = |values: &mut dyn Iterator<Item = Rgb>| {
+        values.map(|v| v.max_element()).filter(|v| v.is_finite()).fold(0.0, f64::max)
+    };
     let vertices =
         || order.iter().map(|&v| Rgb::from_array(display.vertices()[v as usize].irradiance.map(f64::from)));
     let of_sides = |values: &[Rgb]| pieces.iter().map(|piece| values[piece.id.index()]).collect::<Vec<_>>();
@@ -112,7 +114,8 @@ fn code(display: &DisplayMesh<'_>, mesh: &PatchMesh, light: Light<'_>, simplifie
 
     let mut logs = json!({ "irradiance": json_of(scale) });
     let mut add_values = |arrays: &mut Arrays, name: &str, array: &str, values: Vec<f64>, step: f64| {
-        let scale = LogScale::up_to(values.iter().copied().fold(0.0, f64::max), step);
+        let scale =
+            LogScale::up_to(values.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max), step);
         let codes: Vec<_> = values.into_iter().map(|value| [u32::from(scale.code(value))]).collect();
         arrays.add(array, &codes, 2, Coding::Differences);
         logs[name] = json_of(scale);

@@ -55,7 +55,9 @@ pub enum ViewError {
         why: String,
     },
     /// Two tables do not describe the same patches.
-    #[error("the tables cannot be compared: {why}; both must be of the same scene with the same patches")]
+    #[error(
+        "the tables cannot be compared: {why}; both must be tables of the same parts of the same scene, such as its patches"
+    )]
     Mismatch {
         /// The first difference.
         why: String,

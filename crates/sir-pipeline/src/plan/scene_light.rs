@@ -30,6 +30,7 @@ impl SceneLight {
             Self::Panel { corner, edges: [a, b], exitance } => {
                 let black = Material::diffuse("panel", Rgb::ZERO).emitting(*exitance);
                 let black = builder.add_material(black);
+                builder.begin_group("panel");
                 shapes::quad(builder, [*corner, corner + a, corner + a + b, corner + b], black);
             }
         }

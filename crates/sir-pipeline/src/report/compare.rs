@@ -1,28 +1,34 @@
 //! Compares the results of two runs.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use sir_view::{Comparison, Table};
 
 use crate::error::Error;
 use crate::run::execute::read_report;
 
-/// Compares two results, each a table or a run directory with a table. Of several tables of a run, the last one is
-/// used.
+/// Compares two results, each a table or a run directory with a table. Of several tables of a run, the last one of patches is
+/// used, or else the last one.
 ///
 /// # Errors
 ///
 /// If there is no table, it cannot be read, or the tables have different patches.
 pub fn compare(a: &Path, b: &Path) -> Result<Comparison, Error> {
-    let read = |path: &Path| -> Result<Table, Error> { Ok(Table::read(&table_of(path)?)?) };
-    Ok(sir_view::compare(&read(a)?, &read(b)?)?)
+    Ok(sir_view::compare(&table_of(a)?, &table_of(b)?)?)
 }
 
-fn table_of(path: &Path) -> Result<PathBuf, Error> {
+fn table_of(path: &Path) -> Result<Table, Error> {
     if !path.is_dir() {
-        return Ok(path.to_owned());
+        return Ok(Table::read(path)?);
     }
     let report = read_report(path)?;
-    let table = report.outputs.iter().rfind(|output| output.kind == "table");
-    table.map(|t| path.join(&t.path)).ok_or_else(|| Error::NoTable { directory: path.to_owned() })
+    let mut last = None;
+    for output in report.outputs.iter().rev().filter(|output| output.kind == "table") {
+        let table = Table::read(&path.join(&output.path))?;
+        if table.per.is_none() {
+            return Ok(table);
+        }
+        last = last.or(Some(table));
+    }
+    last.ok_or_else(|| Error::NoTable { directory: path.to_owned() })
 }

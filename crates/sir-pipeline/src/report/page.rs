@@ -16,6 +16,8 @@ const MAX_POINTS: usize = 20_000;
 pub(crate) struct Shown {
     /// Cameras, at least one, each with its exposure: the factor from radiance to screen values.
     pub(crate) cameras: Vec<(Camera, f64)>,
+    /// Name of the stage after which the light is, if a later stage changes it.
+    pub(crate) not_final: Option<&'static str>,
     /// Number of patches that the page shows, if these are fewer than those of the solution.
     pub(crate) simplified: Option<usize>,
 }
@@ -106,8 +108,13 @@ fn sky(scene: &Scene) -> Option<[f64; 3]> {
 /// Returns what the page leaves out or approximates.
 fn notes(scene: &Scene, shown: &Shown) -> Vec<String> {
     let mut notes = vec![
-        "Colors and curves in the view interpolate between patches. Picked values are those of whole patches.".into(),
+        "Colors in the view are interpolated between patches. Values read are those of whole patches.".into(),
     ];
+    if let Some(stage) = shown.not_final {
+        notes.push(format!(
+            "The light in the view is that after {stage}, not the final one. The figures below are those of the whole run."
+        ));
+    }
     if !scene.textures().is_empty() {
         notes.push("Textures are shown as the mean color of each patch.".into());
     }

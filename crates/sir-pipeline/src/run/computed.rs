@@ -11,6 +11,8 @@ pub(crate) struct Computed {
     pub(crate) solution: Solution,
     /// Parts of the scene for which there are tables.
     pub(crate) parts: Vec<PartErrors>,
+    /// Name of the stage after which it is, if a later stage changes the light.
+    pub(crate) not_final: Option<&'static str>,
     /// Direct irradiance \[W/m²\], if a page needs it and it is known.
     pub(crate) direct: Option<Arc<[Rgb]>>,
 }

@@ -30,6 +30,7 @@ use crate::run::resume as saved_run;
 use crate::run::resume::Head;
 use crate::run_files::{CHECKPOINT, REPORT};
 use crate::stopwatch::Stopwatch;
+use crate::watcher::Watcher;
 
 /// Options of a run. Only the seed changes the result.
 #[derive(Clone, Debug)]
@@ -50,6 +51,8 @@ pub struct RunOptions {
     pub stop: Arc<AtomicBool>,
     /// Observer of the run. Default none.
     pub progress: Arc<dyn Progress>,
+    /// Watcher of the light of the run. Default none.
+    pub watcher: Option<Arc<dyn Watcher>>,
 }
 
 impl Default for RunOptions {
@@ -63,6 +66,7 @@ impl Default for RunOptions {
             checkpoint_every: Duration::from_secs(300),
             stop: Arc::default(),
             progress: Arc::new(NoProgress),
+            watcher: None,
         }
     }
 }
@@ -239,13 +243,16 @@ impl Run<'_> {
         self.stages(&mut checkpoints, saved).map_err(|error| name_directory(error, &self.directory))?;
         let peak_memory = largest_peak(self.comm);
         self.head.report.time = Time { peak_memory, ..Time::of(self.seconds()) };
-        let Self { directory, lock, comm, head, pages, prepared, .. } = self;
+        let Self { directory, lock, comm, head, mut pages, prepared, options, .. } = self;
         let written = match comm.is_first() {
             true => pages
                 .write(prepared, &directory, &head.report)
                 .and_then(|()| write_report(&directory, &head.report)),
             false => Ok(()),
         };
+        if let (Some(watcher), true) = (&options.watcher, comm.is_first()) {
+            pages.show_last(&**watcher, prepared, &head.report);
+        }
         agree(comm, written.map_err(|error| name_directory(error, &directory)))?;
         if comm.is_first() {
             checkpoints.remove();

@@ -9,11 +9,14 @@ use crate::error::Error;
 use crate::prepare::prepared::Prepared;
 use crate::report::page::{Shown, facts, title};
 use crate::report::result::Report;
+use crate::watcher::Watcher;
 
 /// Contents of pages, as far as they are known before the run ends. Only on the first rank.
 #[derive(Default)]
 pub(crate) struct Pages {
     pub(crate) pages: Vec<Page>,
+    /// What a watcher was shown last.
+    pub(crate) watched: Option<Shown>,
     /// Measurements of sensors, as JSON.
     pub(crate) sensors: Vec<Value>,
 }
@@ -34,5 +37,15 @@ impl Pages {
             write_page(&directory.join(path), title(report), view, &facts)?;
         }
         Ok(())
+    }
+
+    /// Shows a watcher the last page, or the facts of what it was shown last.
+    pub(crate) fn show_last(&mut self, watcher: &dyn Watcher, prepared: &Prepared, report: &Report) {
+        let (view, shown) = match (self.pages.pop(), self.watched.take()) {
+            (Some(page), _) => (Some(page.view), page.shown),
+            (None, Some(shown)) => (None, shown),
+            (None, None) => return,
+        };
+        watcher.end(title(report), view, facts(report, &prepared.model.scene, &shown, &self.sensors));
     }
 }

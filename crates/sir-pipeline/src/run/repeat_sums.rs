@@ -19,6 +19,7 @@ use crate::run::computed::{Computed, PartErrors};
 use crate::run::lighting::{Done, Lighting};
 use crate::run::sharing::{SHARED, Sharing};
 use crate::run::step::{Step, UseOfLight};
+use crate::watcher::Watcher;
 
 /// Sums over all repeats so far. A checkpoint has them in addition to the state of the current stage.
 pub(super) struct RepeatSums<'a> {
@@ -41,6 +42,7 @@ pub(super) struct RepeatSums<'a> {
     /// Relative error of the mean in the worst band, if it is known.
     error: Option<f64>,
     pub(super) convergence: Vec<Convergence>,
+    is_ended_early: bool,
     /// Time spent before `since`.
     spent: Duration,
     since: Instant,
@@ -119,6 +121,7 @@ impl<'a> RepeatSums<'a> {
             unit: None,
             error: None,
             convergence: Vec::new(),
+            is_ended_early: false,
             spent: Duration::ZERO,
             since: Instant::now(),
         }
@@ -193,12 +196,33 @@ impl<'a> RepeatSums<'a> {
     }
 
     /// Returns true if another repeat should run. Rank 0 decides, because clocks differ.
-    pub(super) fn wants_more(&self, comm: &dyn Communicator) -> bool {
+    pub(super) fn wants_more(&mut self, comm: &dyn Communicator, watcher: Option<&dyn Watcher>) -> bool {
         let wanted = self.until.wants_more(self.count, self.error, self.elapsed().as_secs_f64());
         let allowed = self.at_most.is_none_or(|most| self.count < most);
-        let mut decision = [i64::from(wanted && allowed)];
+        let is_ended_early = wanted && allowed && watcher.is_some_and(|watcher| watcher.wants_end());
+        let mut decision = [i64::from(wanted && allowed), i64::from(is_ended_early)];
         comm.broadcast(&mut decision);
-        decision[0] > 0
+        self.is_ended_early = decision[1] > 0;
+        decision[0] > 0 && !self.is_ended_early
+    }
+
+    /// True if a watcher wanted no further repeats.
+    pub(super) fn is_ended_early(&self) -> bool {
+        self.is_ended_early
+    }
+
+    /// Returns the mean of the light of all repeats so far, without tables; `None` if there is none.
+    pub(super) fn light_so_far(&self, threads: &Threads) -> Option<Computed> {
+        let Prepared { model, inside, .. } = self.prepared;
+        let solution = |step: &Step<'_>| {
+            let light = step.light.as_ref()?;
+            Some(Solution::new(model, &light.mean(model, inside, threads), self.unit?))
+        };
+        let is_direct = |step: &&Step<'_>| step.use_of_light.is_direct;
+        let direct =
+            self.steps.iter().find(is_direct).and_then(solution).map(|direct| direct.irradiance.into());
+        let solution = self.steps.iter().rev().find_map(solution)?;
+        Some(Computed { solution, parts: Vec::new(), not_final: None, direct })
     }
 
     /// Returns the expected total number of repeats, if it can be estimated.
@@ -255,7 +279,9 @@ impl<'a> RepeatSums<'a> {
         let Prepared { model, inside, .. } = self.prepared;
         let before = self.steps[..=number].iter().map(|step| step.totals.counts().lines).sum();
         let (count, unit) = (self.count, self.unit.unwrap_or_else(|| PowerUnit::for_total(1.0, 0.0)));
+        let is_last = self.steps[number + 1..].iter().all(|step| step.action.lines() == 0);
         let step = &mut self.steps[number];
+        let not_final = (!is_last).then(|| step.action.name());
         let (balance, counts, walked) =
             (step.totals.mean_balance(count), step.totals.counts(), step.totals.mean_walked(count));
         let facts = Facts { balance, counts, batches: step.batches, walked, domain: step.domain.clone() };
@@ -279,7 +305,7 @@ impl<'a> RepeatSums<'a> {
         }
         let errors = ErrorsReport { from, samples };
         report.light = Some(LightReport::new(model, inside, &solution, errors, mean.hash()));
-        (report, Some(Computed { solution, parts, direct: self.direct.clone() }))
+        (report, Some(Computed { solution, parts, not_final, direct: self.direct.clone() }))
     }
 
     /// Returns the time of all repeats.

@@ -7,14 +7,16 @@
 use std::time::Instant;
 
 use sir_lines::seed_of_repeat;
-use sir_parallel::{Checkpoints, Saved, Start};
-use sir_radiosity::{Points, SensorStage, SensorTask};
+use sir_mesh::Per;
+use sir_parallel::{Checkpoints, Saved, Start, Threads};
+use sir_radiosity::{MIN_REPEATS, Points, SensorStage, SensorTask};
 
 use crate::error::Error;
 use crate::format::{duration, grouped};
-use crate::plan::{Action, Repeat, Sensors, Until};
+use crate::plan::{Action, Output, Repeat, Save, Sensors, Until};
 use crate::progress::{PAUSE, StageProgress};
 use crate::ranks::agree;
+use crate::report::page::{facts, title};
 use crate::report::result::{StageReport, Time};
 use crate::report::sensors::SensorsReport;
 use crate::run::computed::Computed;
@@ -22,6 +24,7 @@ use crate::run::execute::Run;
 use crate::run::lighting::Lighting;
 use crate::run::reach::{dark_warning, few_lines_warning};
 use crate::run::repeat_sums::RepeatSums;
+use crate::run::save::view_of;
 use crate::run::sharing::SHARED;
 use crate::run::stages::{large_error_warning, unshot_warning};
 use crate::stopwatch::Stopwatch;
@@ -79,9 +82,10 @@ impl Run<'_> {
                 }
             }
             repeating.end_repeat(&threads);
-            if !repeating.wants_more(self.comm) {
+            if !repeating.wants_more(self.comm, self.options.watcher.as_deref()) {
                 break;
             }
+            self.show_light(&repeating, &threads)?;
             (repeat, begun) = (repeat + 1, 0);
             if !is_single && last_message.elapsed() >= PAUSE {
                 last_message = Instant::now();
@@ -94,8 +98,28 @@ impl Run<'_> {
             self.progress
                 .note(&format!("Repeat: {count} times in {}", duration(repeating.elapsed().as_secs_f64())));
         }
+        if repeating.is_ended_early() {
+            let count = grouped(repeating.count);
+            self.warn(vec![format!(
+                "the run was ended by its watcher after {count} repeats; it has fewer lines than stated"
+            )]);
+        }
         self.warn(repeating.sharing.and_then(|sharing| sharing.warning(solve)).into_iter().collect());
         self.report(first, &mut repeating)
+    }
+
+    /// Shows the light of all repeats so far to the watcher, if it wants it.
+    fn show_light(&mut self, repeating: &RepeatSums<'_>, threads: &Threads) -> Result<(), Error> {
+        let watcher = self.options.watcher.as_deref().filter(|_| self.comm.is_first());
+        let Some(watcher) = watcher.filter(|watcher| watcher.wants_light()) else { return Ok(()) };
+        let Some(light) = repeating.light_so_far(threads) else { return Ok(()) };
+        let known = self.pages.watched.take().map(|shown| shown.cameras);
+        let (view, shown) = view_of(self.saver(), &light, known)?;
+        let Self { prepared, head, pages, .. } = self;
+        let facts = facts(&head.report, &prepared.model.scene, &shown, &pages.sensors);
+        watcher.show(title(&head.report), view, facts, &repeating.title());
+        pages.watched = Some(shown);
+        Ok(())
     }
 
     /// Returns the observer of a stage with `total` lines: a stage of its own, or a part of a repeat.
@@ -152,6 +176,13 @@ impl Run<'_> {
             match &stage.action {
                 Action::Save(save) => {
                     self.save(computed.as_ref(), &save.outputs)?;
+                    self.warn(
+                        computed
+                            .as_ref()
+                            .and_then(|light| independent_errors(light, save))
+                            .into_iter()
+                            .collect(),
+                    );
                     report.time = Time::of(watch.seconds());
                 }
                 Action::Sensors(sensors) => {
@@ -179,7 +210,7 @@ impl Run<'_> {
                     if is_repeat || !repeating.is_single() {
                         report.repeats = Some(repeating.count);
                     }
-                    if let Action::Repeat(repeat) = &stage.action {
+                    if let (Action::Repeat(repeat), false) = (&stage.action, repeating.is_ended_early()) {
                         self.warn(missed_target_warning(repeat, &report));
                     }
                 }
@@ -215,6 +246,20 @@ impl Run<'_> {
             self.warn(few_lines_warning(self.prepared, lines, &light.solution));
         }
     }
+}
+
+/// Returns a warning if a table of sums has errors that assume independent patches.
+fn independent_errors(light: &Computed, save: &Save) -> Option<String> {
+    let is_assumed = |per: Per| light.parts(per).is_some_and(|parts| parts.errors.is_none());
+    let table = save.outputs.iter().find_map(|output| match output {
+        Output::Table(table) if table.per.is_some_and(is_assumed) => Some(table),
+        _ => None,
+    })?;
+    Some(format!(
+        "the errors in {} assume that patches are independent, because there are fewer than {MIN_REPEATS} repeats; they can be \
+         wrong by a factor of three; use more lines, or a `Repeat`",
+        table.path.display()
+    ))
 }
 
 /// Returns a warning if the target was not reached.

@@ -45,7 +45,7 @@ pub(crate) fn save(
     pages: &mut Vec<Page>,
     written: &mut dyn FnMut(OutputReport) -> bool,
 ) -> Result<(), Error> {
-    let Saver { pipeline, prepared, directory, threads, progress } = saver;
+    let Saver { prepared, directory, threads, progress, .. } = saver;
     let Model { scene, mesh, accel } = &prepared.model;
     let solution = &light.solution;
     let lit = OnceCell::new();
@@ -60,15 +60,7 @@ pub(crate) fn save(
         .iter()
         .any(|o| matches!(o, Output::Image(_)) && has_extension(o.path(), "exr"))
         .then(|| DisplayMesh::of_errors(scene, mesh, &solution.error));
-    let mut renderer = Renderer {
-        prepared,
-        display: &display,
-        denoised: denoised.as_ref(),
-        images: pipeline.outputs().filter_map(Output::image).collect(),
-        threads,
-        last: None,
-        default: None,
-    };
+    let mut renderer = Renderer::new(saver, &display, denoised.as_ref());
     for output in outputs {
         let path = directory.join(output.path());
         progress.note(&format!("Save: {}", output.path().display()));
@@ -112,10 +104,7 @@ pub(crate) fn save(
                 "table"
             }
             Output::Report(output) => {
-                let Solution { irradiance, error } = solution;
-                let view =
-                    View::new(scene, mesh, Light { irradiance, error, direct: light.direct.as_deref() });
-                let shown = Shown { cameras: renderer.cameras()?, simplified: view.simplified_patches() };
+                let (view, shown) = renderer.page(light, None)?;
                 pages.push(Page { path: output.path.clone(), view, shown });
                 "report"
             }
@@ -133,6 +122,19 @@ pub(crate) fn save(
         }
     }
     Ok(())
+}
+
+/// Returns the view of a page of this light, and what else the page shows. `cameras` are those of an earlier page, which
+/// take time to find.
+pub(crate) fn view_of(
+    saver: Saver<'_>,
+    light: &Computed,
+    cameras: Option<Vec<(Camera, f64)>>,
+) -> Result<(View, Shown), Error> {
+    let Model { scene, mesh, .. } = &saver.prepared.model;
+    let lit = OnceCell::new();
+    let display = || lit.get_or_init(|| DisplayMesh::new(scene, mesh, &light.solution.irradiance));
+    Renderer::new(saver, &display, None).page(light, cameras)
 }
 
 /// Renders images. Keeps the last one, because the same image is often requested as PNG and as EXR.
@@ -157,7 +159,31 @@ struct Rendered {
     picture: Picture,
 }
 
-impl Renderer<'_> {
+impl<'a> Renderer<'a> {
+    fn new(
+        saver: Saver<'a>,
+        display: &'a dyn Fn() -> &'a DisplayMesh<'a>,
+        denoised: Option<&'a DisplayMesh<'a>>,
+    ) -> Self {
+        let Saver { pipeline, prepared, threads, .. } = saver;
+        let images = pipeline.outputs().filter_map(Output::image).collect();
+        Self { prepared, display, denoised, images, threads, last: None, default: None }
+    }
+
+    /// Returns the view of a page, and what else it shows.
+    fn page(
+        &mut self,
+        light: &Computed,
+        cameras: Option<Vec<(Camera, f64)>>,
+    ) -> Result<(View, Shown), Error> {
+        let Model { scene, mesh, .. } = &self.prepared.model;
+        let Solution { irradiance, error } = &light.solution;
+        let view = View::new(scene, mesh, Light { irradiance, error, direct: light.direct.as_deref() });
+        let cameras = cameras.map_or_else(|| self.cameras(), Ok)?;
+        let shown = Shown { cameras, not_final: light.not_final, simplified: view.simplified_patches() };
+        Ok((view, shown))
+    }
+
     fn render(&mut self, image: &Image, is_denoised: bool) -> Result<&Rendered, Error> {
         let Model { scene, accel, .. } = &self.prepared.model;
         let chosen = chosen_camera(image, scene, self.prepared.up);

@@ -115,6 +115,12 @@ impl Run<'_> {
         Ok(())
     }
 
+    /// Returns what the outputs of this run have in common.
+    pub(crate) fn saver(&self) -> Saver<'_> {
+        let Self { pipeline, prepared, ref directory, progress, .. } = *self;
+        Saver { pipeline, prepared, directory, threads: self.threads().0.get(), progress }
+    }
+
     /// Writes outputs until the run is asked to stop.
     fn write(&mut self, light: &Computed, outputs: &[Output]) -> Result<Vec<OutputReport>, Error> {
         let mut reports = Vec::new();

@@ -6,10 +6,9 @@ function makeRenderer(gl, mesh) {
   const pickProgram = programPair(gl, VERTEX_SHADER, PICK_SHADER);
   const lineProgram = programPair(gl, LINE_VERTEX_SHADER, LINE_SHADER);
   const triangles = uploadTriangles(gl, mesh);
-  const textures = [mesh.light, mesh.surface, mesh.source].map((data) => (
-    makeTexture(gl, gl.RGBA32F, textureRows(mesh.header.sides), gl.RGBA, gl.FLOAT, data)));
+  const ofSides = (data) => makeTexture(gl, gl.RGBA32F, textureRows(mesh.header.sides), gl.RGBA, gl.FLOAT, data);
+  let textures = [mesh.light, mesh.surface, mesh.source].map(ofSides);
   const target = makePickTarget(gl);
-  const { low, step } = mesh.header.logs.irradiance;
   let lines = null;
 
   gl.enable(gl.DEPTH_TEST);
@@ -17,12 +16,21 @@ function makeRenderer(gl, mesh) {
   gl.depthFunc(gl.LEQUAL);
   gl.pixelStorei(gl.PACK_ALIGNMENT, 4);
 
+  /** Uploads the light again, after it has changed. */
+  function updateLight() {
+    textures.forEach((texture) => gl.deleteTexture(texture));
+    textures = [mesh.light, mesh.surface, mesh.source].map(ofSides);
+    gl.bindBuffer(gl.ARRAY_BUFFER, triangles.codes);
+    gl.bufferData(gl.ARRAY_BUFFER, alignedCodes(mesh.codes), gl.STATIC_DRAW);
+  }
+
   function drawTriangles({ program, at }, view) {
     gl.useProgram(program);
     gl.uniformMatrix4fv(at.clip, false, view.clip);
+    const { low, step } = mesh.header.logs.irradiance;
     gl.uniform2f(at.codes, low, step);
     if (view.sectioned) gl.uniform4fv(at.section, view.section);
-    gl.bindVertexArray(triangles);
+    gl.bindVertexArray(triangles.vertices);
     gl.drawElements(gl.TRIANGLES, mesh.index.length, gl.UNSIGNED_INT, 0);
   }
 
@@ -77,26 +85,28 @@ function makeRenderer(gl, mesh) {
     return { side: found[0] - 1, point: add(mesh.middle, place) };
   }
 
-  return { draw, pick };
+  return { draw, pick, updateLight };
 }
 
 function uploadTriangles(gl, mesh) {
   const vertices = gl.createVertexArray();
   gl.bindVertexArray(vertices);
   const upload = (kind, data) => {
-    gl.bindBuffer(kind, gl.createBuffer());
+    const buffer = gl.createBuffer();
+    gl.bindBuffer(kind, buffer);
     gl.bufferData(kind, data, gl.STATIC_DRAW);
+    return buffer;
   };
   upload(gl.ARRAY_BUFFER, mesh.position);
   gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 12, 0);
-  upload(gl.ARRAY_BUFFER, alignedCodes(mesh.codes));
+  const codes = upload(gl.ARRAY_BUFFER, alignedCodes(mesh.codes));
   gl.vertexAttribPointer(1, 3, gl.UNSIGNED_SHORT, false, 8, 0);
   upload(gl.ARRAY_BUFFER, mesh.owner);
   gl.vertexAttribIPointer(2, 1, gl.UNSIGNED_INT, 4, 0);
   [0, 1, 2].forEach((location) => gl.enableVertexAttribArray(location));
   upload(gl.ELEMENT_ARRAY_BUFFER, mesh.index);
   gl.bindVertexArray(null);
-  return vertices;
+  return { vertices, codes };
 }
 
 /** Puts a fourth number after each three codes: vertices have to begin at multiples of four bytes. */

@@ -21,7 +21,7 @@ function readLink(hash, facts) {
   state.logarithmic = given.get('scale') === 'log';
   const [low, high] = ['min', 'max'].map((name) => (given.has(name) ? Number(given.get(name)) : NaN));
   if (low >= 0 && high > low && Number.isFinite(high)) state.limits[state.mode] = [low, high];
-  else if (low >= 0 || high > 0) state.limits[state.mode] = [low >= 0 ? low : null, high > 0 ? high : null];
+  else if (!(low >= 0 && high >= 0) && (low >= 0 || high > 0)) state.limits[state.mode] = [low >= 0 ? low : null, high > 0 ? high : null];
   for (const [name, key] of [['flat', 'flat'], ['mesh', 'lines'], ['full', 'full'], ['walk', 'walk']]) state[key] = given.get(name) === '1';
   if (Number.isFinite(Number(given.get('exposure')))) state.exposure = clamp(Number(given.get('exposure')), -6, 6);
   const [axis, at, flip] = (given.get('section') ?? '').split(':');

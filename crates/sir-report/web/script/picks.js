@@ -50,6 +50,7 @@ function makePicks(viewer) {
   }
 
   function show() {
+    byId('picks').classList.toggle('empty', list.length === 0);
     byId('picks-hint').hidden = list.length > 0;
     byId('picks-scroll').hidden = list.length === 0;
     for (const id of ['picks-copy', 'picks-clear']) byId(id).disabled = list.length === 0;

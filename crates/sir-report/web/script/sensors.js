@@ -155,6 +155,7 @@ function sensorTable(sensor, unitE) {
   const heads = columns.map(({ label }, k) => element('th', { scope: 'col' }, element('button', { type: 'button', on: { click: () => sortBy(k) } }, label)));
   const table = element('table', {}, element('caption', { class: 'aside' }, `Sensors of ${cut(sensor.name)}`), element('thead', {}, element('tr', {}, ...heads)), body);
   const more = element('button', { type: 'button', on: { click: () => { shown = order.length; show(); } } }, `Show all ${whole(order.length)} rows`);
+  const part = element('span', { class: 'quiet' }, `The first ${whole(shown)} of ${whole(order.length)} rows are shown.`);
 
   function sortBy(k) {
     sorting.sign = sorting.column === k ? -sorting.sign : 1;
@@ -171,9 +172,9 @@ function sensorTable(sensor, unitE) {
       head.firstChild.textContent = `${columns[k].label}${isSorted ? (sorting.sign > 0 ? ' ↑' : ' ↓') : ''}`;
     });
     body.replaceChildren(...order.slice(0, shown).map((i) => element('tr', {}, ...columns.map(({ of, text }) => element('td', {}, text(of(sensor.points[i], i)))))));
-    more.hidden = shown >= order.length;
+    for (const node of [more, part]) node.hidden = shown >= order.length;
   }
 
   show();
-  return element('div', { class: 'wide' }, element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': `Sensors of ${cut(sensor.name)}` }, table), element('p', { class: 'row' }, more));
+  return element('div', { class: 'wide' }, element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': `Sensors of ${cut(sensor.name)}` }, table), element('p', { class: 'row' }, part, more));
 }

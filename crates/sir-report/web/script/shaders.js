@@ -81,7 +81,10 @@ void main() {${SECTION_TEST}
   float value = dot(irradiance, WEIGHTS);
   if (mode == 2) value = dot(radiosity, WEIGHTS);
   if (mode == 3) value = surface.a;
-  if (mode == 4) value = max(0.0, dot(own.rgb, WEIGHTS) - surface.a);
+  if (mode == 4) {
+    float all = dot(own.rgb, WEIGHTS);
+    value = all - surface.a > ${ROUNDING} * all ? all - surface.a : 0.0;
+  }
   if (mode == 5) {
     float mean = dot(own.rgb, WEIGHTS);
     if (own.a <= 0.0 || mean <= 0.0) {

@@ -8,6 +8,7 @@ async function main() {
   if (!facts) return showMessage('The data of this page cannot be read.');
   for (const part of [writeHeader, writeNotices, writeComputed, writeBalance, writeConvergence, writeSensors, writeRepeat]) attempt(part, facts);
   viewer = await startViewer(facts);
+  followRun(facts, viewer);
   return viewer;
 }
 

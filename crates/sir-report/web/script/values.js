@@ -1,5 +1,11 @@
 // Values of sides.
 
+/** Share of a value below which a difference from another one is rounding. */
+const ROUNDING = 1e-3;
+
+/** Returns reflected light: all light without direct light. */
+const reflectedE = (all, direct) => (all - direct > ROUNDING * all ? all - direct : 0);
+
 /** Returns functions that read the values of sides, with their names and units. */
 function makeValues(mesh, facts) {
   const { light, surface, source, header } = mesh;
@@ -13,7 +19,7 @@ function makeValues(mesh, facts) {
     illuminance: { label: quantity, title: quantity, unit: facts.units.irradiance, of: meanE },
     radiosity: { label: 'Radiosity', title: photometric ? 'Radiosity (luminous exitance)' : 'Radiosity', unit: unitOfB, of: (i) => luminance(...bandsB(i)) },
     direct: { label: 'Direct', title: `Direct ${facts.units.name}`, unit: facts.units.irradiance, of: (i) => surface[i + 3], absent: !mesh.hasDirect },
-    reflected: { label: 'Reflected', title: `Reflected ${facts.units.name}`, unit: facts.units.irradiance, of: (i) => Math.max(0, meanE(i) - surface[i + 3]), absent: !mesh.hasDirect },
+    reflected: { label: 'Reflected', title: `Reflected ${facts.units.name}`, unit: facts.units.irradiance, of: (i) => reflectedE(meanE(i), surface[i + 3]), absent: !mesh.hasDirect },
     error: { label: 'Relative error', title: `Relative standard error of ${facts.units.name}`, unit: '%', of: (i) => (light[i + 3] > 0 && meanE(i) > 0 ? (100 * light[i + 3]) / meanE(i) : 0), absent: !mesh.hasError },
   };
   const known = {};

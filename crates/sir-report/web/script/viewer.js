@@ -77,7 +77,7 @@ function makeViewer(canvas, gl, mesh, facts) {
   let printing = false;
 
   const aspect = () => canvas.clientWidth / Math.max(1, canvas.clientHeight);
-  const viewer = { values, mesh, facts, get state() { return state; }, aspect, changed, pickAt, limitsOf, setLimits, showCamera, fit, redraw: requestDraw };
+  const viewer = { values, mesh, facts, get state() { return state; }, aspect, changed, pickAt, limitsOf, setLimits, showCamera, fit, replaceLight, redraw: requestDraw };
   const picks = makePicks(viewer);
   const legend = makeLegend(viewer);
   const controls = makeControls(viewer, picks);
@@ -194,6 +194,19 @@ function makeViewer(canvas, gl, mesh, facts) {
       pickTime = performance.now() - start;
     }
     return lastHit.hit;
+  }
+
+  // Newer light of the same patches.
+
+  function replaceLight(next) {
+    if (next.header.sides !== mesh.header.sides || next.codes.length !== mesh.codes.length) return location.reload();
+    for (const name of ['light', 'surface', 'source', 'codes']) mesh[name].set(next[name]);
+    Object.assign(mesh.header.logs, next.header.logs);
+    renderer.updateLight();
+    const marks = picks.list.map(({ side, point }) => ({ side, point }));
+    picks.clear();
+    marks.forEach((mark) => picks.add(mark));
+    requestDraw();
   }
 
   // Cameras.
