@@ -1,5 +1,8 @@
 // Reading the mesh.
 
+/** Share of a value of light below which its difference from another one is rounding of the codes. */
+const ROUNDING = 1e-3;
+
 function bytesOfBase64(text) {
   if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
   const binary = atob(text);

@@ -1,8 +1,5 @@
 // Values of sides.
 
-/** Share of a value below which a difference from another one is rounding. */
-const ROUNDING = 1e-3;
-
 /** Returns reflected light: all light without direct light. */
 const reflectedE = (all, direct) => (all - direct > ROUNDING * all ? all - direct : 0);
 
