@@ -155,7 +155,7 @@ function sensorTable(sensor, unitE) {
   const heads = columns.map(({ label }, k) => element('th', { scope: 'col' }, element('button', { type: 'button', on: { click: () => sortBy(k) } }, label)));
   const table = element('table', {}, element('caption', { class: 'aside' }, `Sensors of ${cut(sensor.name)}`), element('thead', {}, element('tr', {}, ...heads)), body);
   const more = element('button', { type: 'button', on: { click: () => { shown = order.length; show(); } } }, `Show all ${whole(order.length)} rows`);
-  const part = element('span', { class: 'quiet' }, `The first ${whole(shown)} of ${whole(order.length)} rows are shown.`);
+  const part = element('span', { class: 'quiet one-line' }, `The first ${whole(shown)} of ${whole(order.length)} rows are shown.`);
 
   function sortBy(k) {
     sorting.sign = sorting.column === k ? -sorting.sign : 1;

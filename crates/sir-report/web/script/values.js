@@ -21,7 +21,7 @@ function makeValues(mesh, facts) {
   };
   const known = {};
 
-  /** Returns limits that leave out the sides with the lowest and the highest values, each with 2 % of the light. */
+  /** Returns limits that leave out the lowest values, of sides with 2 % of the light, and the highest, of 2 % of the area. */
   function usualLimits(mode) {
     known[mode] ??= quantiles(mode);
     return known[mode];
@@ -31,22 +31,24 @@ function makeValues(mesh, facts) {
     const stride = Math.max(1, Math.floor(header.sides / 50000));
     const areas = logTable(header.logs.area);
     const list = [];
-    let total = 0;
+    const totals = [0, 0];
     for (let s = 0; s < header.sides; s += stride) {
-      const [value, weight] = [kinds[mode].of(4 * s), areas[mesh.area[s]] * meanE(4 * s)];
-      if (value > 0 && weight > 0 && value < Infinity) {
-        list.push([value, weight]);
-        total += weight;
+      const [value, area] = [kinds[mode].of(4 * s), areas[mesh.area[s]]];
+      const power = area * meanE(4 * s);
+      if (value > 0 && power > 0 && value < Infinity) {
+        list.push([value, power, area]);
+        totals[0] += power;
+        totals[1] += area;
       }
     }
     if (list.length === 0) return [0, 1];
     list.sort((a, b) => a[0] - b[0]);
-    const quantile = (share) => {
+    const quantile = (share, k) => {
       let sum = 0;
-      const found = list.find(([, weight]) => (sum += weight) >= share * total);
+      const found = list.find(([, ...weights]) => (sum += weights[k]) >= share * totals[k]);
       return Number((found ?? list.at(-1))[0].toPrecision(3));
     };
-    const [low, high] = [0.02, 0.98].map(quantile);
+    const [low, high] = [quantile(0.02, 0), quantile(0.98, 1)];
     return high > low * 1.001 ? [low, high] : [low * 0.5, high * 1.5];
   }
 
