@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tiny_http::{Header, Method, Request, Response, Server};
 
-use crate::page::{script_json, served_page};
+use crate::page::served_page;
 use crate::view::View;
 
 /// Page that is shown until there is light.
@@ -49,7 +49,7 @@ impl std::fmt::Debug for Shared {
 #[derive(Clone, Debug, Default)]
 struct Content {
     title: String,
-    facts: Value,
+    facts: Arc<Value>,
     view: Option<Arc<View>>,
     status: String,
     /// Number of changes of the light.
@@ -92,7 +92,8 @@ impl LiveServer {
     pub fn show(&self, title: &str, view: View, facts: Value, status: &str) {
         let mut content = self.shared.content();
         let version = content.version + 1;
-        let (title, status, view) = (title.into(), status.into(), Some(Arc::new(view)));
+        let (title, status, facts, view) =
+            (title.into(), status.into(), Arc::new(facts), Some(Arc::new(view)));
         *content = Content { title, facts, view, status, version, is_final: false };
     }
 
@@ -100,7 +101,7 @@ impl LiveServer {
     pub fn end(&self, title: &str, view: Option<View>, facts: Value) {
         let mut content = self.shared.content();
         content.view = view.map(Arc::new).or(content.view.take());
-        (content.title, content.facts) = (title.into(), facts);
+        (content.title, content.facts) = (title.into(), Arc::new(facts));
         content.version += 1;
         content.is_final = true;
     }
@@ -167,7 +168,6 @@ impl Shared {
                 self.seen.fetch_max(*version, Relaxed);
                 text("text/plain", view.coded.clone())
             }
-            (Method::Get, "/facts", Some(_)) => text("application/json", script_json(facts)),
             (Method::Get, "/version", _) => {
                 let state = json!({ "version": version, "status": status, "final": is_final });
                 text("application/json", state.to_string())

@@ -89,7 +89,7 @@ fn content<'a>(name: &str, title: &str, view: &'a View, facts: &Value, allowed: 
 }
 
 /// Returns JSON for a script element: a string in it may hold anything, such as the end of a script.
-pub(crate) fn script_json(value: &Value) -> String {
+fn script_json(value: &Value) -> String {
     value.to_string().replace('<', "\\u003c")
 }
 

@@ -3,13 +3,6 @@
 use sir_geom::{Barycentric, Rgb, Scene};
 use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 
-/// Light of the sides of patches: irradiance, standard error, and direct irradiance, if it is known.
-pub(crate) struct SimplifiedLight {
-    pub(crate) irradiance: Vec<Rgb>,
-    pub(crate) error: Vec<Rgb>,
-    pub(crate) direct: Option<Vec<Rgb>>,
-}
-
 /// Returns about this number of patches of a scene; `None` if the scene cannot be divided.
 pub(crate) fn patches(scene: &Scene, count: usize) -> Option<PatchMesh> {
     PatchMesh::new(scene, Subdivision::Surfaces(PatchSize::Count(count as u64))).ok()

@@ -8,13 +8,12 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use glam::DVec3;
 use serde_json::{Value, json};
-use sir_geom::{Rgb, Scene, luminance, median_extent};
-use sir_mesh::PatchMesh;
+use sir_geom::{Rgb, luminance, median_extent};
 use sir_view::{DisplayMesh, DisplayPiece};
 
 use crate::arrays::{Arrays, Coding, differences_of_bands};
 use crate::log_scale::LogScale;
-use crate::simplified::{SimplifiedLight, means, patches};
+use crate::simplified::{means, patches};
 
 /// Largest number of sides of patches that a page shows. With more, it shows patches of about half this number, and says so.
 pub const MAX_SIDES: usize = 1_000_000;
@@ -42,40 +41,27 @@ pub struct View {
 }
 
 impl View {
-    /// Codes the light of a scene.
-    ///
-    /// `scene` must be the scene that was divided into these patches.
+    /// Codes light with the display mesh of its irradiance.
     ///
     /// # Panics
     ///
-    /// If `light` does not have one value for every side of `mesh`.
+    /// If `light` does not have one value for every side of the patches of `display`.
     #[must_use]
-    pub fn new(scene: &Scene, mesh: &PatchMesh, light: Light<'_>) -> Self {
-        Self::with_at_most(MAX_SIDES, scene, mesh, light)
+    pub fn new(display: &DisplayMesh<'_>, light: Light<'_>) -> Self {
+        Self::with_at_most(MAX_SIDES, display, light)
     }
 
-    fn with_at_most(sides: usize, scene: &Scene, mesh: &PatchMesh, light: Light<'_>) -> Self {
+    fn with_at_most(sides: usize, display: &DisplayMesh<'_>, light: Light<'_>) -> Self {
+        let (scene, mesh) = (display.scene(), display.mesh());
         let coarse = if mesh.side_count() > sides { patches(scene, sides / 2) } else { None };
         let Some(coarse) = coarse.filter(|coarse| coarse.side_count() < mesh.side_count()) else {
-            return Self {
-                coded: code(&DisplayMesh::new(scene, mesh, light.irradiance), mesh, light, None),
-                patches: None,
-            };
+            return Self { coded: code(display, light), patches: None };
         };
         let over = |values: &[Rgb]| means(scene, mesh, &coarse, values);
-        let simplified = SimplifiedLight {
-            irradiance: over(light.irradiance),
-            error: over(light.error),
-            direct: light.direct.map(over),
-        };
-        let light = Light {
-            irradiance: &simplified.irradiance,
-            error: &simplified.error,
-            direct: simplified.direct.as_deref(),
-        };
-        let patches = Some(coarse.patch_count());
-        let display = DisplayMesh::new(scene, &coarse, light.irradiance);
-        Self { coded: code(&display, &coarse, light, patches), patches }
+        let (irradiance, error, direct) = (over(light.irradiance), over(light.error), light.direct.map(over));
+        let light = Light { irradiance: &irradiance, error: &error, direct: direct.as_deref() };
+        let display = DisplayMesh::new(scene, &coarse, &irradiance);
+        Self { coded: code(&display, light), patches: Some(coarse.patch_count()) }
     }
 
     /// Returns the number of patches that are shown, if these are fewer than those of the solution.
@@ -86,8 +72,8 @@ impl View {
 }
 
 /// Returns the coded light: deflated, in Base64.
-fn code(display: &DisplayMesh<'_>, mesh: &PatchMesh, light: Light<'_>, simplified: Option<usize>) -> String {
-    let scene = display.scene();
+fn code(display: &DisplayMesh<'_>, light: Light<'_>) -> String {
+    let (scene, mesh) = (display.scene(), display.mesh());
     let is_shown = |piece: &DisplayPiece<'_>| {
         let patch = mesh.patch_of_side(piece.triangle, piece.id);
         !piece.triangles.is_empty() && mesh.covered_area(piece.triangle, patch) > 0.0
@@ -158,7 +144,6 @@ fn code(display: &DisplayMesh<'_>, mesh: &PatchMesh, light: Light<'_>, simplifie
         "logs": logs,
         "materials": scene.materials().iter().map(|m| json!({ "name": cut(&m.name) })).collect::<Vec<_>>(),
         "objects": scene.groups().iter().map(|name| cut(name)).collect::<Vec<_>>(),
-        "simplified": simplified.map(|patches| json!({ "patches": patches })),
     });
     deflated(&arrays.finish(header))
 }
@@ -242,7 +227,7 @@ fn deflated(bytes: &[u8]) -> String {
 mod tests {
     use sir_geom::shapes::{Facing, cuboid};
     use sir_geom::{Material, SceneBuilder};
-    use sir_mesh::{PatchSize, Subdivision};
+    use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 
     use super::*;
 
@@ -255,7 +240,8 @@ mod tests {
         let mesh = PatchMesh::new(&scene, Subdivision::Surfaces(PatchSize::Count(2000))).unwrap();
         let values = vec![Rgb::ONE; mesh.side_count()];
         let light = Light { irradiance: &values, error: &values, direct: Some(&values) };
-        let view = |most| View::with_at_most(most, &scene, &mesh, light);
+        let display = DisplayMesh::new(&scene, &mesh, &values);
+        let view = |most| View::with_at_most(most, &display, light);
         let [all, fewer] = [usize::MAX, 600].map(view);
         assert_eq!(all.simplified_patches(), None);
         let patches = fewer.simplified_patches().unwrap();

@@ -11,6 +11,7 @@ use sir_geom::shapes::{Facing, cuboid};
 use sir_geom::{Material, Rgb, SceneBuilder};
 use sir_mesh::{PatchMesh, Subdivision};
 use sir_report::{Light, LiveServer, View};
+use sir_view::DisplayMesh;
 
 /// Sends a request, and returns the status and the whole answer.
 fn ask(server: &LiveServer, method: &str, path: &str, host: Option<&str>) -> (u16, String) {
@@ -36,7 +37,10 @@ fn view() -> View {
     let scene = builder.build().unwrap().scene;
     let mesh = PatchMesh::new(&scene, Subdivision::PerFace).unwrap();
     let values = vec![Rgb::ONE; mesh.side_count()];
-    View::new(&scene, &mesh, Light { irradiance: &values, error: &values, direct: None })
+    View::new(
+        &DisplayMesh::new(&scene, &mesh, &values),
+        Light { irradiance: &values, error: &values, direct: None },
+    )
 }
 
 fn version(server: &LiveServer) -> Value {

@@ -16,6 +16,7 @@ use sir_geom::shapes::{Facing, cuboid};
 use sir_geom::{Material, Rgb, Scene, SceneBuilder, Sides, luminance};
 use sir_mesh::{PatchMesh, PatchSize, Subdivision};
 use sir_report::{Light, LogScale, View, write_page};
+use sir_view::DisplayMesh;
 
 const HOSTILE: &str = "</script><img src=x onerror=alert(1)> \"quoted\" & 💡";
 
@@ -105,7 +106,7 @@ fn page(mesh: &PatchMesh, scene: &Scene) -> (String, Vec<Rgb>, Vec<Rgb>) {
     let irradiance: Vec<Rgb> = (0..mesh.side_count()).map(value).collect();
     let error: Vec<Rgb> = irradiance.iter().map(|e| 0.02 * *e).collect();
     let light = Light { irradiance: &irradiance, error: &error, direct: Some(&error) };
-    let view = View::new(scene, mesh, light);
+    let view = View::new(&DisplayMesh::new(scene, mesh, &irradiance), light);
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("page.html");
     write_page(&path, HOSTILE, &view, &json!({ "title": HOSTILE, "cameras": [] })).unwrap();
@@ -204,7 +205,10 @@ fn a_scene_without_light_has_a_page() {
     let scene = scene();
     let mesh = PatchMesh::new(&scene, Subdivision::PerFace).unwrap();
     let dark = vec![Rgb::ZERO; mesh.side_count()];
-    let view = View::new(&scene, &mesh, Light { irradiance: &dark, error: &dark, direct: None });
+    let view = View::new(
+        &DisplayMesh::new(&scene, &mesh, &dark),
+        Light { irradiance: &dark, error: &dark, direct: None },
+    );
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("page.html");
     write_page(&path, "dark", &view, &json!({})).unwrap();

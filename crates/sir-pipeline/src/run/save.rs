@@ -176,9 +176,8 @@ impl<'a> Renderer<'a> {
         light: &Computed,
         cameras: Option<Vec<(Camera, f64)>>,
     ) -> Result<(View, Shown), Error> {
-        let Model { scene, mesh, .. } = &self.prepared.model;
         let Solution { irradiance, error } = &light.solution;
-        let view = View::new(scene, mesh, Light { irradiance, error, direct: light.direct.as_deref() });
+        let view = View::new((self.display)(), Light { irradiance, error, direct: light.direct.as_deref() });
         let cameras = cameras.map_or_else(|| self.cameras(), Ok)?;
         let shown = Shown { cameras, not_final: light.not_final, simplified: view.simplified_patches() };
         Ok((view, shown))

@@ -7,7 +7,7 @@ use glam::DVec3;
 use sir_geom::{Rgb, Scene, Side, triangulate};
 use sir_mesh::PatchMesh;
 
-use crate::display::mesh::{DisplayMesh, DisplayVertex, active_sides, rgb};
+use crate::display::mesh::{DisplayMesh, DisplayVertex, rgb};
 use crate::display::node::Node;
 use crate::display::polygons::{Polygons, shown_with};
 use crate::display::smooth::{EdgePiece, Groups};
@@ -65,7 +65,7 @@ impl<'a> DisplayMesh<'a> {
                 // Both sides share the centers of polygons.
                 let centers: Vec<Option<u32>> =
                     of_patch.iter().map(|(.., nodes)| self.add_center(nodes)).collect();
-                for &side in active_sides(scene, t) {
+                for &side in mesh.sides_of(t) {
                     self.piece_starts.push(self.triangles.len() as u32);
                     for (&(_, start, nodes), center) in of_patch.iter().zip(&centers) {
                         vertices.clear();
@@ -189,7 +189,7 @@ fn groups(scene: &Scene, mesh: &PatchMesh, polygons: &Polygons, irradiance: &[Rg
             / corners().count() as f64;
         for i in 0..len {
             let weight = weight(&polygons.points, nodes, i, center);
-            for &side in active_sides(scene, polygon.triangle) {
+            for &side in mesh.sides_of(polygon.triangle) {
                 if let Some(id) = mesh.side_of(polygon.triangle, polygon.patch, side) {
                     groups.add(start + i as u32, side, irradiance[id.index()], weight, nodes[i].is_corner);
                 }

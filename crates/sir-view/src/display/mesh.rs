@@ -82,6 +82,12 @@ impl<'a> DisplayMesh<'a> {
         self.scene
     }
 
+    /// Returns the patches.
+    #[must_use]
+    pub fn mesh(&self) -> &'a PatchMesh {
+        self.mesh
+    }
+
     /// Returns the positions. Vertices with different irradiance may share one.
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {
@@ -109,7 +115,7 @@ impl<'a> DisplayMesh<'a> {
     /// Returns the pieces that are shown with one triangle of the scene. All cells of a flat surface are shown with its
     /// first triangle.
     pub fn pieces_of(&self, t: TriangleId) -> impl Iterator<Item = DisplayPiece<'_>> {
-        let sides = active_sides(self.scene, t);
+        let sides = self.mesh.sides_of(t);
         shown_with(self.mesh, t).map(PatchId).flat_map(move |patch| {
             sides.iter().filter_map(move |&side| {
                 let id = self.mesh.side_of(t, patch, side)?;
@@ -190,7 +196,7 @@ impl<'a> DisplayMesh<'a> {
     }
 
     fn triangles_of(&self, triangle: TriangleId, patch: PatchId, side: Side) -> &[[u32; 3]] {
-        let sides = active_sides(self.scene, triangle).len() as u32;
+        let sides = self.mesh.sides_of(triangle).len() as u32;
         let patch = self.mesh.number_in_surface(triangle, patch);
         let piece = self.first_pieces[triangle.index()] + patch * sides + u32::from(side == Side::Back);
         let [start, end] = [piece, piece + 1].map(|p| self.piece_starts[p as usize] as usize);
@@ -198,10 +204,6 @@ impl<'a> DisplayMesh<'a> {
     }
 }
 
-/// Returns the sides of a triangle that reflect.
-pub(super) fn active_sides(scene: &Scene, triangle: TriangleId) -> &'static [Side] {
-    if scene.is_active(triangle, Side::Back) { &[Side::Front, Side::Back] } else { &[Side::Front] }
-}
 pub(super) fn rgb(irradiance: [f32; 3]) -> Rgb {
     Rgb::from_array(irradiance.map(f64::from))
 }
