@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec3, Vec2, Vec4};
+use glam::{DAffine3, DVec3, Vec2, Vec4};
 
 use crate::appearance::{Appearance, Corners};
 use crate::camera::{Camera, Projection};
@@ -12,7 +12,7 @@ use crate::index::{FaceId, GroupId, MaterialId, VertexId};
 use crate::light::{Light, LightKind};
 use crate::material::{MAX_REFLECTANCE, Material};
 use crate::polygon;
-use crate::scene::{Scene, Triangle};
+use crate::scene::{MeshInstance, Scene, Triangle};
 use crate::sky::Sky;
 use crate::split::{Corner, split};
 use crate::texture::{ColorMap, Texture, TextureId};
@@ -36,6 +36,9 @@ pub struct SceneBuilder {
     crossed: Vec<VertexId>,
     appearance: Appearance,
     warnings: Vec<Warning>,
+    instances: Vec<MeshInstance>,
+    /// Number of triangles of `instances`, once all were added.
+    loaded: u32,
 }
 
 impl SceneBuilder {
@@ -91,6 +94,21 @@ impl SceneBuilder {
             if name.is_empty() { GroupId(0) } else { *self.groups.entry(name.to_owned()).or_insert(next) };
         self.group = group.0;
         group
+    }
+
+    /// Starts an instance of a mesh of a glTF file: the triangles added from now on, until the next call of this function or
+    /// of [`end_meshes`](Self::end_meshes), belong to it. `indices` are those of its node, among the instances of the node,
+    /// and of its mesh.
+    #[cfg(feature = "gltf")]
+    pub(crate) fn begin_mesh(&mut self, [node, instance, mesh]: [u32; 3], to_world: DAffine3) {
+        let first = self.triangles.len() as u32;
+        self.instances.push(MeshInstance { first, node, instance, mesh, to_world });
+    }
+
+    /// Ends the last instance of a mesh.
+    #[cfg(any(feature = "gltf", feature = "obj"))]
+    pub(crate) fn end_meshes(&mut self) {
+        self.loaded = if self.instances.is_empty() { 0 } else { self.triangles.len() as u32 };
     }
 
     /// Adds a polygon whose corners run counterclockwise seen from its front; with fewer than three corners it adds no
@@ -158,6 +176,9 @@ impl SceneBuilder {
     /// vertices, cameras and lights, and heights of parallel projections.
     pub fn scale(&mut self, factor: f64) {
         self.vertices.iter_mut().for_each(|vertex| *vertex *= factor);
+        for instance in &mut self.instances {
+            instance.to_world = DAffine3::from_scale(DVec3::splat(factor)) * instance.to_world;
+        }
         for camera in &mut self.cameras {
             camera.eye *= factor;
             if let Projection::Orthographic { height } = &mut camera.projection {
@@ -237,6 +258,8 @@ impl SceneBuilder {
         let named = groups.into_iter().map(|(_, name)| name);
         let scene = Scene {
             groups: std::iter::once(String::new()).chain(named).collect(),
+            instances: self.instances,
+            loaded: self.loaded,
             vertices: self.vertices,
             triangles: self.triangles,
             materials: self.materials,

@@ -68,11 +68,13 @@ pub use color::{Rgb, luminance};
 pub use error::SceneError;
 pub use index::{FaceId, GroupId, MaterialId, VertexId};
 pub use light::{Arrival, Light, LightKind, Spread};
+#[cfg(feature = "gltf")]
+pub use load::{GltfFile, GltfPrimitive, RawElements};
 pub use load::{LoadError, LoadOptions, SidesPolicy, load, load_with};
 pub use material::{MAX_REFLECTANCE, Material, Opacity, Sides};
 pub use points::{PointTree, Weld, median_extent};
 pub use polygon::triangulate;
-pub use scene::{Scene, Triangle};
+pub use scene::{MeshInstance, Scene, Triangle};
 pub use sir_types::{Barycentric, BoundingBox, BoundingSphere, Line, Side, TriangleId, typed_index};
 pub use sky::{Sky, SkyModel};
 pub use surface::Opacities;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use crate::appearance::{Appearance, Corners};
 use sir_types::Side;
@@ -31,6 +31,24 @@ pub struct Triangle {
     pub(crate) corners: Corners,
 }
 
+/// Consecutive triangles that come from one instance of a mesh of a glTF file.
+///
+/// Triangles are numbered by [`Triangle::source`]. Those of an instance are in the order of the primitives of its mesh and
+/// of their triangles. If its transform is a reflection, the last two corners of each triangle are exchanged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshInstance {
+    /// Number of its first triangle. It has all triangles up to the first one of the next instance.
+    pub first: u32,
+    /// Index of its node.
+    pub node: u32,
+    /// Index among the instances of the node (`EXT_mesh_gpu_instancing`), 0 without them.
+    pub instance: u32,
+    /// Index of its mesh.
+    pub mesh: u32,
+    /// Transform from the space of the mesh to that of the scene \[m\].
+    pub to_world: DAffine3,
+}
+
 /// Triangles, materials, lights and cameras in world space.
 ///
 /// Built by a [`SceneBuilder`](crate::SceneBuilder), which guarantees: at least one triangle, finite coordinates,
@@ -45,6 +63,8 @@ pub struct Scene {
     pub(crate) lights: Vec<Light>,
     pub(crate) sky: Option<Sky>,
     pub(crate) groups: Vec<String>,
+    pub(crate) instances: Vec<MeshInstance>,
+    pub(crate) loaded: u32,
     pub(crate) appearance: Arc<Appearance>,
     pub(crate) bounding_box: BoundingBox,
     pub(crate) bounding_sphere: BoundingSphere,
@@ -74,6 +94,22 @@ impl Scene {
     #[must_use]
     pub fn groups(&self) -> &[String] {
         &self.groups
+    }
+
+    /// Returns the instances of meshes of the glTF file from which the scene was read, in the order of their triangles. Empty
+    /// for other scenes.
+    #[must_use]
+    pub fn mesh_instances(&self) -> &[MeshInstance] {
+        &self.instances
+    }
+
+    /// Returns the instance of a mesh of a glTF file from which a triangle comes, by its index; `None` for triangles that
+    /// do not come from a glTF file.
+    #[must_use]
+    pub fn mesh_instance_of(&self, id: TriangleId) -> Option<usize> {
+        let source = self.triangle(id).source;
+        let next = self.instances.partition_point(|instance| instance.first <= source);
+        next.checked_sub(1).filter(|_| source < self.loaded)
     }
 
     /// Returns the cameras in file order.

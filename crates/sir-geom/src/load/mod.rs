@@ -20,6 +20,8 @@ mod texture;
 use std::path::Path;
 
 pub use error::LoadError;
+#[cfg(feature = "gltf")]
+pub use gltf::{GltfFile, GltfPrimitive, RawElements};
 pub use options::{LoadOptions, SidesPolicy};
 
 use crate::builder::SceneBuilder;
@@ -109,6 +111,7 @@ fn read(
 ) -> Result<Built, LoadError> {
     let (mut builder, mut notes) = (SceneBuilder::new(), Notes::default());
     reader(path, *options, &mut builder, &mut notes)?;
+    builder.end_meshes();
     builder.scale(options.scale);
     let skipped = notes.skipped();
     notes.warn(&mut builder);

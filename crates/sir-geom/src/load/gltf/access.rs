@@ -5,7 +5,7 @@ use ::gltf::json::validation::Checked;
 use ::gltf::json::{Index, buffer};
 
 use crate::load::error::LoadError;
-use crate::load::gltf::reader::{Reader, lookup};
+use crate::load::gltf::data::{Data, lookup};
 
 /// Maximum number of accessor elements without a buffer view, summed over all accessors each time they are read: such
 /// zeros cost a file nothing.
@@ -26,7 +26,7 @@ struct Layout {
     normalized: bool,
 }
 
-impl Reader<'_> {
+impl Data<'_> {
     /// Returns the bytes of a buffer view and its stride. `what` names the requester in error messages.
     pub(super) fn view(
         &self,
@@ -127,6 +127,51 @@ impl Reader<'_> {
         Ok(elements)
     }
 
+    /// Returns the bytes of all elements of an accessor, and the number of bytes of an element.
+    ///
+    /// # Errors
+    ///
+    /// If the accessor has matrices, an unknown type, or missing data.
+    pub(super) fn raw_elements(&self, index: Index<Accessor>) -> Result<(Vec<u8>, usize), LoadError> {
+        let accessor = lookup(self.path, self.root, index, "accessor")?;
+        let name = format!("accessor {}", index.value());
+        let (Checked::Valid(component), Checked::Valid(type_)) = (&accessor.component_type, &accessor.type_)
+        else {
+            return Err(self.invalid(format!("{name} has an unknown type")));
+        };
+        if matches!(type_, Type::Mat2 | Type::Mat3 | Type::Mat4) {
+            return Err(self.invalid(format!("{name} has matrices, which are not allowed here")));
+        }
+        let size = component.0.size() * type_.multiplicity();
+        let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
+        let mut bytes = match accessor.buffer_view {
+            Some(view) => {
+                let offset = accessor.byte_offset.unwrap_or_default().0;
+                self.raw(view, offset, size, count, &name)?.flatten().copied().collect()
+            }
+            None if count <= MAX_UNBACKED => vec![0; size * count],
+            None => return Err(self.invalid(format!("{name} has {count} elements, but no data"))),
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let changes = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
+            let Checked::Valid(index_type) = &sparse.indices.component_type else {
+                return Err(self.invalid(format!("{name} has sparse indices of an unknown type")));
+            };
+            let places = Layout { component: index_type.0, normalized: false };
+            let at = (sparse.indices.buffer_view, sparse.indices.byte_offset.0);
+            let places: Vec<[f64; 1]> = self.read_elements(at.0, at.1, places, changes, &name)?;
+            let from = (sparse.values.buffer_view, sparse.values.byte_offset.0);
+            for ([place], value) in places.into_iter().zip(self.raw(from.0, from.1, size, changes, &name)?) {
+                let start = (place as usize).saturating_mul(size);
+                bytes
+                    .get_mut(start..start.saturating_add(size))
+                    .ok_or_else(|| self.invalid(format!("{name}: sparse index {place} is out of range")))?
+                    .copy_from_slice(value);
+            }
+        }
+        Ok((bytes, size))
+    }
+
     /// Returns the compression of geometry that the file uses, if any.
     fn compression(&self) -> Option<&'static str> {
         COMPRESSIONS.into_iter().find(|name| self.document.extensions.contains(*name))
@@ -141,27 +186,36 @@ impl Reader<'_> {
         count: usize,
         what: &str,
     ) -> Result<Vec<[f64; N]>, LoadError> {
-        let (bytes, stride) = self.view(view, what)?;
         let size = layout.component.size();
-        let stride = stride.unwrap_or(N * size);
+        let numbers = |bytes: &[u8]| std::array::from_fn(|c| layout.number(&bytes[c * size..]));
+        Ok(self.raw(view, offset, N * size, count, what)?.map(numbers).collect())
+    }
+
+    /// Returns the bytes of `count` elements of `size` bytes that start at an offset of a buffer view.
+    fn raw(
+        &self,
+        view: Index<buffer::View>,
+        offset: u64,
+        size: usize,
+        count: usize,
+        what: &str,
+    ) -> Result<impl Iterator<Item = &[u8]>, LoadError> {
+        let (bytes, stride) = self.view(view, what)?;
+        let stride = stride.unwrap_or(size);
         let fits = || {
             let offset = usize::try_from(offset).ok()?;
-            let end =
-                stride.checked_mul(count.checked_sub(1)?)?.checked_add(N * size)?.checked_add(offset)?;
+            let end = stride.checked_mul(count.checked_sub(1)?)?.checked_add(size)?.checked_add(offset)?;
             bytes.get(offset..end)
         };
-        if count == 0 {
-            return Ok(Vec::new());
-        }
-        let bytes = fits().ok_or_else(|| {
+        let found = if count == 0 { Some(&[][..]) } else { fits() };
+        let bytes = found.ok_or_else(|| {
             self.invalid(format!(
                 "{what} has {count} elements, more than the {} bytes of buffer view {} hold",
                 bytes.len(),
                 view.value()
             ))
         })?;
-        let element = |i: usize| std::array::from_fn(|c| layout.number(&bytes[i * stride + c * size..]));
-        Ok((0..count).map(element).collect())
+        Ok((0..count).map(move |i| &bytes[i * stride..i * stride + size]))
     }
 }
 

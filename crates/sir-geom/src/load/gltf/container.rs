@@ -13,6 +13,12 @@ use crate::load::gltf::uri::{self, Reference};
 
 /// Reads the document, and the binary chunk if the file is a GLB that has one.
 pub(super) fn open(path: &Path) -> Result<(Document, Option<Vec<u8>>), LoadError> {
+    let (json, binary) = read(path)?;
+    Ok((document::parse(path, &json)?, binary))
+}
+
+/// Reads the text of the document, and the binary chunk if the file is a GLB that has one.
+pub(super) fn read(path: &Path) -> Result<(Vec<u8>, Option<Vec<u8>>), LoadError> {
     let invalid = |what: &str| LoadError::Gltf { path: path.to_owned(), what: what.to_owned() };
     let bytes = files::read_scene(path)?;
     let (json, binary) = match &bytes[..] {
@@ -31,7 +37,7 @@ pub(super) fn open(path: &Path) -> Result<(Document, Option<Vec<u8>>), LoadError
         }
         text => (text, None),
     };
-    Ok((document::parse(path, json)?, binary.map(<[u8]>::to_vec)))
+    Ok((json.to_vec(), binary.map(<[u8]>::to_vec)))
 }
 
 /// Splits a GLB into the JSON chunk and the binary chunk (glTF 2.0 specification, section 4.4). Further data are

@@ -75,7 +75,7 @@ impl Reader<'_> {
         let what = format!("{what}, texture coordinates");
         self.attribute(accessor, vertices, &mut shared.places, &what, |reader| {
             // `KHR_mesh_quantization` adds signed integers.
-            let places = reader.elements::<2>(accessor, Type::Vec2, &[F32, I8, U8, I16, U16], &what)?;
+            let places = reader.data.elements::<2>(accessor, Type::Vec2, &[F32, I8, U8, I16, U16], &what)?;
             Ok(places.iter().map(|place| Vec2::from_array(place.map(|x| x as f32))).collect())
         })
     }
@@ -90,13 +90,13 @@ impl Reader<'_> {
         use ComponentType::{F32, U8, U16};
         let what = format!("{what}, colors");
         self.attribute(accessor, vertices, &mut shared.colors, &what, |reader| {
-            let definition: Option<&Accessor> = reader.root.get(accessor);
+            let definition: Option<&Accessor> = reader.data.root.get(accessor);
             let has_alpha = definition.is_some_and(|a| matches!(a.type_, Checked::Valid(Type::Vec4)));
             if has_alpha {
-                let colors = reader.elements::<4>(accessor, Type::Vec4, &[F32, U8, U16], &what)?;
+                let colors = reader.data.elements::<4>(accessor, Type::Vec4, &[F32, U8, U16], &what)?;
                 Ok(colors.into_iter().map(|c| DVec4::from_array(c).as_vec4()).collect())
             } else {
-                let colors = reader.elements::<3>(accessor, Type::Vec3, &[F32, U8, U16], &what)?;
+                let colors = reader.data.elements::<3>(accessor, Type::Vec3, &[F32, U8, U16], &what)?;
                 Ok(colors.into_iter().map(|[r, g, b]| DVec4::new(r, g, b, 1.0).as_vec4()).collect())
             }
         })
@@ -123,7 +123,7 @@ impl Reader<'_> {
         if values.len() >= vertices {
             return Ok(values);
         }
-        Err(self.invalid(format!("{what}: there are {} for {vertices} vertices", values.len())))
+        Err(self.data.invalid(format!("{what}: there are {} for {vertices} vertices", values.len())))
     }
 
     /// Returns the factors for the colors of the material; `None` if all are one.

@@ -5,7 +5,8 @@ use ::gltf::json::accessor::{Accessor, ComponentType, Type};
 use glam::{DAffine3, DQuat, DVec3};
 
 use crate::load::error::LoadError;
-use crate::load::gltf::reader::{Reader, lookup};
+use crate::load::gltf::data::lookup;
+use crate::load::gltf::reader::Reader;
 
 /// Instances of the mesh of a node.
 pub(super) struct Instances {
@@ -42,7 +43,7 @@ impl Reader<'_> {
     /// Returns the instances of the mesh of a node. Without the extension, the mesh itself is the only one.
     pub(super) fn instances(&mut self, node: usize) -> Result<Instances, LoadError> {
         use ComponentType::{F32, I8, I16};
-        let attributes = match self.document.nodes.get(&node) {
+        let attributes = match self.data.document.nodes.get(&node) {
             Some(extensions) if !extensions.instances.is_empty() => &extensions.instances,
             _ => return Ok(Instances::SINGLE),
         };
@@ -53,19 +54,19 @@ impl Reader<'_> {
         let mut counts = Vec::with_capacity(attributes.len());
         for &index in attributes.values() {
             let accessor: &Accessor =
-                lookup(self.path, self.root, Index::new(index), &format!("{what}: accessor"))?;
+                lookup(self.data.path, self.data.root, Index::new(index), &format!("{what}: accessor"))?;
             counts.push(usize::try_from(accessor.count.0).unwrap_or(usize::MAX));
         }
         let count = counts.iter().copied().min().unwrap_or_default();
         if let Some(most) = counts.into_iter().find(|&other| other != count) {
-            return Err(self.invalid(format!("{what}: attributes have {count} and {most} elements")));
+            return Err(self.data.invalid(format!("{what}: attributes have {count} and {most} elements")));
         }
         let attribute = |name: &str| attributes.get(name).map(|&index| Index::new(index));
         let vectors = |name| {
-            attribute(name).map(|index| self.elements::<3>(index, Type::Vec3, &[F32], &what)).transpose()
+            attribute(name).map(|index| self.data.elements::<3>(index, Type::Vec3, &[F32], &what)).transpose()
         };
         let rotations = attribute("ROTATION")
-            .map(|index| self.elements::<4>(index, Type::Vec4, &[F32, I8, I16], &what))
+            .map(|index| self.data.elements::<4>(index, Type::Vec4, &[F32, I8, I16], &what))
             .transpose()?;
         Ok(Instances { count, translations: vectors("TRANSLATION")?, rotations, scales: vectors("SCALE")? })
     }

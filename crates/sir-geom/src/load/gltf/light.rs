@@ -8,7 +8,8 @@ use glam::{DAffine3, DVec3};
 use crate::color::Rgb;
 use crate::light::{Light, LightKind, Spread};
 use crate::load::error::LoadError;
-use crate::load::gltf::reader::{Reader, label, lookup};
+use crate::load::gltf::data::lookup;
+use crate::load::gltf::reader::{Reader, label};
 
 impl Reader<'_> {
     /// Adds the light of a node, if it has one.
@@ -16,7 +17,7 @@ impl Reader<'_> {
         let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) else {
             return Ok(());
         };
-        let source = lookup(self.path, self.root, light.light, "a node: light")?;
+        let source = lookup(self.data.path, self.data.root, light.light, "a node: light")?;
         let name = source.name.as_deref().or(node.name.as_deref()).unwrap_or_default();
         let number = light.light.value();
         let label = label("light", number, name);
@@ -38,7 +39,7 @@ impl Reader<'_> {
         if let Err((what, rule)) = kind.check() {
             let named = if name.is_empty() { label } else { format!("light {number} ({label})") };
             let what = format!("{named} has a bad {what}: {rule}");
-            return Err(self.invalid(what));
+            return Err(self.data.invalid(what));
         }
         self.builder.add_light(Light { name: name.to_owned(), kind });
         Ok(())

@@ -10,10 +10,9 @@ use glam::DVec2;
 
 use crate::color::Rgb;
 use crate::load::error::LoadError;
-use crate::load::files;
-use crate::load::gltf::known::{Alpha, Coordinates, Known, Pixels};
-use crate::load::gltf::reader::{Reader, lookup};
-use crate::load::gltf::uri::{self, Reference};
+use crate::load::gltf::data::lookup;
+use crate::load::gltf::known::{Alpha, Coordinates, Known};
+use crate::load::gltf::reader::Reader;
 use crate::load::notes;
 use crate::load::options::DEFAULT_REFLECTANCE;
 use crate::load::texture;
@@ -42,7 +41,7 @@ impl Reader<'_> {
         let mut sets = Vec::new();
         let (material, alpha) = match index {
             Some(index) => {
-                let source = lookup(self.path, self.root, index, "a mesh primitive: material")?;
+                let source = lookup(self.data.path, self.data.root, index, "a mesh primitive: material")?;
                 (self.convert(source, &mut sets)?, alpha(source))
             }
             None => {
@@ -119,10 +118,10 @@ impl Reader<'_> {
         sets: &mut Vec<Coordinates>,
     ) -> Result<Option<Layer>, LoadError> {
         let Some(info) = info else { return Ok(None) };
-        let source = lookup(self.path, self.root, info.index, "a material: texture")?;
+        let source = lookup(self.data.path, self.data.root, info.index, "a material: texture")?;
         let wrap = match source.sampler {
             Some(index) => {
-                let sampler = lookup(self.path, self.root, index, "a texture: sampler")?;
+                let sampler = lookup(self.data.path, self.data.root, index, "a texture: sampler")?;
                 [sampler.wrap_s, sampler.wrap_t].map(wrap)
             }
             None => [Wrap::Repeat; 2],
@@ -136,12 +135,12 @@ impl Reader<'_> {
 
     /// Returns an image of the file, which is read on first use.
     fn decoded(&mut self, index: usize) -> Option<Image> {
-        let pixels = self.pixels(index);
+        let pixels = self.data.pixels(index);
         if let Some(&image) = self.textures.get(&pixels) {
             return image;
         }
         let name = format!("image {index}");
-        let texture = self.image(index, &pixels).and_then(|bytes| self.images.decode(&bytes));
+        let texture = self.data.image(index, &pixels).and_then(|bytes| self.images.decode(&bytes));
         let image = match texture {
             Ok(texture) => Some(self.images.add(texture, &name, self.builder, self.notes)),
             Err(e) => {
@@ -155,45 +154,13 @@ impl Reader<'_> {
 
     /// Notes that a texture has no image.
     fn without_image(&mut self, texture: usize) -> Option<Image> {
-        let formats = self.document.textures.get(&texture).map(|names| names.join(" and "));
+        let formats = self.data.document.textures.get(&texture).map(|names| names.join(" and "));
         let why = match formats.filter(|names| !names.is_empty()) {
             Some(names) => format!("it has no PNG or JPEG image, only one for {names}"),
             None => "it has no image".to_owned(),
         };
         self.notes.name(texture::UNREADABLE, format!("texture {texture} ({why})"));
         None
-    }
-
-    fn pixels(&self, index: usize) -> Pixels {
-        let image = self.root.images.get(index);
-        match image.map(|image| (&image.uri, image.buffer_view)) {
-            Some((Some(uri), _)) if !uri::is_data(uri) => match uri::resolve(self.path, uri) {
-                Ok(Reference::File(path)) => Pixels::File(path),
-                _ => Pixels::Own(index),
-            },
-            Some((None, Some(view))) => Pixels::View(view.value()),
-            _ => Pixels::Own(index),
-        }
-    }
-
-    /// Returns the encoded bytes of an image.
-    fn image(&self, index: usize, pixels: &Pixels) -> Result<Vec<u8>, String> {
-        let image = self.root.images.get(index).ok_or("it does not exist")?;
-        match (pixels, &image.uri, image.buffer_view) {
-            (Pixels::File(path), ..) => {
-                files::read(path).map_err(|source| format!("{}: {source}", path.display()))
-            }
-            (_, Some(uri), _) => match uri::resolve(self.path, uri)? {
-                Reference::Data(bytes) => Ok(bytes),
-                Reference::File(_) => Err("it has no data".to_owned()),
-            },
-            (_, None, Some(view)) => match self.view(view, "an image") {
-                Ok((bytes, _)) => Ok(bytes.to_vec()),
-                Err(LoadError::Gltf { what, .. }) => Err(what),
-                Err(other) => Err(other.to_string()),
-            },
-            (_, None, None) => Err("it has no data".to_owned()),
-        }
     }
 }
 

@@ -8,8 +8,12 @@ mod access;
 mod camera;
 mod container;
 mod corners;
+mod data;
 mod document;
 mod extensions;
+mod file;
+mod geometry;
+mod images;
 mod instances;
 mod known;
 mod light;
@@ -20,12 +24,14 @@ mod uri;
 mod walk;
 mod wording;
 
-use std::cell::Cell;
+pub use file::{GltfFile, GltfPrimitive, RawElements};
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::builder::SceneBuilder;
 use crate::load::error::LoadError;
+use crate::load::gltf::data::Data;
 use crate::load::gltf::reader::Reader;
 use crate::load::notes::Notes;
 use crate::load::options::LoadOptions;
@@ -43,10 +49,7 @@ pub(super) fn read(
     notes.count("animations are not played: the scene is read in its state at rest", document.animations);
     let buffers = container::buffers(path, &document.root, binary)?;
     let reader = Reader {
-        path,
-        root: &document.root,
-        document: &document,
-        buffers,
+        data: Data::new(path, &document, &buffers),
         options,
         builder,
         notes,
@@ -57,7 +60,6 @@ pub(super) fn read(
         coordinates: 0,
         triangles: 0,
         primitives: 0,
-        unbacked: Cell::new(0),
     };
     reader.scene()
 }

@@ -4,8 +4,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::rc::Rc;
 
-use ::gltf::json::accessor::{ComponentType, Type};
-use ::gltf::json::mesh::{Mode, Primitive, Semantic};
+use ::gltf::json::mesh::{Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use glam::{DAffine3, DVec3, Vec2};
 
@@ -35,10 +34,7 @@ impl Reader<'_> {
         shared: &mut Shared,
         what: &str,
     ) -> Result<(), LoadError> {
-        let Checked::Valid(mode) = primitive.mode else {
-            return Err(self.invalid(format!("{what}: unknown mode")));
-        };
-        if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+        if !self.data.has_triangles(primitive, what)? {
             self.notes.count("mesh primitives of points or lines were skipped", 1);
             return Ok(());
         }
@@ -49,20 +45,19 @@ impl Reader<'_> {
             self.notes.count("mesh primitives without positions were skipped", 1);
             return Ok(());
         };
-        let corners = self.corners(primitive, vertices.len(), what)?;
-        let triangles = Triangles { mode, corners: corners.len() };
-        self.triangles += triangles.count();
+        let triangles = self.data.triangles(primitive, vertices.len(), what)?;
+        self.triangles += triangles.len();
         self.check_size("triangles", self.triangles)?;
         let is_colored = primitive.attributes.contains_key(&Checked::Valid(Semantic::Colors(0)));
         let material = self.material(primitive.material, is_colored)?;
         let Values { coordinates, colors } =
             self.values(primitive, &material, vertices.len(), &mut shared.attributes, what)?;
-        self.coordinates += triangles.count() * (coordinates.len() + usize::from(colors.is_some()));
+        self.coordinates += triangles.len() * (coordinates.len() + usize::from(colors.is_some()));
         self.check_size("texture coordinates and colors", self.coordinates)?;
         // A reflection swaps fronts and backs unless the order of the corners is reversed, too.
         let mirrored = to_world.matrix3.determinant() < 0.0;
-        for i in 0..triangles.count() {
-            let mut triangle = triangles.get(i).map(|c| corners[c]);
+        for triangle in triangles {
+            let mut triangle = triangle.map(|vertex| vertex as usize);
             if mirrored {
                 triangle.swap(1, 2);
             }
@@ -87,7 +82,6 @@ impl Reader<'_> {
         shared: &mut Shared,
         what: &str,
     ) -> Result<Option<Rc<[VertexId]>>, LoadError> {
-        use ComponentType::{F32, I8, I16, U8, U16};
         let Some(&accessor) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
             return Ok(None);
         };
@@ -95,26 +89,11 @@ impl Reader<'_> {
             Entry::Occupied(known) => return Ok(Some(Rc::clone(known.get()))),
             Entry::Vacant(vacant) => vacant,
         };
-        // `KHR_mesh_quantization` adds integers.
-        let positions = self.elements::<3>(accessor, Type::Vec3, &[F32, I8, U8, I16, U16], what)?;
+        let positions = self.data.positions(accessor, what)?;
         self.vertices += positions.len();
         self.check_size("vertices", self.vertices)?;
         let add = |p| self.builder.add_vertex(to_world.transform_point3(DVec3::from_array(p)));
         Ok(Some(Rc::clone(vacant.insert(positions.into_iter().map(add).collect()))))
-    }
-
-    /// Returns the vertex numbers of a primitive in the order of its corners.
-    fn corners(&self, primitive: &Primitive, vertices: usize, what: &str) -> Result<Vec<usize>, LoadError> {
-        use ComponentType::{U8, U16, U32};
-        let Some(accessor) = primitive.indices else {
-            return Ok((0..vertices).collect());
-        };
-        let indices = self.elements::<1>(accessor, Type::Scalar, &[U8, U16, U32], what)?;
-        let corners: Vec<usize> = indices.into_iter().map(|[i]| i as usize).collect();
-        match corners.iter().find(|&&i| i >= vertices) {
-            Some(i) => Err(self.invalid(format!("{what}: index {i} is beyond its {vertices} vertices"))),
-            None => Ok(corners),
-        }
     }
 
     pub(super) fn check_size(&self, what: &'static str, count: usize) -> Result<(), LoadError> {
@@ -128,33 +107,8 @@ impl Reader<'_> {
         limit: usize,
     ) -> Result<(), LoadError> {
         if count > limit {
-            return Err(LoadError::TooLarge { path: self.path.to_owned(), what, limit });
+            return Err(LoadError::TooLarge { path: self.data.path.to_owned(), what, limit });
         }
         Ok(())
-    }
-}
-
-/// Triangles of a list of corners.
-struct Triangles {
-    mode: Mode,
-    corners: usize,
-}
-
-impl Triangles {
-    fn count(&self) -> usize {
-        match self.mode {
-            Mode::Triangles => self.corners / 3,
-            _ => self.corners.saturating_sub(2),
-        }
-    }
-
-    /// Returns the corners of triangle `i`, counterclockwise seen from its front (glTF 2.0 specification, section
-    /// 3.7.2.1).
-    fn get(&self, i: usize) -> [usize; 3] {
-        match self.mode {
-            Mode::TriangleStrip => [i, i + 1 + i % 2, i + 2 - i % 2],
-            Mode::TriangleFan => [i + 1, i + 2, 0],
-            _ => [3 * i, 3 * i + 1, 3 * i + 2],
-        }
     }
 }

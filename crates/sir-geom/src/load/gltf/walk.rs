@@ -6,9 +6,10 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::load::error::LoadError;
 use crate::load::gltf::camera;
+use crate::load::gltf::data::lookup;
 use crate::load::gltf::instances::unit;
 use crate::load::gltf::primitive::Shared;
-use crate::load::gltf::reader::{Reader, label, lookup};
+use crate::load::gltf::reader::{Reader, label};
 
 /// Maximum number of mesh primitives after instances are expanded.
 const MAX_PRIMITIVES: usize = 1 << 23;
@@ -16,24 +17,24 @@ const MAX_PRIMITIVES: usize = 1 << 23;
 impl Reader<'_> {
     /// Adds the contents of the default scene; without one, of the first scene; without scenes, of all nodes.
     pub(super) fn scene(mut self) -> Result<(), LoadError> {
-        let scene = match self.root.scene {
-            Some(index) => Some(lookup(self.path, self.root, index, "the default scene: scene")?),
-            None => self.root.scenes.first(),
+        let scene = match self.data.root.scene {
+            Some(index) => Some(lookup(self.data.path, self.data.root, index, "the default scene: scene")?),
+            None => self.data.root.scenes.first(),
         };
         let roots = match scene {
             Some(scene) => scene.nodes.clone(),
-            None => orphans(self.root),
+            None => orphans(self.data.root),
         };
         // The stack is explicit, because the depth of a tree from a file has no limit. Children are pushed in reverse
         // order, so that they are visited in file order.
         let mut stack: Vec<_> =
             roots.into_iter().rev().map(|node| (node, DAffine3::IDENTITY, false)).collect();
-        let mut visited = vec![false; self.root.nodes.len()];
+        let mut visited = vec![false; self.data.root.nodes.len()];
         while let Some((index, parent, is_parent_hidden)) = stack.pop() {
-            let node = lookup(self.path, self.root, index, "a scene or node: node")?;
+            let node = lookup(self.data.path, self.data.root, index, "a scene or node: node")?;
             if std::mem::replace(&mut visited[index.value()], true) {
                 let what = format!("node {} has two parents or is its own descendant", index.value());
-                return Err(self.invalid(what));
+                return Err(self.data.invalid(what));
             }
             let to_world = parent * local_transform(node);
             let is_hidden = is_parent_hidden || self.is_hidden(index.value(), node);
@@ -49,7 +50,7 @@ impl Reader<'_> {
 
     /// Returns true if a node hides itself and its descendants (`KHR_node_visibility`), which is noted.
     fn is_hidden(&mut self, index: usize, node: &Node) -> bool {
-        let is_hidden = self.document.nodes.get(&index).is_some_and(|extensions| extensions.is_hidden);
+        let is_hidden = self.data.document.nodes.get(&index).is_some_and(|extensions| extensions.is_hidden);
         if is_hidden {
             let name = label("node", index, node.name.as_deref().unwrap_or_default());
             self.notes.name("nodes are hidden; they and the meshes and lights below them were skipped", name);
@@ -60,7 +61,7 @@ impl Reader<'_> {
     /// Adds the camera of a node, if it has one. Hidden nodes keep their cameras.
     fn camera(&mut self, node: &Node, to_world: &DAffine3) -> Result<(), LoadError> {
         let Some(index) = node.camera else { return Ok(()) };
-        let source = lookup(self.path, self.root, index, "a node: camera")?;
+        let source = lookup(self.data.path, self.data.root, index, "a node: camera")?;
         let name = source.name.as_deref().or(node.name.as_deref()).unwrap_or_default();
         match camera::convert(source, name, to_world) {
             Some(camera) => self.builder.add_camera(camera),
@@ -78,7 +79,7 @@ impl Reader<'_> {
         if node.skin.is_some() {
             self.notes.count("skinned meshes are read in the pose of their nodes", 1);
         }
-        let mesh = lookup(self.path, self.root, index, "a node: mesh")?;
+        let mesh = lookup(self.data.path, self.data.root, index, "a node: mesh")?;
         self.builder.begin_group(node.name.as_deref().or(mesh.name.as_deref()).unwrap_or_default());
         let instances = self.instances(number)?;
         // Instances without triangles count, too: they take time, and a small file can ask for many.
@@ -87,6 +88,7 @@ impl Reader<'_> {
         self.check_limit("mesh primitives", self.primitives, MAX_PRIMITIVES)?;
         for instance in 0..instances.count() {
             let to_world = *to_world * instances.to_node(instance);
+            self.builder.begin_mesh([number, instance, index.value()].map(|i| i as u32), to_world);
             let mut shared = Shared::default();
             for (i, primitive) in mesh.primitives.iter().enumerate() {
                 let what = format!("mesh {}, primitive {i}", index.value());
