@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use sir_geom::LoadError;
+use sir_lightmap::LightmapError;
 use sir_parallel::{ConnectError, RunError};
 use sir_radiosity::{ModelError, SolveError};
 use sir_view::ViewError;
@@ -175,6 +176,9 @@ pub enum Error {
     /// A result cannot be written, read or compared.
     #[error(transparent)]
     View(#[from] ViewError),
+    /// A lightmap cannot be made.
+    #[error(transparent)]
+    Lightmap(#[from] LightmapError),
     /// A directory to be compared holds no result.
     #[error("{} is not a run directory: it has no readable result.json ({why})", directory.display())]
     NoResult {

@@ -43,7 +43,7 @@ pub enum StageKind {
 }
 
 /// Observer of one stage.
-pub trait Meter {
+pub trait Meter: Send {
     /// Receives the number of lines traced so far and in total, a few times a second.
     fn progress(&mut self, done: u64, total: u64);
 }

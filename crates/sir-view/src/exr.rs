@@ -6,7 +6,7 @@ use std::path::Path;
 use exr::meta::attribute::{Chromaticities, Text};
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, SmallVec, Vec2,
-    WritableImage,
+    WritableImage, f16,
 };
 
 use crate::atomic_file::write_atomically;
@@ -21,6 +21,9 @@ const REC_709: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.3290),
 };
 
+/// Largest 16-bit float.
+const MAX_HALF: f32 = 65_504.0;
+
 /// Writes a picture as OpenEXR: linear radiance \[W/(m² sr)\] in the 32-bit float channels `R`, `G`, `B`, with lossless
 /// compression.
 ///
@@ -31,20 +34,60 @@ const REC_709: Chromaticities = Chromaticities {
 ///
 /// If the file cannot be written, or the pictures differ in size.
 pub fn write_exr(path: &Path, picture: &Picture, more: &[(&str, &Picture)]) -> Result<(), ViewError> {
-    let mut channels: SmallVec<[AnyChannel<FlatSamples>; 4]> = SmallVec::new();
+    let mut channels = Vec::new();
     for (prefix, layer) in std::iter::once((String::new(), picture))
         .chain(more.iter().map(|(name, layer)| (format!("{name}."), *layer)))
     {
         if (layer.width, layer.height) != (picture.width, picture.height) {
             return Err(ViewError::PictureSize { width: layer.width, height: layer.height });
         }
-        for (i, band) in ["R", "G", "B"].iter().enumerate() {
-            let values = layer.radiance.iter().map(|pixel| pixel[i]).collect();
-            let name = format!("{prefix}{band}");
-            channels.push(AnyChannel::new(Text::from(name.as_str()), FlatSamples::F32(values)));
-        }
+        channels.extend(color_channels(&prefix, &layer.radiance));
     }
-    let size = Vec2(picture.width as usize, picture.height as usize);
+    write_exr_channels(path, [picture.width, picture.height], channels, ExrFormat::Float)
+}
+
+/// Number format of the channels of an OpenEXR file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ExrFormat {
+    /// 32 bits: seven digits.
+    #[default]
+    Float,
+    /// 16 bits: three digits, up to 65,504.
+    Half,
+}
+
+/// Returns the channels `R`, `G` and `B` of colors, with a prefix to their names.
+pub fn color_channels(prefix: &str, colors: &[[f32; 3]]) -> impl Iterator<Item = (String, Vec<f32>)> {
+    ["R", "G", "B"]
+        .iter()
+        .enumerate()
+        .map(move |(i, band)| (format!("{prefix}{band}"), colors.iter().map(|color| color[i]).collect()))
+}
+
+/// Writes channels of numbers as OpenEXR, with lossless compression. Each has a name, and one number per pixel, row by row
+/// from the top. Colors are linear Rec. 709.
+///
+/// # Errors
+///
+/// If the file cannot be written.
+pub fn write_exr_channels(
+    path: &Path,
+    [width, height]: [u32; 2],
+    channels: Vec<(String, Vec<f32>)>,
+    format: ExrFormat,
+) -> Result<(), ViewError> {
+    let channel = |(name, values): (String, Vec<f32>)| {
+        let samples = match format {
+            ExrFormat::Float => FlatSamples::F32(values),
+            // Beyond the largest number, 16 bits would be infinite.
+            ExrFormat::Half => {
+                FlatSamples::F16(values.iter().map(|x| f16::from_f32(x.clamp(-MAX_HALF, MAX_HALF))).collect())
+            }
+        };
+        AnyChannel::new(Text::from(name.as_str()), samples)
+    };
+    let channels: SmallVec<[AnyChannel<FlatSamples>; 4]> = channels.into_iter().map(channel).collect();
+    let size = Vec2(width as usize, height as usize);
     let attributes = LayerAttributes { software_name: Some(Text::from("SIR")), ..LayerAttributes::default() };
     let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
     let mut image = Image::from_layer(layer);

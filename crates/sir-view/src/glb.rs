@@ -50,7 +50,7 @@ pub fn write_glb(
     let near = 1e-3 * median_extent(display.scene.vertices()).1;
     file.add_cameras(cameras, near);
     let json = file.json(up);
-    file.write(path, &json)
+    write_glb_file(path, &json, &file.binary)
 }
 
 /// Returns the point of a patch that is nearest to a position in its plane.
@@ -256,24 +256,29 @@ impl Contents {
         }
         json
     }
+}
 
-    fn write(&self, path: &Path, json: &Value) -> Result<(), ViewError> {
-        let mut text = json.to_string().into_bytes();
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let total = 12 + 8 + text.len() as u64 + 8 + self.binary.len() as u64;
-        let Ok(total) = u32::try_from(total) else {
-            return Err(ViewError::TooLarge { path: path.to_owned(), bytes: total });
-        };
-        write_atomically(path, |file| {
-            file.write_all(b"glTF")?;
-            for word in [2, total, text.len() as u32] {
-                file.write_all(&word.to_le_bytes())?;
-            }
-            file.write_all(b"JSON")?;
-            file.write_all(&text)?;
-            file.write_all(&(self.binary.len() as u32).to_le_bytes())?;
-            file.write_all(b"BIN\0")?;
-            file.write_all(&self.binary)
-        })
-    }
+/// Writes a GLB file with this JSON document and binary chunk.
+///
+/// # Errors
+///
+/// If the file cannot be written or would exceed 4 GiB.
+pub fn write_glb_file(path: &Path, json: &Value, binary: &[u8]) -> Result<(), ViewError> {
+    let mut text = json.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let total = 12 + 8 + text.len() as u64 + 8 + binary.len() as u64;
+    let Ok(total) = u32::try_from(total) else {
+        return Err(ViewError::TooLarge { path: path.to_owned(), bytes: total });
+    };
+    write_atomically(path, |file| {
+        file.write_all(b"glTF")?;
+        for word in [2, total, text.len() as u32] {
+            file.write_all(&word.to_le_bytes())?;
+        }
+        file.write_all(b"JSON")?;
+        file.write_all(&text)?;
+        file.write_all(&(binary.len() as u32).to_le_bytes())?;
+        file.write_all(b"BIN\0")?;
+        file.write_all(binary)
+    })
 }

@@ -4,6 +4,7 @@
 pub(crate) mod focus;
 pub(crate) mod image;
 pub(crate) mod light;
+pub(crate) mod lightmap;
 pub(crate) mod lines;
 pub(crate) mod load;
 pub(crate) mod multipath;
@@ -23,6 +24,7 @@ pub(crate) mod subdivide;
 pub use focus::Focus;
 pub use image::{Camera, CameraChoice, Image};
 pub use light::{Distant, Lamp, Light};
+pub use lightmap::Lightmap;
 pub use lines::{FirstShot, SecondShot, ShadowRays, Solve};
 pub use load::Load;
 pub use multipath::{DomainKind, Multipath, Replicas, Transport};

@@ -156,6 +156,16 @@ impl Pipeline {
         self.outputs().any(|output| matches!(output, Output::Report(_)))
     }
 
+    /// True if an output shows the direct light.
+    pub(crate) fn shows_direct(&self) -> bool {
+        let shows = |output: &Output| match output {
+            Output::Report(_) => true,
+            Output::Lightmap(lightmap) => lightmap.direct,
+            _ => false,
+        };
+        self.outputs().any(shows)
+    }
+
     /// Returns the parts of the scene for which there are tables, each once.
     pub(crate) fn parts_of_tables(&self) -> BTreeSet<Per> {
         let per = |output: &Output| if let Output::Table(table) = output { table.per } else { None };
@@ -169,7 +179,7 @@ impl Pipeline {
             _ => None,
         });
         let measured = sensors.flat_map(|sensors| [Some(sensors.table()), sensors.map()]).flatten();
-        self.outputs().map(|output| output.path().to_owned()).chain(measured).collect()
+        self.outputs().flat_map(Output::files).chain(measured).collect()
     }
 
     /// Returns the paths of the pipeline file and of all files that it names.

@@ -3,6 +3,7 @@
 use crate::plan::focus::Focus;
 use crate::plan::image::{Camera, Image};
 use crate::plan::light::Distant;
+use crate::plan::lightmap::Lightmap;
 use crate::plan::lines::{FirstShot, SecondShot, ShadowRays, Solve};
 use crate::plan::load::Load;
 use crate::plan::multipath::{Multipath, Replicas};
@@ -49,6 +50,7 @@ pub fn field_tables() -> Vec<(&'static str, String)> {
         table::<Gltf>(),
         table::<Table>(),
         table::<Report>(),
+        table::<Lightmap>(),
     ]
 }
 

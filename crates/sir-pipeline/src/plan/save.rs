@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use sir_mesh::Per;
 
 use crate::plan::image::Image;
+use crate::plan::lightmap::Lightmap;
 use crate::text::field::Format as _;
 use crate::text::formats::Choice;
 use crate::text::paths::OutputFile;
@@ -30,6 +31,8 @@ choice! {
         Table(Table),
         /// Page with a viewer of the lit scene and all figures, as HTML.
         Report(Report),
+        /// The scene with lightmaps, as binary glTF, with images and a manifest.
+        Lightmap(Lightmap),
     }
 }
 
@@ -82,8 +85,18 @@ impl Output {
             Self::Image(Image { path, .. })
             | Self::Gltf(Gltf { path })
             | Self::Table(Table { path, .. })
-            | Self::Report(Report { path }) => path,
+            | Self::Report(Report { path })
+            | Self::Lightmap(Lightmap { path, .. }) => path,
         }
+    }
+
+    /// Returns the paths of all files that it writes inside the run directory, as far as they are known beforehand.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let mut files = vec![self.path().to_owned()];
+        if let Self::Lightmap(lightmap) = self {
+            files.extend(lightmap.files_beside());
+        }
+        files
     }
 }
 

@@ -9,6 +9,7 @@ pub(crate) mod computed;
 mod directory;
 pub(crate) mod execute;
 mod lighting;
+mod lightmap;
 pub(crate) mod lock;
 pub(crate) mod pages;
 mod pilot;

@@ -77,7 +77,7 @@ impl<'a> RepeatSums<'a> {
         let share_rays = if let Until::Times(times) = until { times.min(most) } else { most };
         let sides = prepared.model.mesh.side_count();
         let parts = parts_of_tables(pipeline, prepared);
-        let direct_step = if pipeline.has_page() {
+        let direct_step = if pipeline.shows_direct() {
             places
                 .iter()
                 .rposition(|(_, action)| matches!(action, Action::FirstShot(_) | Action::ShadowRays(_)))

@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use sir_geom::Camera;
 use sir_radiosity::{Model, Solution};
@@ -19,6 +20,7 @@ use crate::progress::Progress;
 use crate::report::page::Shown;
 use crate::report::result::OutputReport;
 use crate::run::computed::{Computed, PartErrors};
+use crate::run::lightmap;
 use crate::run::pages::Page;
 
 /// Width of the picture from which the exposure of a camera follows.
@@ -35,33 +37,40 @@ pub(crate) struct Saver<'a> {
     pub(crate) directory: &'a Path,
     pub(crate) threads: usize,
     pub(crate) progress: &'a dyn Progress,
+    /// Becomes true when the run is asked to stop.
+    pub(crate) stop: &'a AtomicBool,
 }
 
-/// Writes the outputs of a stage, one after the other, as long as `written` returns true. Adds its pages to `pages`.
+/// Writes the outputs of a stage, one after the other, until the run is asked to stop. Adds its pages to `pages` and what was
+/// written to `reports`. Returns true if all are written.
 pub(crate) fn save(
     saver: Saver<'_>,
     light: &Computed,
     outputs: &[Output],
     pages: &mut Vec<Page>,
-    written: &mut dyn FnMut(OutputReport) -> bool,
-) -> Result<(), Error> {
-    let Saver { prepared, directory, threads, progress, .. } = saver;
+    reports: &mut Vec<OutputReport>,
+) -> Result<bool, Error> {
+    let Saver { prepared, directory, threads, progress, stop, .. } = saver;
     let Model { scene, mesh, accel } = &prepared.model;
     let solution = &light.solution;
     let lit = OnceCell::new();
     let display = || lit.get_or_init(|| DisplayMesh::new(scene, mesh, &solution.irradiance));
-    let denoised = if outputs.iter().any(is_denoised) {
+    let calm = if outputs.iter().any(is_denoised) {
         display().denoise(&solution.error, threads)
     } else {
         Vec::new()
     };
-    let denoised = (!denoised.is_empty()).then(|| DisplayMesh::new(scene, mesh, &denoised));
+    let has_denoised_image = outputs.iter().any(|output| output.image().is_some() && is_denoised(output));
+    let denoised = has_denoised_image.then(|| DisplayMesh::new(scene, mesh, &calm));
     let errors = outputs
         .iter()
         .any(|o| matches!(o, Output::Image(_)) && has_extension(o.path(), "exr"))
         .then(|| DisplayMesh::of_errors(scene, mesh, &solution.error));
     let mut renderer = Renderer::new(saver, &display, denoised.as_ref());
     for output in outputs {
+        if stop.load(Relaxed) {
+            return Ok(false);
+        }
         let path = directory.join(output.path());
         progress.note(&format!("Save: {}", output.path().display()));
         if let Some(parent) = path.parent() {
@@ -108,20 +117,32 @@ pub(crate) fn save(
                 pages.push(Page { path: output.path.clone(), view, shown });
                 "report"
             }
+            Output::Lightmap(output) => {
+                let irradiance = if output.denoise { &calm } else { &solution.irradiance };
+                let beside = lightmap::write(saver, light, irradiance, output, &path)?;
+                for file in beside {
+                    let path = file.strip_prefix(directory).unwrap_or(&file).to_string_lossy().into_owned();
+                    let bytes = Some(size(&file)?);
+                    reports.push(OutputReport { path, kind: "lightmap".into(), bytes, camera: None });
+                }
+                "lightmap"
+            }
         };
         // A page is written when the run has ended.
         let bytes = match output {
             Output::Report(_) => None,
-            _ => Some(
-                fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len(),
-            ),
+            _ => Some(size(&path)?),
         };
         let path = output.path().to_string_lossy().into_owned();
-        if !written(OutputReport { path, kind: kind.into(), bytes, camera: default_camera }) {
-            break;
-        }
+        reports.push(OutputReport { path, kind: kind.into(), bytes, camera: default_camera });
     }
-    Ok(())
+    Ok(!stop.load(Relaxed))
+}
+
+/// Returns the size of a file \[bytes\].
+fn size(path: &Path) -> Result<u64, Error> {
+    let found = fs::metadata(path);
+    Ok(found.map_err(|source| ViewError::Io { what: "read", path: path.to_owned(), source })?.len())
 }
 
 /// Returns the view of a page of this light, and what else the page shows. `cameras` are those of an earlier page, which
@@ -269,9 +290,13 @@ pub(crate) fn settings(image: &Image, camera: Option<&Camera>, threads: usize) -
     }
 }
 
-/// Returns true if an output is a denoised image. EXR images are never denoised.
+/// Returns true if an output is a denoised image or lightmap. EXR images are never denoised.
 pub(crate) fn is_denoised(output: &Output) -> bool {
-    matches!(output, Output::Image(image) if image.denoise) && !has_extension(output.path(), "exr")
+    match output {
+        Output::Image(image) => image.denoise && !has_extension(output.path(), "exr"),
+        Output::Lightmap(lightmap) => lightmap.denoise,
+        _ => false,
+    }
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

@@ -1,7 +1,6 @@
 //! Runs the stages of a pipeline, one after the other.
 
-use std::sync::atomic::Ordering::Relaxed;
-
+use sir_lightmap::LightmapError;
 use sir_parallel::{Checkpoints, Executor, RunError, Saved, Threads, cores};
 use sir_radiosity::Measurement;
 
@@ -117,8 +116,15 @@ impl Run<'_> {
 
     /// Returns what the outputs of this run have in common.
     pub(crate) fn saver(&self) -> Saver<'_> {
-        let Self { pipeline, prepared, ref directory, progress, .. } = *self;
-        Saver { pipeline, prepared, directory, threads: self.threads().0.get(), progress }
+        let Self { pipeline, prepared, ref directory, progress, options, .. } = *self;
+        Saver {
+            pipeline,
+            prepared,
+            directory,
+            threads: self.threads().0.get(),
+            progress,
+            stop: &options.stop,
+        }
     }
 
     /// Writes outputs until the run is asked to stop.
@@ -126,15 +132,14 @@ impl Run<'_> {
         let mut reports = Vec::new();
         let threads = self.threads().0.get();
         let Self { pipeline, prepared, ref directory, options, progress, ref mut pages, .. } = *self;
-        let saver = Saver { pipeline, prepared, directory, threads, progress };
-        save(saver, light, outputs, &mut pages.pages, &mut |report| {
-            reports.push(report);
-            !options.stop.load(Relaxed)
-        })?;
-        if reports.len() < outputs.len() {
-            return Err(Error::InterruptedSaving { directory: self.directory.clone() });
+        let saver = Saver { pipeline, prepared, directory, threads, progress, stop: &options.stop };
+        match save(saver, light, outputs, &mut pages.pages, &mut reports) {
+            Ok(true) => Ok(reports),
+            Ok(false) | Err(Error::Lightmap(LightmapError::Stopped)) => {
+                Err(Error::InterruptedSaving { directory: self.directory.clone() })
+            }
+            Err(error) => Err(error),
         }
-        Ok(reports)
     }
 }
 

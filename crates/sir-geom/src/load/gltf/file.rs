@@ -7,6 +7,7 @@ use ::gltf::json::accessor::{Accessor, ComponentType, Type};
 use ::gltf::json::mesh::Semantic;
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Index, Value, deserialize};
+use glam::DAffine3;
 
 use crate::load::error::LoadError;
 use crate::load::gltf::container;
@@ -115,6 +116,17 @@ impl GltfFile {
     pub fn raw_elements(&self, accessor: usize) -> Result<RawElements, LoadError> {
         let (bytes, size) = self.data().raw_elements(Index::<Accessor>::new(accessor as u32))?;
         Ok(RawElements { bytes, size })
+    }
+
+    /// Returns the transforms of the instances of the mesh of a node (`EXT_mesh_gpu_instancing`) to the node; without the
+    /// extension, that of the mesh itself.
+    ///
+    /// # Errors
+    ///
+    /// If their data are missing or invalid.
+    pub fn instance_transforms(&self, node: usize) -> Result<Vec<DAffine3>, LoadError> {
+        let instances = self.data().instances(node)?;
+        Ok((0..instances.count()).map(|i| instances.to_node(i)).collect())
     }
 
     /// Returns the encoded bytes of an image.

@@ -5,7 +5,7 @@ use ::gltf::json::accessor::{Accessor, ComponentType, Type};
 use glam::{DAffine3, DQuat, DVec3};
 
 use crate::load::error::LoadError;
-use crate::load::gltf::data::lookup;
+use crate::load::gltf::data::{Data, lookup};
 use crate::load::gltf::reader::Reader;
 
 /// Instances of the mesh of a node.
@@ -40,33 +40,41 @@ impl Instances {
 }
 
 impl Reader<'_> {
-    /// Returns the instances of the mesh of a node. Without the extension, the mesh itself is the only one.
+    /// Returns the instances of the mesh of a node.
     pub(super) fn instances(&mut self, node: usize) -> Result<Instances, LoadError> {
+        let extensions = self.data.document.nodes.get(&node);
+        if extensions.is_some_and(|of| of.instances.keys().any(|name| name.contains("COLOR"))) {
+            self.notes.count("nodes have instances with colors, which were ignored", 1);
+        }
+        self.data.instances(node)
+    }
+}
+
+impl Data<'_> {
+    /// Returns the instances of the mesh of a node. Without the extension, the mesh itself is the only one.
+    pub(super) fn instances(&self, node: usize) -> Result<Instances, LoadError> {
         use ComponentType::{F32, I8, I16};
-        let attributes = match self.data.document.nodes.get(&node) {
+        let attributes = match self.document.nodes.get(&node) {
             Some(extensions) if !extensions.instances.is_empty() => &extensions.instances,
             _ => return Ok(Instances::SINGLE),
         };
-        if attributes.keys().any(|name| name.contains("COLOR")) {
-            self.notes.count("nodes have instances with colors, which were ignored", 1);
-        }
         let what = format!("node {node}, instances");
         let mut counts = Vec::with_capacity(attributes.len());
         for &index in attributes.values() {
             let accessor: &Accessor =
-                lookup(self.data.path, self.data.root, Index::new(index), &format!("{what}: accessor"))?;
+                lookup(self.path, self.root, Index::new(index), &format!("{what}: accessor"))?;
             counts.push(usize::try_from(accessor.count.0).unwrap_or(usize::MAX));
         }
         let count = counts.iter().copied().min().unwrap_or_default();
         if let Some(most) = counts.into_iter().find(|&other| other != count) {
-            return Err(self.data.invalid(format!("{what}: attributes have {count} and {most} elements")));
+            return Err(self.invalid(format!("{what}: attributes have {count} and {most} elements")));
         }
         let attribute = |name: &str| attributes.get(name).map(|&index| Index::new(index));
         let vectors = |name| {
-            attribute(name).map(|index| self.data.elements::<3>(index, Type::Vec3, &[F32], &what)).transpose()
+            attribute(name).map(|index| self.elements::<3>(index, Type::Vec3, &[F32], &what)).transpose()
         };
         let rotations = attribute("ROTATION")
-            .map(|index| self.data.elements::<4>(index, Type::Vec4, &[F32, I8, I16], &what))
+            .map(|index| self.elements::<4>(index, Type::Vec4, &[F32, I8, I16], &what))
             .transpose()?;
         Ok(Instances { count, translations: vectors("TRANSLATION")?, rotations, scales: vectors("SCALE")? })
     }

@@ -1,0 +1,44 @@
+//! Lightmaps.
+mod clip;
+mod compact;
+mod dilate;
+mod document;
+mod encode;
+mod error;
+mod existing;
+mod layout;
+mod lightmap;
+mod lit;
+mod loose;
+mod objects;
+mod options;
+mod seams;
+mod texels;
+mod text;
+mod unwrap;
+mod write;
+
+pub use error::LightmapError;
+pub use lightmap::{Lightmap, Solution};
+pub use options::{LightmapOptions, LightmapSides};
+pub use seams::SeamSteps;
+pub use write::LightmapFiles;
+
+/// Step of making a lightmap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Meshes are unfolded into charts. Counts meshes, then triangles.
+    Unwrapping,
+    /// Charts are placed on pages. The total is not known.
+    Packing,
+    /// Texels get their light. Counts sides of patches.
+    Filling,
+    /// Texels at the edges of charts are fitted to each other.
+    Seams,
+}
+
+/// Observer of the work.
+pub trait Observer: Sync {
+    /// Receives the amount of work done and in total, if it is known. Returns false to stop.
+    fn progress(&self, step: Step, done: u64, total: Option<u64>) -> bool;
+}
