@@ -64,19 +64,22 @@ impl Progress for Stderr {
     }
 
     fn begin(&self, title: &str, total: u64, kind: StageKind) -> Box<dyn Meter> {
+        let unit = if let StageKind::Work(unit) = kind { unit } else { "lines" };
         let bar = match self {
             Self::Bar => {
                 let bar = ProgressBar::new(total);
-                let template = "{prefix}{bar:30} {percent:>3} %  {human_pos} lines  {per_sec}  {eta} left";
+                let template = format!(
+                    "{{prefix}}{{bar:30}} {{percent:>3}} %  {{human_pos}} {unit}  {{per_sec}}  {{eta}} left"
+                );
                 // Only a mistake in the template above makes it invalid; indicatif's default style is then good enough.
-                if let Ok(style) = ProgressStyle::with_template(template) {
+                if let Ok(style) = ProgressStyle::with_template(&template) {
                     bar.set_style(style);
                 }
                 bar
             }
             _ => ProgressBar::hidden(),
         };
-        if kind == StageKind::Part {
+        if matches!(kind, StageKind::Part | StageKind::Work(_)) {
             bar.set_prefix(format!("{title}  "));
         }
         let now = Instant::now();
@@ -85,6 +88,7 @@ impl Progress for Stderr {
             lines,
             announces_end: lines && kind == StageKind::Whole,
             name: title.to_owned(),
+            unit,
             bar,
             start: now,
             last: now,
@@ -100,6 +104,8 @@ struct StageMeter {
     /// True if the end of the stage is printed as a line.
     announces_end: bool,
     name: String,
+    /// Name of what is counted.
+    unit: &'static str,
     bar: ProgressBar,
     start: Instant,
     last: Instant,
@@ -123,11 +129,12 @@ impl Meter for StageMeter {
             let seconds = self.start.elapsed().as_secs_f64();
             let rate = ((done - first) as f64 / seconds).max(1.0);
             print_note(format_args!(
-                "{}: {:.0} %, {} lines/s, {:.0} s left",
+                "{}: {:.0} %, {} {}/s, {:.0} s left",
                 self.name,
                 100.0 * done as f64 / total.max(1) as f64,
                 grouped(rate as u64),
-                (total - done) as f64 / rate
+                self.unit,
+                total.saturating_sub(done) as f64 / rate
             ));
         }
     }

@@ -164,7 +164,9 @@ pub(crate) fn too_coarse(layout: &Layout) -> Option<(usize, String)> {
     for (number, sheet) in layout.sheets.iter().enumerate().filter(|(_, sheet)| sheet.existing.is_some()) {
         // The smallest instance has the fewest texels.
         let extent = |r: &Rectangle| (r.max - r.min).element_product();
-        let smallest = sheet.rectangles.iter().map(|(_, r)| r).min_by(|a, b| extent(a).total_cmp(&extent(b)));
+        let rectangles =
+            sheet.instances.iter().filter_map(|&instance| layout.rectangle(instance, sheet.side));
+        let smallest = rectangles.min_by(|a, b| extent(a).total_cmp(&extent(b)));
         let Some(rectangle) = smallest else { continue };
         let mut owners: BTreeMap<(i64, i64), u32> = BTreeMap::new();
         let mut shared = 0;

@@ -22,6 +22,8 @@ pub(crate) struct Layout {
     pub(crate) sheets: Vec<Sheet>,
     /// Sheets of the front and the back of each mesh.
     pub(crate) of_mesh: Vec<[Option<usize>; 2]>,
+    /// Where the front and the back of each instance lie.
+    pub(crate) rectangles: Vec<[Option<Rectangle>; 2]>,
 }
 
 /// One side of those triangles of a mesh that have it, unfolded.
@@ -32,8 +34,8 @@ pub(crate) struct Sheet {
     pub(crate) side: Side,
     /// For each primitive of the mesh; without triangles if it does not have this side.
     pub(crate) primitives: Vec<Unfolded>,
-    /// Where the sheet lies for each instance of the mesh, with the index of the instance.
-    pub(crate) rectangles: Vec<(usize, Rectangle)>,
+    /// Instances of the mesh.
+    pub(crate) instances: Vec<usize>,
     /// Set of texture coordinates of the file that is the layout, if it is one.
     pub(crate) existing: Option<u32>,
 }
@@ -95,11 +97,36 @@ impl Layout {
         if *unfolded.charts.get(number)? == NO_CHART {
             return None;
         }
-        let (_, rectangle) = sheet.rectangles.iter().find(|(of, _)| *of == instance as usize)?;
+        let rectangle = self.rectangle(instance as usize, side)?;
         let size = DVec2::new(f64::from(self.width), f64::from(self.height));
         let [a, b, c] =
             unfolded.triangles[number].map(|v| rectangle.place(unfolded.coordinates[v as usize]) * size);
         let corners = objects.corners_in_source(scene, t)?.map(|p| a + p.x * (b - a) + p.y * (c - a));
         Some(OnPage { page: rectangle.page, corners })
+    }
+
+    /// Returns where a side of an instance lies.
+    pub(crate) fn rectangle(&self, instance: usize, side: Side) -> Option<Rectangle> {
+        self.rectangles[instance][usize::from(side == Side::Back)]
+    }
+}
+
+impl Unfolded {
+    /// Adds the triangles of another part of the primitive.
+    pub(crate) fn join(&mut self, other: Self) {
+        if self.triangles.is_empty() {
+            *self = other;
+            return;
+        }
+        let first = self.origin.len() as u32;
+        self.origin.extend(other.origin);
+        self.coordinates.extend(other.coordinates);
+        for (i, (triangle, chart)) in other.triangles.into_iter().zip(other.charts).enumerate() {
+            // Triangles of this part have other corners than the first vertex.
+            if triangle != [0; 3] {
+                self.triangles[i] = triangle.map(|v| v + first);
+                self.charts[i] = chart;
+            }
+        }
     }
 }

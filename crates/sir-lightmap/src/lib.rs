@@ -1,6 +1,7 @@
 //! Lightmaps.
 mod clip;
 mod compact;
+mod dark;
 mod dilate;
 mod document;
 mod encode;
@@ -27,7 +28,7 @@ pub use write::LightmapFiles;
 /// Step of making a lightmap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Meshes are unfolded into charts. Counts meshes, then triangles.
+    /// Meshes are unfolded into charts. Counts triangles.
     Unwrapping,
     /// Charts are placed on pages. The total is not known.
     Packing,

@@ -7,6 +7,7 @@ use sir_geom::{Rgb, Scene, Side, TriangleId};
 use sir_mesh::PatchMesh;
 use sir_view::{DisplayMesh, Exposure};
 
+use crate::dark::Dark;
 use crate::dilate::dilate;
 use crate::document::Document;
 use crate::error::LightmapError;
@@ -76,7 +77,9 @@ impl<'a> Lightmap<'a> {
         if !document.missing_images.is_empty() {
             notes.push(format!("images could not be read: {}", document.missing_images.join(", ")));
         }
-        let layout = unwrap(&document, &objects, &options, &mut notes, observer)?;
+        let dark = Dark::new(&objects, &solution, options.sides);
+        let is_dark = |mesh, side, primitive, number| dark.is_dark(mesh, side, primitive, number);
+        let layout = unwrap(&document, &objects, &is_dark, &options, &mut notes, observer)?;
         let display = DisplayMesh::new(scene, mesh, irradiance);
         let exposure = Exposure::Auto.factor_for_mesh(&display);
         let fill = |display: &DisplayMesh<'_>, irradiance: &[Rgb]| {

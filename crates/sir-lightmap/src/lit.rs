@@ -87,18 +87,17 @@ pub(crate) fn light(
         // Vertices are the same in all copies of the mesh; only the coordinates differ.
         let base = base_primitives(document, objects, number, &sheets)?;
         let mut is_first = true;
-        let is_own = expand || sheets.len() > 1 || front.rectangles.len() == 1;
+        let is_own = expand || sheets.len() > 1 || front.instances.len() == 1;
         let mut common = None;
-        for &(instance, rectangle) in &front.rectangles {
+        for &instance in &front.instances {
+            let Some(rectangle) = layout.rectangle(instance, Side::Front) else { continue };
             let of = &objects.instances[instance];
             let node = nodes.get(&instance).copied().unwrap_or(of.node);
             let index = match common {
                 Some(index) if !is_own => index,
                 _ => {
                     let places = |sheet: &Sheet| match is_own {
-                        true => {
-                            sheet.rectangles.iter().find(|(other, _)| *other == instance).map(|(_, r)| *r)
-                        }
+                        true => layout.rectangle(instance, sheet.side),
                         false => Some(Rectangle::whole(0)),
                     };
                     let lightmap = is_own.then_some((rectangle.page, set));

@@ -33,7 +33,7 @@ pub(crate) fn add(document: &mut Document, objects: &mut Objects, scene: &Scene,
         let name = &scene.groups()[group.index()];
         let mut mesh = Mesh { index: 0, name: name.clone(), primitives: Vec::new() };
         let (mut primitives, mut number) = (Vec::new(), 0);
-        let instance = objects.instances.len() as u32;
+        let instance = (objects.instances.len() + nodes.len()) as u32;
         for (material, triangles) in of_materials {
             for &t in &triangles {
                 objects.places[t.index()] = Place { instance, triangle: number };

@@ -31,7 +31,7 @@ const BEND: f64 = 1.0;
 const LOOSE: f64 = 1e-3;
 
 /// Largest change of a texel in standard errors.
-const MAX_CHANGE: f64 = 2.0;
+const MAX_CHANGE: f64 = 3.0;
 
 /// Number of steps of the conjugate gradient method.
 const STEPS: usize = 60;
@@ -78,7 +78,8 @@ fn pairs(objects: &Objects, layout: &Layout) -> Vec<[EdgeSide; 2]> {
     let mut edges: BTreeMap<(u32, u32), Vec<EdgeSide>> = BTreeMap::new();
     for sheet in &layout.sheets {
         let outlines = outlines(sheet);
-        for &(instance, rectangle) in &sheet.rectangles {
+        for &instance in &sheet.instances {
+            let Some(rectangle) = layout.rectangle(instance, sheet.side) else { continue };
             let of = &objects.instances[instance];
             let mesh = &objects.meshes[of.mesh];
             // Welding each vertex once keeps the tree small.

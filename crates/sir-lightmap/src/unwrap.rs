@@ -1,6 +1,7 @@
 //! Unwrapping: unfolds meshes into charts, and places them on pages.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use glam::{DVec2, DVec3};
 use sir_geom::Side;
@@ -23,8 +24,11 @@ const FILLED: f64 = 0.4;
 /// Cosine of the largest bend of a surface across which light continues: 30°, as in pictures.
 const SMOOTH: f64 = 0.866;
 
+/// Factor of the size of surfaces without light, of which a texel shows all that there is.
+const DARK_SCALE: f32 = 0.01;
+
 /// Number of attempts to find the density for several pages.
-const ATTEMPTS: usize = 6;
+const ATTEMPTS: usize = 8;
 
 /// A sheet before it is unfolded: positions and triangles of one side of a mesh.
 struct Input {
@@ -42,57 +46,92 @@ struct Input {
     /// Instances of the mesh, and their sizes relative to the first.
     instances: Vec<usize>,
     scales: Vec<f32>,
+    /// Factor of its size on the page.
+    scale: f32,
     /// Layout of the file, if it is used.
-    existing: Option<Existing>,
+    existing: Option<Rc<Existing>>,
 }
 
 /// Unfolds all meshes. Adds to `notes` why layouts of the file are not used.
 pub(crate) fn unwrap(
     document: &Document,
     objects: &Objects,
+    is_dark: &IsDark<'_>,
     options: &LightmapOptions,
     notes: &mut Vec<String>,
     observer: &dyn Observer,
 ) -> Result<Layout, LightmapError> {
-    let mut inputs = Vec::new();
+    let mut existing = Vec::with_capacity(objects.meshes.len());
     for (number, mesh) in objects.meshes.iter().enumerate() {
-        let split = options.sides == LightmapSides::Split;
-        for side in [Side::Front, Side::Back] {
-            let has_side = |two_sided: bool| side == Side::Front || split && two_sided;
-            if mesh.primitives.iter().any(|p| has_side(p.is_two_sided) && !p.triangles.is_empty()) {
-                inputs.push(Input::new(objects, number, side, has_side));
-            }
-        }
-        if !split || !mesh.primitives.iter().any(|p| p.is_two_sided) {
-            if let Some(input) = inputs.last_mut() {
-                let area = objects.instances[input.instances[0]].area;
-                input.existing = existing::of_mesh(document, mesh, area, notes)?;
-            }
-        }
+        let is_split =
+            options.sides == LightmapSides::Split && mesh.primitives.iter().any(|p| p.is_two_sided);
+        let first = objects.instances.iter().find(|instance| instance.mesh == number);
+        existing.push(match first.filter(|_| !is_split) {
+            Some(instance) => existing::of_mesh(document, mesh, instance.area, notes)?.map(Rc::new),
+            None => None,
+        });
     }
     loop {
-        let layout = pack(&inputs, options, observer)?;
+        let layout = pack(objects, &existing, is_dark, options, observer)?;
         let Some((sheet, why)) = existing::too_coarse(&layout) else { return Ok(layout) };
         let mesh = layout.sheets[sheet].mesh;
         notes.push(existing::note(&objects.meshes[mesh], &why));
-        let of_mesh = inputs.iter_mut().filter(|input| input.mesh == mesh);
-        of_mesh.for_each(|input| input.existing = None);
+        existing[mesh] = None;
     }
+}
+
+/// Returns true if a side of a triangle of a mesh has no light: of the mesh, the primitive and the number in it.
+pub(crate) type IsDark<'a> = dyn Fn(usize, Side, usize, usize) -> bool + 'a;
+
+/// Collects the sides of all meshes. With `is_dark`, those without light are apart, where a mesh has one instance.
+fn inputs(
+    objects: &Objects,
+    existing: &[Option<Rc<Existing>>],
+    is_dark: Option<&IsDark<'_>>,
+    options: &LightmapOptions,
+) -> Vec<Input> {
+    let mut inputs = Vec::new();
+    for (number, mesh) in objects.meshes.iter().enumerate() {
+        let instances: Vec<usize> =
+            (0..objects.instances.len()).filter(|&i| objects.instances[i].mesh == number).collect();
+        for side in [Side::Front, Side::Back] {
+            let is_split = options.sides == LightmapSides::Split;
+            let has_side =
+                |primitive: usize| side == Side::Front || is_split && mesh.primitives[primitive].is_two_sided;
+            let is_apart = is_dark.filter(|_| instances.len() == 1 && existing[number].is_none());
+            let lit = |p: usize, t: usize| {
+                has_side(p) && !is_apart.is_some_and(|is_dark| is_dark(number, side, p, t))
+            };
+            let dark = |p: usize, t: usize| {
+                has_side(p) && is_apart.is_some_and(|is_dark| is_dark(number, side, p, t))
+            };
+            let of = |has: &dyn Fn(usize, usize) -> bool| {
+                Input::new(objects, number, side, instances.clone(), has)
+            };
+            let lit = Input { existing: existing[number].clone(), ..of(&lit) };
+            let dark = Input { scale: DARK_SCALE, ..of(&dark) };
+            inputs.extend([lit, dark].into_iter().filter(|input| !input.triangles.is_empty()));
+        }
+    }
+    inputs
 }
 
 /// Places all sheets on pages.
 fn pack(
-    inputs: &[Input],
+    objects: &Objects,
+    existing: &[Option<Rc<Existing>>],
+    is_dark: &IsDark<'_>,
     options: &LightmapOptions,
     observer: &dyn Observer,
 ) -> Result<Layout, LightmapError> {
-    let sizes = Sizes { inputs, options, observer };
     let one_page = match options.texels_per_meter {
         Some(texels) => Density::Fixed { texels_per_unit: texels as f32, page_size: None },
         None => Density::Auto { page_size: options.size },
     };
     let fits = |atlas: &Atlas| atlas.page_count <= 1 && atlas.width.max(atlas.height) <= options.size;
     if options.texels_per_meter.is_some() || options.pages == 1 {
+        let inputs = inputs(objects, existing, Some(is_dark), options);
+        let sizes = Sizes { objects, inputs: &inputs, options, observer };
         match sizes.generate(one_page, false) {
             Ok(atlas) if fits(&atlas) => return Ok(sizes.layout(&atlas)),
             Ok(atlas) if options.texels_per_meter.is_none() => return Err(sizes.too_small(&atlas, None)),
@@ -101,6 +140,8 @@ fn pack(
             Err(error) => return Err(sizes.error(error)),
         }
     }
+    let inputs = inputs(objects, existing, None, options);
+    let sizes = Sizes { objects, inputs: &inputs, options, observer };
     if let Some(texels) = options.texels_per_meter {
         let density = Density::Fixed { texels_per_unit: texels as f32, page_size: Some(options.size) };
         let atlas = sizes.generate(density, true).map_err(|error| sizes.error(error))?;
@@ -110,28 +151,38 @@ fn pack(
     let area: f64 = inputs.iter().map(Input::area).sum();
     let texels = f64::from(options.pages) * f64::from(options.size) * f64::from(options.size);
     let mut density = (0.8 * texels / area.max(f64::MIN_POSITIVE)).sqrt();
-    let mut last = None;
+    let (mut fitting, mut too_high, mut refusal) = (None, f64::INFINITY, None);
     for _ in 0..ATTEMPTS {
         let fixed = Density::Fixed { texels_per_unit: density as f32, page_size: Some(options.size) };
         match sizes.generate(fixed, true) {
-            Ok(atlas) if atlas.page_count <= options.pages => return Ok(sizes.layout(&atlas)),
+            Ok(atlas) if atlas.page_count <= options.pages => {
+                fitting = Some((density, atlas));
+            }
             Ok(atlas) => {
-                let over = f64::from(atlas.page_count) / f64::from(options.pages);
-                density *= (0.98 / over.sqrt()).min(0.93);
-                last = Some(sizes.too_small(&atlas, Some(atlas.page_count)));
+                too_high = density;
+                refusal = Some(sizes.too_small(&atlas, Some(atlas.page_count)));
             }
             Err(error @ (Error::ChartTooLarge { .. } | Error::AtlasTooLarge { .. })) => {
-                density *= 0.75;
-                last = Some(sizes.error(error));
+                too_high = density;
+                refusal = Some(sizes.error(error));
             }
             Err(error) => return Err(sizes.error(error)),
         }
+        density = match &fitting {
+            Some((low, _)) if too_high < 1.03 * low => break,
+            Some((low, _)) => (low * too_high).sqrt().min(1.2 * low),
+            None => 0.8 * density,
+        };
     }
-    Err(last.unwrap_or(LightmapError::Stopped))
+    match fitting {
+        Some((_, atlas)) => Ok(sizes.layout(&atlas)),
+        None => Err(refusal.unwrap_or(LightmapError::Stopped)),
+    }
 }
 
 /// Sheets that are placed on pages.
 struct Sizes<'a> {
+    objects: &'a Objects,
     inputs: &'a [Input],
     options: &'a LightmapOptions,
     observer: &'a dyn Observer,
@@ -159,6 +210,7 @@ impl Sizes<'_> {
                     None => MeshInput {
                         face_materials: Some(&input.primitives),
                         seams: Some(&input.creases),
+                        scale: input.scale,
                         instance_scales: scales,
                         ..MeshInput::new(&input.positions, &input.indices)
                     },
@@ -168,54 +220,70 @@ impl Sizes<'_> {
         let options =
             |packing| Options { density, padding: self.options.padding, packing, ..Options::default() };
         let report = |progress: uvunwrap::Progress| {
-            let step = match progress.stage {
-                Stage::Segmenting | Stage::Parameterizing => Step::Unwrapping,
-                _ => Step::Packing,
-            };
-            self.observer.progress(step, progress.done as u64, progress.total.map(|total| total as u64))
+            let total = progress.total.map(|total| total as u64);
+            match progress.stage {
+                // Meshes are counted first, in little time.
+                Stage::Segmenting => self.observer.progress(Step::Unwrapping, 0, None),
+                Stage::Parameterizing => {
+                    self.observer.progress(Step::Unwrapping, progress.done as u64, total)
+                }
+                _ => self.observer.progress(Step::Packing, progress.done as u64, None),
+            }
         };
         let triangles: usize = self.inputs.iter().map(|input| input.triangles.len()).sum();
         let packing = if triangles > 10 * MANY_CHARTS as usize { Packing::Fast } else { Packing::Shape };
-        uvunwrap::generate_with_progress(&meshes, &options(packing), report)
+        let generate = || uvunwrap::generate_with_progress(&meshes, &options(packing), report);
+        // Without a pool, all processors would work.
+        match rayon::ThreadPoolBuilder::new().num_threads(self.options.threads.max(1)).build() {
+            Ok(pool) => pool.install(generate),
+            Err(_) => generate(),
+        }
     }
 
     /// Returns the layout of an atlas.
     fn layout(&self, atlas: &Atlas) -> Layout {
-        let meshes = self.inputs.iter().map(|input| input.mesh + 1).max().unwrap_or(0);
+        let Objects { meshes, instances, .. } = self.objects;
         let mut layout = Layout {
             width: atlas.width,
             height: atlas.height,
             pages: atlas.page_count.max(1),
             texels_per_meter: f64::from(atlas.texels_per_unit),
-            charts: 0,
+            charts: atlas.chart_count,
             sheets: Vec::with_capacity(self.inputs.len()),
-            of_mesh: vec![[None; 2]; meshes],
+            of_mesh: vec![[None; 2]; meshes.len()],
+            rectangles: vec![[None; 2]; instances.len()],
         };
         for (input, output) in self.inputs.iter().zip(&atlas.meshes) {
-            let rectangles = match &output.instances[..] {
-                [] => vec![(input.instances[0], Rectangle::whole(0))],
-                all => {
-                    let of = |(&instance, place): (&usize, &uvunwrap::InstanceRect)| {
-                        let [min, max] = [place.min, place.max].map(|p| DVec2::from_array(p.map(f64::from)));
-                        (instance, Rectangle { page: place.page, min, max })
-                    };
-                    input.instances.iter().zip(all).map(of).collect()
-                }
-            };
+            let mesh = &meshes[input.mesh];
             let primitives = match &input.existing {
                 Some(existing) => existing.unfolded(output, &mut layout.charts),
-                None => input.unfolded(output),
+                None => input.unfolded(mesh, output),
             };
-            layout.of_mesh[input.mesh][usize::from(input.side == Side::Back)] = Some(layout.sheets.len());
+            let back = usize::from(input.side == Side::Back);
+            if let Some(sheet) = layout.of_mesh[input.mesh][back] {
+                // The part without light joins the other one.
+                let sheet: &mut Sheet = &mut layout.sheets[sheet];
+                sheet.primitives.iter_mut().zip(primitives).for_each(|(of, dark)| of.join(dark));
+                continue;
+            }
+            let rectangles = output.instances.iter().map(|place| {
+                let [min, max] = [place.min, place.max].map(|p| DVec2::from_array(p.map(f64::from)));
+                Rectangle { page: place.page, min, max }
+            });
+            let rectangles =
+                if output.instances.is_empty() { vec![Rectangle::whole(0)] } else { rectangles.collect() };
+            for (&instance, rectangle) in input.instances.iter().zip(rectangles) {
+                layout.rectangles[instance][back] = Some(rectangle);
+            }
+            layout.of_mesh[input.mesh][back] = Some(layout.sheets.len());
             layout.sheets.push(Sheet {
                 mesh: input.mesh,
                 side: input.side,
                 primitives,
-                rectangles,
+                instances: input.instances.clone(),
                 existing: input.existing.as_ref().map(|existing| existing.set),
             });
         }
-        layout.charts += atlas.chart_count;
         layout
     }
 
@@ -262,10 +330,15 @@ impl Sizes<'_> {
 }
 
 impl Input {
-    /// Collects one side of a mesh. Its positions are those of the first instance in the scene, relative to their middle.
-    fn new(objects: &Objects, mesh: usize, side: Side, has_side: impl Fn(bool) -> bool) -> Self {
-        let instances: Vec<usize> =
-            (0..objects.instances.len()).filter(|&i| objects.instances[i].mesh == mesh).collect();
+    /// Collects one side of those triangles of a mesh for which `has` is true, by primitive and number. Positions are those
+    /// of the first instance in the scene, relative to their middle.
+    fn new(
+        objects: &Objects,
+        mesh: usize,
+        side: Side,
+        instances: Vec<usize>,
+        has: &dyn Fn(usize, usize) -> bool,
+    ) -> Self {
         let first = &objects.instances[instances[0]];
         let relative = |&i: &usize| (objects.instances[i].area / first.area).sqrt() as f32;
         let usable = |scale: f32| if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
@@ -280,6 +353,7 @@ impl Input {
             first_vertices: Vec::new(),
             scales: instances.iter().map(|i| usable(relative(i))).collect(),
             instances,
+            scale: 1.0,
             existing: None,
         };
         let of: &Mesh = &objects.meshes[mesh];
@@ -287,14 +361,16 @@ impl Input {
         for (number, primitive) in (0u32..).zip(&of.primitives) {
             let start = input.positions.len() as u32;
             input.first_vertices.push(start);
-            if !has_side(primitive.is_two_sided) {
+            let own = (0u32..).zip(&primitive.triangles).filter(|(i, _)| has(number as usize, *i as usize));
+            let own: Vec<(u32, &[u32; 3])> = own.collect();
+            if own.is_empty() {
                 continue;
             }
             input.positions.extend(primitive.positions.iter().map(|p| {
                 let p = first.to_world.transform_vector3(DVec3::from_array(*p) - middle).as_vec3();
                 if p.is_finite() { p.to_array() } else { [0.0; 3] }
             }));
-            for (i, &[a, b, c]) in (0u32..).zip(&primitive.triangles) {
+            for (i, &[a, b, c]) in own {
                 // Seen from the back, the corners run the other way.
                 let corners = if side == Side::Front { [a, b, c] } else { [a, c, b] };
                 input.indices.extend(corners.map(|v| v + start));
@@ -318,12 +394,16 @@ impl Input {
     }
 
     /// Returns the primitives of the sheet from the output of the unwrapper.
-    fn unfolded(&self, output: &OutputMesh) -> Vec<Unfolded> {
-        let mut all: Vec<Unfolded> = self.first_vertices.iter().map(|_| Unfolded::default()).collect();
+    fn unfolded(&self, mesh: &Mesh, output: &OutputMesh) -> Vec<Unfolded> {
+        let mut all: Vec<Unfolded> = mesh.primitives.iter().map(|_| Unfolded::default()).collect();
         let mut known: Vec<HashMap<u32, u32>> = vec![HashMap::new(); all.len()];
-        for (&(primitive, _), corners) in self.triangles.iter().zip(output.indices.chunks_exact(3)) {
+        for (&(primitive, number), corners) in self.triangles.iter().zip(output.indices.chunks_exact(3)) {
             let primitive = primitive as usize;
             let (of, known) = (&mut all[primitive], &mut known[primitive]);
+            if of.triangles.is_empty() {
+                let count = mesh.primitives[primitive].triangles.len();
+                (of.triangles, of.charts) = (vec![[0; 3]; count], vec![NO_CHART; count]);
+            }
             let [a, b, c] = [corners[0], corners[1], corners[2]].map(|v| {
                 *known.entry(v).or_insert_with(|| {
                     let vertex = &output.vertices[v as usize];
@@ -332,11 +412,12 @@ impl Input {
                     of.origin.len() as u32 - 1
                 })
             });
-            of.triangles.push(if self.side == Side::Front { [a, b, c] } else { [a, c, b] });
+            let number = number as usize;
+            of.triangles[number] = if self.side == Side::Front { [a, b, c] } else { [a, c, b] };
             let chart = output.vertices[corners[0] as usize].chart.unwrap_or(NO_CHART);
             let [a, b, c] = [a, b, c].map(|v| of.coordinates[v as usize]);
             let is_collapsed = a == b || b == c || c == a;
-            of.charts.push(if is_collapsed { NO_CHART } else { chart });
+            of.charts[number] = if is_collapsed { NO_CHART } else { chart };
         }
         all
     }

@@ -24,7 +24,7 @@ pub trait Progress: Debug + Send + Sync {
         let _ = text;
     }
 
-    /// Begins a stage of about `total` lines. The returned meter is dropped when the stage ends.
+    /// Begins a stage of about `total` lines, or of things that `kind` names. The returned meter is dropped when the stage ends.
     fn begin(&self, title: &str, total: u64, kind: StageKind) -> Box<dyn Meter> {
         let _ = (title, total, kind);
         Box::new(NoProgress)
@@ -40,11 +40,13 @@ pub enum StageKind {
     Part,
     /// The only stage. It has been announced by a message.
     Only,
+    /// Work without lines, such as on a lightmap. Counts things of this name.
+    Work(&'static str),
 }
 
 /// Observer of one stage.
 pub trait Meter: Send {
-    /// Receives the number of lines traced so far and in total, a few times a second.
+    /// Receives the number of lines traced (or of things done) so far and in total, a few times a second.
     fn progress(&mut self, done: u64, total: u64);
 }
 

@@ -74,7 +74,8 @@ impl Observer for Watch<'_> {
         // A step without a known total has no meter, but ends the one before.
         if let Ok(mut state) = self.state.lock() {
             if state.as_ref().is_none_or(|(known, _)| *known != step) {
-                let meter = self.saver.progress.begin(title(step), total.unwrap_or(0), StageKind::Part);
+                let (title, unit) = titles(step);
+                let meter = self.saver.progress.begin(title, total.unwrap_or(0), StageKind::Work(unit));
                 *state = Some((step, meter));
             }
             if let (Some((_, meter)), Some(total)) = (state.as_mut(), total) {
@@ -85,11 +86,12 @@ impl Observer for Watch<'_> {
     }
 }
 
-fn title(step: Step) -> &'static str {
+/// Returns the title of a step, and what it counts.
+fn titles(step: Step) -> (&'static str, &'static str) {
     match step {
-        Step::Unwrapping => "Lightmap: unfolding surfaces",
-        Step::Packing => "Lightmap: placing charts",
-        Step::Filling => "Lightmap: filling texels",
-        Step::Seams => "Lightmap: fitting seams",
+        Step::Unwrapping => ("Lightmap: unfolding surfaces", "triangles"),
+        Step::Packing => ("Lightmap: placing charts", "attempts"),
+        Step::Filling => ("Lightmap: filling texels", "sides of patches"),
+        Step::Seams => ("Lightmap: fitting seams", "steps"),
     }
 }
