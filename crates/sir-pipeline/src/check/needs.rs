@@ -8,7 +8,7 @@ use sir_radiosity::{Model, Quanta, Repeats};
 use crate::error::Error;
 use crate::format::bytes;
 use crate::memory;
-use crate::plan::{Action, Output, Pipeline, Stage};
+use crate::plan::{Action, Lightmap, Output, Pipeline, Stage};
 use crate::prepare::cameras::chosen_camera;
 use crate::progress::Progress;
 use crate::run::save::{is_denoised, settings};
@@ -33,8 +33,32 @@ const SURFACE_BYTES: usize = 200;
 /// Bytes per side for a page while it is coded, and for its coded light: measured, rounded up.
 const PAGE_BYTES: usize = 250;
 
+/// Bytes per texel of a lightmap while its files are written, and those of the direct light: measured, rounded up.
+const TEXEL_BYTES: [usize; 2] = [90, 45];
+
+/// Bytes per side of a triangle while surfaces are unfolded: measured, rounded up.
+const UNFOLD_BYTES: usize = 1_000;
+
+/// Share of a page that charts fill, at least.
+const FILLED: f64 = 0.4;
+
 /// Bytes per pixel of the largest image: colors while it is rendered and when it is finished, and its file.
 const PIXEL_BYTES: usize = 2 * 24 + 16;
+
+/// Returns the memory that a lightmap needs in addition to a display mesh \[bytes\].
+fn lightmap_bytes(lightmap: &Lightmap, Model { scene, mesh, .. }: &Model) -> usize {
+    let of_page = f64::from(lightmap.size).powi(2);
+    let texels = match lightmap.texels_per_meter {
+        Some(texels) => {
+            let sides = 2.0 * scene.total_area() * texels * texels / FILLED;
+            of_page * (sides / of_page).ceil()
+        }
+        None => f64::from(lightmap.pages) * of_page,
+    };
+    let per_texel = TEXEL_BYTES[0] + usize::from(lightmap.direct) * TEXEL_BYTES[1];
+    let sides: usize = scene.triangle_ids().map(|t| mesh.sides_of(t).len()).sum();
+    texels as usize * per_texel + sides * UNFOLD_BYTES
+}
 
 /// Reports the peak memory of a run. Returns an error if it exceeds the available memory.
 pub(crate) fn check_memory(model: &Model, pipeline: &Pipeline, progress: &dyn Progress) -> Result<(), Error> {
@@ -63,9 +87,8 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
     let has_lines = |stage: &Stage| stage.action.lines() > 0;
     let stages = pipeline.stages.iter().zip(pipeline.stages.iter().skip(1).map(Some).chain([None]));
     let used = stages.filter(|(stage, next)| has_lines(stage) && !next.is_some_and(has_lines)).count();
-    // A page shows the direct light, too.
+    let used = used + usize::from(pipeline.shows_direct());
     let page = usize::from(pipeline.has_page());
-    let used = used + page;
     // The pilot of a `Solve` keeps its first shot, before anything is summed.
     let pilot = usize::from(pipeline.flat_stages().any(|stage| matches!(stage.action, Action::Solve(_))));
     let tracing = LINES_BYTES + (pilot * POWER_BYTES).max(used * Repeats::BYTES_PER_SIDE);
@@ -91,17 +114,21 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
         }
         _ => None,
     });
+    let lightmaps = pipeline.outputs().filter_map(|output| match output {
+        Output::Lightmap(lightmap) => Some(lightmap_bytes(lightmap, model)),
+        _ => None,
+    });
     let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles()) + scene.appearance_bytes()),
         ("patches", mesh.bytes() + mesh.paint_bytes() + surfaces * SURFACE_BYTES * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing + sums.sum::<usize>()),
         (
-            "pictures, lit meshes and pages",
+            "pictures, lit meshes, lightmaps and pages",
             sides * displays.min(1) * solution
                 + sides * displays * DISPLAY_BYTES[surfaces]
                 + sides * page * PAGE_BYTES
-                + pixels.max().unwrap_or(0) * PIXEL_BYTES,
+                + (pixels.max().unwrap_or(0) * PIXEL_BYTES).max(lightmaps.max().unwrap_or(0)),
         ),
     ];
     // The last two parts are not needed at the same time.
