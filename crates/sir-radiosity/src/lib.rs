@@ -71,6 +71,7 @@ mod local_shot;
 mod model;
 mod patch_side;
 mod power;
+mod probes;
 mod received;
 mod repeated_sums;
 mod repeated_totals;
@@ -103,6 +104,10 @@ pub use local_shot::LocalShot;
 pub use model::{Model, ModelError};
 pub use patch_side::PatchSide;
 pub use power::{POWERS, PowerUnit, Quanta};
+pub use probes::{
+    COSINE_FACTORS, HARMONICS, ProbeGatherer, ProbeMeasurement, ProbeStage, ProbeTask, RepeatedProbes,
+    harmonics, share_of_backs, sum_of_harmonics,
+};
 pub use received::Received;
 pub use repeated_totals::RepeatedTotals;
 pub use repeats::{MIN_REPEATS, Repeats};
