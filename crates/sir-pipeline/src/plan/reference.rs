@@ -9,6 +9,7 @@ use crate::plan::multipath::{Multipath, Replicas};
 use crate::plan::panel::Panel;
 use crate::plan::pipeline::Content;
 use crate::plan::point::{Lambertian, Point, Spot};
+use crate::plan::probes::Probes;
 use crate::plan::save::{Gltf, Report, Table};
 use crate::plan::sensors::{Grid, Plane, SensorPoint, Sensors};
 use crate::plan::sky::{Cie, Environment, Sky};
@@ -44,6 +45,7 @@ pub fn field_tables() -> Vec<(&'static str, String)> {
         table::<SensorPoint>(),
         table::<Grid>(),
         table::<Plane>(),
+        table::<Probes>(),
         table::<Image>(),
         table::<Camera>(),
         table::<Gltf>(),

@@ -49,6 +49,9 @@ struct Sums {
 }
 
 impl RepeatedMeasurements {
+    /// Memory of a sensor in a run \[bytes\]: its sums, the measurement of a repeat, and the means.
+    pub const BYTES_PER_SENSOR: usize = size_of::<Sums>() + 4 * size_of::<Measurement>();
+
     /// Returns the sums over no repeats.
     #[must_use]
     pub fn new(sensors: usize) -> Self {
