@@ -235,19 +235,22 @@ fn a_target_error_ends_early() {
 fn backs_are_seen_inside_solids_and_behind_walls() {
     let model = room();
     let mut tracer = model.accel.tracer();
-    let mut share = |position| share_of_backs(position, &model, &mut tracer);
+    let mut share = |position| share_of_backs(position, 1e-3, &model, &mut tracer);
     // In the room only the lamp shows its back, from above.
     assert_eq!(share(v(3.5, 4.0, 1.0)), Some(0.0));
     assert!(share(v(1.5, 1.5, 2.95)).unwrap() > 0.4);
     // Right behind a wall, nearly half of the view is the back of it; far away, little.
     assert!(share(v(-0.1, 2.5, 1.5)).unwrap() > 0.4);
     assert!(share(v(-100.0, 2.5, 1.5)).unwrap() < 0.05);
-    for on_a_surface in [v(0.0, 2.5, 1.5), v(4.0, 5.0, 3.0), v(2.0, 0.0, 0.0), v(1.5, 1.5, 2.9)] {
+    let corners =
+        (0..8).map(|i| v(4.0, 5.0, 3.0) * v(f64::from(i % 2), f64::from(i / 2 % 2), f64::from(i / 4)));
+    let others = [v(0.0, 2.5, 1.5), v(2.0, 0.0, 0.0), v(1.5, 1.5, 2.9), v(1.0, 1.0, 2.9), v(4.0, 1.5, 0.0)];
+    for on_a_surface in corners.chain(others) {
         assert_eq!(share(on_a_surface), None, "{on_a_surface}");
     }
     let cube = model_of_cube();
     let mut tracer = cube.accel.tracer();
-    assert_eq!(share_of_backs(v(0.02, -0.03, 0.01), &cube, &mut tracer), Some(1.0));
+    assert_eq!(share_of_backs(v(0.02, -0.03, 0.01), 1e-3, &cube, &mut tracer), Some(1.0));
 }
 
 fn model_of_cube() -> Model {

@@ -10,6 +10,9 @@ use crate::plan::Probes;
 /// Maximum number of probes. They need about 0.6 GB, a file of some 200 MB, and the time of six sensors each.
 const MAX_PROBES: f64 = 1e5;
 
+/// Least distance of a valid probe from surfaces, in spacings.
+const CLEARANCE: f64 = 1e-3;
+
 /// Probes in the centers of the cells of a box. The first coordinate of their positions varies fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbeGrid {
@@ -47,13 +50,10 @@ impl ProbeGrid {
         let size = max - min;
         let cells = (size / probes.spacing).round().max(DVec3::ONE);
         if !(cells.element_product() <= MAX_PROBES) {
-            let message = format!(
-                "a grid of {:.0} by {:.0} by {:.0} probes is too fine: there may be {}",
-                cells.x,
-                cells.y,
-                cells.z,
-                grouped(MAX_PROBES as u64)
-            );
+            let digits = |n: f64| if n < 1e9 { format!("{n:.0}") } else { format!("{n:.1e}") };
+            let [x, y, z] = cells.to_array().map(digits);
+            let most = grouped(MAX_PROBES as u64);
+            let message = format!("a grid of {x} by {y} by {z} probes is too fine: there may be {most}");
             // The cube root of what is too much, with two digits, rounded up.
             let least = (size.element_product() / MAX_PROBES).cbrt();
             let help = if least > probes.spacing {
@@ -73,8 +73,8 @@ impl ProbeGrid {
             valid: Vec::new(),
             max_backs: probes.backs,
         };
-        let mut tracer = model.accel.tracer();
-        let backs = |i: usize| share_of_backs(grid.position(i), model, &mut tracer);
+        let (mut tracer, clearance) = (model.accel.tracer(), probes.spacing * CLEARANCE);
+        let backs = |i: usize| share_of_backs(grid.position(i), clearance, model, &mut tracer);
         grid.backs = (0..counts.iter().product()).map(backs).collect();
         grid.valid = (0..grid.len()).filter(|&i| grid.is_valid(i)).map(|i| grid.position(i)).collect();
         if grid.valid.is_empty() {

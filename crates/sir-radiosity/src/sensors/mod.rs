@@ -17,7 +17,6 @@ mod unmet;
 
 pub(crate) use ray_set::{Gathering, RayLight, RaySet};
 pub(crate) use repeated::Spread;
-pub(crate) use start::is_on_surface;
 pub(crate) use unmet::{Brightness, Extremes, Squares};
 
 pub use gatherer::Gatherer;

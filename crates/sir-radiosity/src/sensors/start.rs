@@ -98,11 +98,6 @@ fn reach(contact_distance: f64, position: DVec3) -> f64 {
     contact_distance.max(rounding.min(MAX_DEPTH * contact_distance))
 }
 
-/// Returns true if a position lies on a surface of the scene, within the distances of [`SensorStart`].
-pub(crate) fn is_on_surface(position: DVec3, model: &Model, tracer: &mut Tracer<'_>) -> bool {
-    above(position, DVec3::ZERO, model, tracer) != position
-}
-
 /// Returns a position next to `position` that is in front of all surfaces on which that lies.
 fn above(position: DVec3, direction: DVec3, model: &Model, tracer: &mut Tracer<'_>) -> DVec3 {
     // A plane through the position is hit by at least one of three perpendicular lines not far from it. They run along
