@@ -7,7 +7,7 @@ use crate::text::formats::{Vector, number, positive};
 use crate::text::reader::{Fields, Reader};
 use crate::text::record::record;
 
-/// Share of backs above which a probe is invalid: a probe behind a wall sees nearly a half.
+/// Share of backs above which a probe is invalid: a probe between a wall and a ground sees about a half.
 const MAX_BACKS: f64 = 0.25;
 
 record! {
@@ -20,7 +20,8 @@ record! {
         pub min: Option<DVec3> = Vector([0.0; 3]).optional("that of the `Focus`, or of the scene").unit("m");
         /// Opposite corner.
         pub max: Option<DVec3> = Vector([5.0, 3.0, 4.0]).optional("that of the `Focus`, or of the scene").unit("m");
-        /// Share of the view that backs of one-sided surfaces may take; a probe that sees more of them is invalid.
+        /// Share of the surfaces in view that may show the backs of one-sided surfaces. A probe that sees more of them is
+        /// invalid.
         pub backs: f64 = number(MAX_BACKS).with_range(|x| (0.0..=1.0).contains(&x), "from 0 to 1").or(MAX_BACKS);
     }
 }

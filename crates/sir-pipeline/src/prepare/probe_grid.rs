@@ -22,7 +22,8 @@ pub struct ProbeGrid {
     pub steps: DVec3,
     /// Numbers of probes along x, y and z.
     pub counts: [usize; 3],
-    /// Share of the view of each probe that backs of one-sided surfaces take; `None` if the probe lies on a surface.
+    /// Share of the surfaces in view of each probe that show the backs of one-sided surfaces; `None` if the probe lies on a
+    /// surface.
     pub backs: Vec<Option<f64>>,
     /// Positions of the valid probes \[m\], in order, at least one.
     pub valid: Vec<DVec3>,
@@ -164,8 +165,7 @@ mod tests {
         assert_eq!(grid.valid.len(), 5);
         assert_eq!(grid.backs.iter().filter(|share| share.is_none()).count(), 54);
         let outside = Probes { min: Some(DVec3::splat(-0.9)), max: Some(DVec3::splat(-0.1)), ..PROBES };
-        let grid = ProbeGrid::new(&outside, &model, None);
-        assert!(grid.is_err() || grid.unwrap().backs[0].unwrap() < 0.25);
+        assert!(ProbeGrid::new(&outside, &model, None).is_err());
     }
 
     #[test]

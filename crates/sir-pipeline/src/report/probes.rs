@@ -58,7 +58,7 @@ type Bands = [f32; 3];
 struct ProbeReport {
     position: [f64; 3],
     valid: bool,
-    /// Share of the view that backs take; `null` on a surface.
+    /// Share of the surfaces in view that show their backs; `null` on a surface.
     backs: Option<f64>,
     #[serde(flatten)]
     light: Option<ProbeLight>,

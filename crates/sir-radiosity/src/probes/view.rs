@@ -8,7 +8,7 @@ use sir_geom::Line;
 
 use crate::model::Model;
 
-/// Number of rays that decide how much of the view are backs of surfaces.
+/// Number of rays that find out how much of what a probe sees are backs of surfaces.
 const VIEW_RAYS: u32 = 256;
 
 /// Difference in azimuth of neighboring points of a spherical Fibonacci lattice \[rad\]: the golden angle.
@@ -17,10 +17,12 @@ const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 /// Least clearance, in steps of the grid of the acceleration structure, by which surfaces may be displaced.
 const MIN_STEPS: f64 = 8.0;
 
-/// Returns the share of all directions in which the back of a one-sided surface is seen from a position, by 256 fixed
-/// rays. Returns `None` if there is a surface within the distance `clearance` \[m\].
+/// Returns the share of the surfaces that are seen from a position, by solid angle, that show their one-sided backs to
+/// it: of 256 fixed rays, those that hit a back over those that hit anything; zero if none does. Returns `None` if there
+/// is a surface within the distance `clearance` \[m\].
 ///
-/// Inside a closed solid it is 1. In a room it is zero, except for surfaces that show their backs to the room.
+/// The share is 1 inside a closed solid and outside of a room without surroundings. In a room it is zero, except for
+/// surfaces that show their backs to the room.
 #[must_use]
 pub fn share_of_backs(
     position: DVec3,
@@ -39,11 +41,13 @@ pub fn share_of_backs(
         Ray::new(Line { origin: position, direction: DVec3::new(rho * cos, rho * sin, z) })
     };
     let rays: Vec<Ray> = (0..VIEW_RAYS).map(ray).collect();
-    let mut backs = 0;
+    let (mut hits, mut backs) = (0u32, 0u32);
     tracer.closest_each(&rays, |_, hit| {
-        backs += u32::from(hit.is_some_and(|hit| !model.scene.is_active(hit.triangle, hit.side)));
+        let Some(hit) = hit else { return };
+        hits += 1;
+        backs += u32::from(!model.scene.is_active(hit.triangle, hit.side));
     });
-    Some(f64::from(backs) / f64::from(VIEW_RAYS))
+    Some(f64::from(backs) / f64::from(hits.max(1)))
 }
 
 /// Returns true if a surface crosses an edge of an icosahedron with this radius around a position.
