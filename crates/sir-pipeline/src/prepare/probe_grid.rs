@@ -50,14 +50,14 @@ impl ProbeGrid {
         }
         let size = max - min;
         let cells = (size / probes.spacing).round().max(DVec3::ONE);
-        if !(cells.element_product() <= MAX_PROBES) {
+        if cells.element_product() > MAX_PROBES {
             let digits = |n: f64| if n < 1e9 { format!("{n:.0}") } else { format!("{n:.1e}") };
             let [x, y, z] = cells.to_array().map(digits);
             let most = grouped(MAX_PROBES as u64);
             let message = format!("a grid of {x} by {y} by {z} probes is too fine: there may be {most}");
             // The cube root of what is too much, with two digits, rounded up.
             let least = (size.element_product() / MAX_PROBES).cbrt();
-            let help = if least > probes.spacing {
+            let help = if least.is_finite() && least > probes.spacing {
                 format!("choose a `spacing` of at least {:.2} m, or a smaller box", 1.05 * least)
             } else {
                 "choose a larger `spacing`, or a smaller box".into()
