@@ -17,7 +17,7 @@
 //!   send while the lines of a batch are traced, so that any number of workers can share these lines.
 //! * [`Repeats`]: the mean of independent runs of these stages, with standard errors from their spread.
 //! * [`Solution`]: irradiance and its standard error per side of a patch. [`SensorStage`] measures irradiance at any
-//!   point.
+//!   point, [`ProbeStage`] also for any direction of the receiver, in spherical harmonics.
 //! * [`ViewFactorLines`]: the shares of the power of one group of surfaces that arrive at another.
 //!
 //! Power is counted in whole [`Quanta`]. Sums of integers are the same in any order, for any number of workers that

@@ -59,14 +59,22 @@ impl SensorsReport {
     pub fn in_short(&self, units: Units) -> String {
         let Self { mean, mean_error, minimum, maximum, uniformity, .. } = *self;
         let decimals = decimals(mean_error);
-        format!(
-            "mean {mean:.decimals$} ± {mean_error:.decimals$} {}, minimum {}, maximum {}, U0 = {}",
+        let mut text = format!(
+            "mean {mean:.decimals$} ± {mean_error:.decimals$} {}, minimum {}, maximum {}",
             units.irradiance(),
             significant(minimum),
             significant(maximum),
-            // Standards state two decimals; a small value would round to zero.
-            if uniformity < 0.1 { format!("{uniformity:.1e}") } else { format!("{uniformity:.2}") },
-        )
+        );
+        // Standards define uniformity on a plane, not for probes.
+        if self.invalid.is_none() {
+            // They state two decimals; a small value would round to zero.
+            text += &if uniformity < 0.1 {
+                format!(", U0 = {uniformity:.1e}")
+            } else {
+                format!(", U0 = {uniformity:.2}")
+            };
+        }
+        text
     }
 }
 
