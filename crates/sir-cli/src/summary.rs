@@ -57,7 +57,16 @@ pub fn summary(result: &RunResult) -> String {
     let sensors = report.stages.iter().filter_map(|stage| stage.sensors.as_ref());
     text.extend(sensors.map(|sensors| {
         let points = grouped(sensors.points as u64);
-        format!("{}: {points} points, {}\n", sensors.name, sensors.in_short(report.units))
+        let points = match sensors.invalid {
+            Some(invalid) => {
+                format!(
+                    "{points} valid probes of {}, over all directions",
+                    grouped((sensors.points + invalid) as u64)
+                )
+            }
+            None => format!("{points} points"),
+        };
+        format!("{}: {points}, {}\n", sensors.name, sensors.in_short(report.units))
     }));
     text + &error(report)
 }

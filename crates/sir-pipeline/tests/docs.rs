@@ -140,6 +140,8 @@ fn what_is_written_is_what_was_read() {
                 ]),
                 Subdivide({subdivide}), {lines},
                 Sensors(name: "a/desk", at: Plane(height: 0.75, spacing: 0.1)),
+                Sensors(name: "f", at: Probes(spacing: 2)),
+                Sensors(name: "g", at: Probes(spacing: 0.3, min: (0, -1, 0), max: (1, 1, 2.5), backs: 0.1), rays: 100),
                 Sensors(name: "b", at: Plane(height: -1, spacing: 3, border: 0.5, up: (0, 0, 2)), rays: 7, error: 0.01),
                 Sensors(name: "c", at: Grid(corner: (0, 0, 0), along: (1, 0, 0), across: (0, 1, 1), spacing: 0.3)),
                 Sensors(name: "d", at: Points([(position: (1, 2, 3), direction: (0, 3, 0.1))])),

@@ -130,7 +130,8 @@ fn any_number_of_workers_gets_the_same_bits() {
 /// Pipelines without a `Repeat` share their lines among repeats. Sensors and intermediate results are means, too.
 const SHARED: &str =
     "FirstShot(lines: 20_000), Save([Table(path: \"direct.npy\")]), Multipath(lines: 60_000),
-    Sensors(name: \"s\", at: Points([(position: (0.5, 0.5, 0.5), direction: (0, 1, 0))]), rays: 2_000)";
+    Sensors(name: \"s\", at: Points([(position: (0.5, 0.5, 0.5), direction: (0, 1, 0))]), rays: 2_000),
+    Sensors(name: \"p\", at: Probes(spacing: 0.5), rays: 200)";
 
 #[test]
 fn lines_are_shared_among_repeats_if_they_suffice() {

@@ -17,7 +17,7 @@
 //!   send while the lines of a batch are traced, so that any number of workers can share these lines.
 //! * [`Repeats`]: the mean of independent runs of these stages, with standard errors from their spread.
 //! * [`Solution`]: irradiance and its standard error per side of a patch. [`SensorStage`] measures irradiance at any
-//!   point.
+//!   point, [`ProbeStage`] also for any direction of the receiver, in spherical harmonics.
 //! * [`ViewFactorLines`]: the shares of the power of one group of surfaces that arrive at another.
 //!
 //! Power is counted in whole [`Quanta`]. Sums of integers are the same in any order, for any number of workers that
@@ -71,6 +71,7 @@ mod local_shot;
 mod model;
 mod patch_side;
 mod power;
+mod probes;
 mod received;
 mod repeated_sums;
 mod repeated_totals;
@@ -103,6 +104,10 @@ pub use local_shot::LocalShot;
 pub use model::{Model, ModelError};
 pub use patch_side::PatchSide;
 pub use power::{POWERS, PowerUnit, Quanta};
+pub use probes::{
+    COSINE_FACTORS, HARMONICS, ProbeGatherer, ProbeMeasurement, ProbeStage, ProbeTask, RepeatedProbes,
+    harmonics, share_of_backs, sum_of_harmonics,
+};
 pub use received::Received;
 pub use repeated_totals::RepeatedTotals;
 pub use repeats::{MIN_REPEATS, Repeats};

@@ -55,7 +55,7 @@ pub fn check(path: &Path) -> Result<Estimate, Error> {
 /// Same as [`prepare`].
 pub fn estimate(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Estimate, Error> {
     let prepared = prepare(pipeline, progress)?;
-    let (memory, peak_memory) = memory(&prepared.model, pipeline);
+    let (memory, peak_memory) = memory(&prepared, pipeline);
     // The trial below needs as much memory as the run.
     memory::refuse_more_than_available(needed_besides_model(&memory))?;
     let repeat = pipeline.stages.iter().find_map(|stage| match &stage.action {

@@ -3,13 +3,15 @@
 use glam::DVec3;
 use sir_geom::Rgb;
 use sir_mesh::{Per, SideSums, Subdivision};
-use sir_radiosity::{Model, Quanta, Repeats};
+use sir_radiosity::{Model, Quanta, RepeatedMeasurements, RepeatedProbes, Repeats};
 
 use crate::error::Error;
 use crate::format::bytes;
 use crate::memory;
 use crate::plan::{Action, Lightmap, Output, Pipeline, Stage};
 use crate::prepare::cameras::chosen_camera;
+use crate::prepare::layout::Placed;
+use crate::prepare::prepared::Prepared;
 use crate::progress::Progress;
 use crate::run::save::{is_denoised, settings};
 
@@ -61,8 +63,12 @@ fn lightmap_bytes(lightmap: &Lightmap, Model { scene, mesh, .. }: &Model) -> usi
 }
 
 /// Reports the peak memory of a run. Returns an error if it exceeds the available memory.
-pub(crate) fn check_memory(model: &Model, pipeline: &Pipeline, progress: &dyn Progress) -> Result<(), Error> {
-    let (parts, most) = memory(model, pipeline);
+pub(crate) fn check_memory(
+    prepared: &Prepared,
+    pipeline: &Pipeline,
+    progress: &dyn Progress,
+) -> Result<(), Error> {
+    let (parts, most) = memory(prepared, pipeline);
     progress.note(&format!("Memory: {} at most", bytes(most)));
     memory::refuse_more_than_available(needed_besides_model(&parts))
 }
@@ -74,8 +80,8 @@ pub(super) fn needed_besides_model(memory: &[(&'static str, usize)]) -> usize {
 }
 
 /// Returns the memory of a run per part, and its peak \[bytes\].
-pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
-    let Model { scene, mesh, accel } = model;
+pub(super) fn memory(prepared: &Prepared, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
+    let Model { scene, mesh, accel } = &prepared.model;
     let sides = mesh.side_count();
     let solution = 2 * size_of::<Rgb>();
     let has_surfaces = |stage: &Stage| match &stage.action {
@@ -98,13 +104,21 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
         let pieces = sides + 2 * scene.triangles().len();
         used * most * Repeats::BYTES_PER_PART + pieces * SideSums::BYTES_PER_PIECE
     });
+    // Measurements are kept until the end, beside the light.
+    let measured = prepared.placed.values().map(|placed| match placed {
+        Placed::Sensors(layout) => layout.sensors.len() * RepeatedMeasurements::BYTES_PER_SENSOR,
+        Placed::Probes(grid) => {
+            grid.len() * size_of::<Option<f64>>() + grid.valid.len() * RepeatedProbes::BYTES_PER_PROBE
+        }
+    });
+    let measured: usize = measured.sum();
     let shown = pipeline.outputs().any(|o| !matches!(o, Output::Table(_)));
     // EXR images need a display mesh of standard errors, too.
-    let measured =
+    let has_errors =
         pipeline.outputs().any(|o| o.path().extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")));
     // Denoised images need a display mesh of their own. Making it takes less memory than the mesh itself.
     let denoise = pipeline.outputs().any(is_denoised);
-    let displays = usize::from(shown) + usize::from(measured) + usize::from(denoise);
+    let displays = usize::from(shown) + usize::from(has_errors) + usize::from(denoise);
     let pixels = pipeline.outputs().filter_map(|o| match o {
         Output::Image(image) => {
             // Only its shape matters.
@@ -122,7 +136,7 @@ pub(super) fn memory(model: &Model, pipeline: &Pipeline) -> (Vec<(&'static str, 
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles()) + scene.appearance_bytes()),
         ("patches", mesh.bytes() + mesh.paint_bytes() + surfaces * SURFACE_BYTES * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
-        ("computing the light", sides * tracing + sums.sum::<usize>()),
+        ("computing the light", sides * tracing + sums.sum::<usize>() + measured),
         (
             "pictures, lit meshes, lightmaps and pages",
             sides * displays.min(1) * solution

@@ -5,13 +5,16 @@ use std::time::{Duration, Instant};
 use sir_lines::LocalLines;
 use sir_parallel::cores;
 use sir_radiosity::{
-    AnyOrder, BatchSettings, Batches, FirstShot, OneWorker, Points, SecondShot, ShadowRaySettings,
-    ShadowRays, ShotSettings, SolveError, Stage, StageTotals,
+    AnyOrder, BatchSettings, Batches, FirstShot, OneWorker, Points, ProbeStage, ProbeTask, SecondShot,
+    SensorStage, SensorTask, ShadowRaySettings, ShadowRays, ShotSettings, Solution, SolveError, Stage,
+    StageTotals,
 };
 
 use crate::plan;
 use crate::plan::{Action, Pipeline};
+use crate::prepare::layout::{Layout, Placed};
 use crate::prepare::prepared::Prepared;
+use crate::prepare::probe_grid::ProbeGrid;
 use crate::run::split::Split;
 
 /// Duration of the trial of a stage.
@@ -35,7 +38,7 @@ pub struct StageEstimate {
 pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<StageEstimate>, SolveError> {
     let Prepared { model, focus, .. } = prepared;
     let (focus, seed) = (*focus, pipeline.seed);
-    let mut shot = None;
+    let (mut shot, mut direct) = (None, None);
     let mut estimates = Vec::new();
     let actions = pipeline.flat_stages().flat_map(|stage| match &stage.action {
         Action::Solve(solve) => Split::usual(solve.lines).actions(),
@@ -48,7 +51,11 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
                 let settings = ShotSettings::new(model, LocalLines { count: lines, focus }, seed);
                 let stage = FirstShot::begin(settings, (), &OneWorker)?;
                 let (rate, totals) = try_stage(&stage, lines);
-                shot = Some(stage.finish(totals, &OneWorker)?);
+                let first = stage.finish(totals, &OneWorker)?;
+                if !prepared.placed.is_empty() {
+                    direct = Some(first.solution(model));
+                }
+                shot = Some(first);
                 estimates.push(StageEstimate { name, lines, rate });
             }
             Action::ShadowRays(plan::ShadowRays { rays }) => {
@@ -81,6 +88,42 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
             _ => {}
         }
     }
+    if let Some(solution) = &direct {
+        estimates.extend(try_sensors(pipeline, prepared, solution)?);
+    }
+    Ok(estimates)
+}
+
+/// Measures the ray rate of each stage `Sensors`. The light is that of another trial: only the time matters.
+fn try_sensors(
+    pipeline: &Pipeline,
+    prepared: &Prepared,
+    solution: &Solution,
+) -> Result<Vec<StageEstimate>, SolveError> {
+    let (model, seed) = (&prepared.model, pipeline.seed);
+    let repeats = pipeline.stages.iter().find_map(|stage| match &stage.action {
+        Action::Repeat(repeat) => Some(repeat.until.share_rays(repeat.at_most)),
+        _ => None,
+    });
+    let mut estimates = Vec::new();
+    for (number, stage) in pipeline.stages.iter().enumerate() {
+        let (Action::Sensors(sensors), Some(placed)) = (&stage.action, prepared.placed.get(&number)) else {
+            continue;
+        };
+        let settings = sensors.settings();
+        let (rate, _) = match placed {
+            Placed::Sensors(Layout { sensors, .. }) => {
+                let task = SensorTask { model, solution, sensors, settings, seed };
+                try_stage(&SensorStage::begin(task, (), &OneWorker)?, sensors.len() as u64)
+            }
+            Placed::Probes(ProbeGrid { valid, .. }) => {
+                let task = ProbeTask { model, solution, positions: valid, settings, seed };
+                try_stage(&ProbeStage::begin(task, (), &OneWorker)?, valid.len() as u64)
+            }
+        };
+        let lines = settings.shared(repeats.unwrap_or(1)).rays * placed.sensors() as u64;
+        estimates.push(StageEstimate { name: stage.action.name(), lines, rate });
+    }
     Ok(estimates)
 }
 
@@ -88,16 +131,17 @@ pub(super) fn probe(pipeline: &Pipeline, prepared: &Prepared) -> Result<Vec<Stag
 /// and the stage totals.
 fn try_stage<S: Stage<Chain = AnyOrder>>(stage: &S, units: u64) -> (f64, StageTotals) {
     let mut totals = StageTotals::default();
-    let seconds = seconds(units, |block| stage.trace(0, &mut AnyOrder, block, &mut totals));
+    let block = (BLOCK / stage.lines_per_unit()).max(1);
+    let seconds = seconds(units, block, |block| stage.trace(0, &mut AnyOrder, block, &mut totals));
     (cores().get() as f64 * totals.counts.lines.max(1) as f64 / seconds, totals)
 }
 
 /// Returns the time of a short trial.
-fn seconds(units: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
+fn seconds(units: u64, block: u64, mut trace: impl FnMut(std::ops::Range<u64>)) -> f64 {
     let start = Instant::now();
     let mut done = 0;
     while done < units && start.elapsed() < PROBE {
-        let end = units.min(done + BLOCK);
+        let end = units.min(done + block);
         trace(done..end);
         done = end;
     }
@@ -111,7 +155,7 @@ mod tests {
     #[test]
     fn a_trial_traces_every_unit_once() {
         let mut seen = 0;
-        let seconds = seconds(2500, |block| {
+        let seconds = seconds(2500, 1024, |block| {
             assert_eq!(block.start, seen);
             seen = block.end;
         });

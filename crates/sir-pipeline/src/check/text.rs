@@ -8,6 +8,7 @@ use crate::check::estimate::{Estimate, Repeated};
 use crate::check::probe::StageEstimate;
 use crate::format::{bytes, duration, grouped};
 use crate::plan::Until;
+use crate::prepare::layout::Placed;
 use crate::prepare::prepared::Prepared;
 use crate::prepare::sources::kinds;
 use crate::prepare::up::name;
@@ -68,6 +69,11 @@ impl fmt::Display for Estimate {
             power.z,
             self.units.power()
         )?;
+        for placed in self.prepared.placed.values() {
+            if let Placed::Probes(grid) = placed {
+                writeln!(f, "probes     {}, {} of them valid", count(grid.len()), count(grid.valid.len()))?;
+            }
+        }
         writeln!(f, "memory     {} at most:", bytes(self.peak_memory))?;
         for (part, size) in &self.memory {
             writeln!(f, "           {:>9}  {part}", bytes(*size))?;

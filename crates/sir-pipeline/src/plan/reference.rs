@@ -10,6 +10,7 @@ use crate::plan::multipath::{Multipath, Replicas};
 use crate::plan::panel::Panel;
 use crate::plan::pipeline::Content;
 use crate::plan::point::{Lambertian, Point, Spot};
+use crate::plan::probes::Probes;
 use crate::plan::save::{Gltf, Report, Table};
 use crate::plan::sensors::{Grid, Plane, SensorPoint, Sensors};
 use crate::plan::sky::{Cie, Environment, Sky};
@@ -45,6 +46,7 @@ pub fn field_tables() -> Vec<(&'static str, String)> {
         table::<SensorPoint>(),
         table::<Grid>(),
         table::<Plane>(),
+        table::<Probes>(),
         table::<Image>(),
         table::<Camera>(),
         table::<Gltf>(),

@@ -1,4 +1,4 @@
-//! The stage `Sensors`: irradiance at points and on grids.
+//! The stage `Sensors`: irradiance at points, on grids and at probes.
 
 use std::path::{Path, PathBuf};
 
@@ -6,6 +6,7 @@ use glam::DVec3;
 use sir_radiosity::{Sensor, SensorSettings};
 
 use crate::plan::points_file::PointsFile;
+use crate::plan::probes::Probes;
 use crate::text::field::Format as _;
 use crate::text::formats::{Direction, Text, Vector, count, number, positive};
 use crate::text::reader::{Fields, Reader, inside};
@@ -25,7 +26,7 @@ record! {
         /// Positions of the sensors.
         pub at: Spanned<Place> = WithSpan(named("Plane(height: 0.75, spacing: 0.25)")).required();
         /// Number of rays of each sensor over its hemisphere, rounded up to a multiple of 32. The same number is aimed
-        /// at emitting surfaces, if there are any.
+        /// at emitting surfaces, if there are any. A probe has six sensors.
         pub rays: u64 = count(1, MAX_RAYS, DEFAULT_RAYS).or(DEFAULT_RAYS);
         /// Relative standard error at which a sensor stops early, after at least 2,048 rays; `0.005` is 0.5 %. The
         /// errors of patches are ignored.
@@ -44,6 +45,8 @@ choice! {
         Grid(Grid),
         /// Centers of the cells of a horizontal plane through a room.
         Plane(Plane),
+        /// Points in a box, with the irradiance in all directions.
+        Probes(Probes),
     }
 }
 
@@ -98,6 +101,12 @@ impl Sensors {
         self.output("csv")
     }
 
+    /// Returns the path of the spherical harmonics in the run directory, if the sensors are probes.
+    #[must_use]
+    pub fn harmonics(&self) -> Option<PathBuf> {
+        matches!(self.at.value, Place::Probes(_)).then(|| self.output("json"))
+    }
+
     /// Returns the path of the false-color image in the run directory, if the sensors are on a grid.
     #[must_use]
     pub fn map(&self) -> Option<PathBuf> {
@@ -122,7 +131,11 @@ impl Sensors {
             reader.problem(node.text, message, "write for instance `name: \"desk\"`");
             return;
         }
-        let extensions: &[&str] = if self.map().is_some() { &["csv", "png"] } else { &["csv"] };
+        let extensions: &[&str] = match self.at.value {
+            Place::Grid(_) | Place::Plane(_) => &["csv", "png"],
+            Place::Probes(_) => &["csv", "json"],
+            Place::Points(_) | Place::File(_) => &["csv"],
+        };
         for extension in extensions {
             reader.claim_output(node, &format!("{}.{extension}", self.name));
         }
@@ -130,7 +143,7 @@ impl Sensors {
 }
 
 impl Place {
-    /// Returns the points that the pipeline or a file lists, or `None` for a grid or a plane.
+    /// Returns the points that the pipeline or a file lists, or `None` for a grid, a plane or probes.
     #[must_use]
     pub fn listed(&self) -> Option<Vec<Sensor>> {
         match self {
@@ -138,7 +151,7 @@ impl Place {
                 Some(points.iter().filter_map(|p| Sensor::new(p.position, p.direction)).collect())
             }
             Self::File(file) => Some(file.sensors.clone()),
-            Self::Grid(_) | Self::Plane(_) => None,
+            Self::Grid(_) | Self::Plane(_) | Self::Probes(_) => None,
         }
     }
 }

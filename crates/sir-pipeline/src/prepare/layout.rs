@@ -1,14 +1,24 @@
-//! Positions of the sensors of a grid or a work plane.
+//! Positions of the sensors of a stage.
 
 use glam::{DVec2, DVec3};
 use sir_accel::Tracer;
-use sir_geom::{Scene, Side};
+use sir_geom::{BoundingBox, Scene, Side};
 use sir_radiosity::{Model, Sensor, SensorStart};
 
 use crate::plan::{Grid, Place, Plane};
+use crate::prepare::probe_grid::ProbeGrid;
 
 /// Maximum number of cells of a grid.
 const MAX_CELLS: f64 = 1e6;
+
+/// What a stage `Sensors` measures.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Placed {
+    /// Irradiance at sensors.
+    Sensors(Layout),
+    /// Irradiance in all directions at probes.
+    Probes(ProbeGrid),
+}
 
 /// Sensors of a stage, in order.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,15 +42,31 @@ pub struct Cells {
     pub of: Vec<usize>,
 }
 
-impl Layout {
-    /// Places the sensors. The error has a message, which says why there are none, and a suggested fix.
-    pub(crate) fn new(place: &Place, model: &Model, up: DVec3) -> Result<Self, (String, String)> {
-        match place {
+impl Placed {
+    /// Places the sensors or probes. The error has a message, which says why there are none, and a suggested fix.
+    pub(crate) fn new(
+        place: &Place,
+        model: &Model,
+        up: DVec3,
+        focus: Option<BoundingBox>,
+    ) -> Result<Self, (String, String)> {
+        let layout = match place {
             Place::Points(_) | Place::File(_) => {
-                Ok(Self { sensors: place.listed().unwrap_or_default(), cells: None })
+                Layout { sensors: place.listed().unwrap_or_default(), cells: None }
             }
-            Place::Grid(grid) => grid.layout(&mut |_| true),
-            Place::Plane(plane) => plane.layout(model, up),
+            Place::Grid(grid) => grid.layout(&mut |_| true)?,
+            Place::Plane(plane) => plane.layout(model, up)?,
+            Place::Probes(probes) => return ProbeGrid::new(probes, model, focus).map(Self::Probes),
+        };
+        Ok(Self::Sensors(layout))
+    }
+
+    /// Returns the number of sensors that are measured; a valid probe has six.
+    #[must_use]
+    pub fn sensors(&self) -> usize {
+        match self {
+            Self::Sensors(layout) => layout.sensors.len(),
+            Self::Probes(grid) => 6 * grid.valid.len(),
         }
     }
 }

@@ -3,10 +3,12 @@
 pub(crate) mod cameras;
 pub(crate) mod layout;
 pub(crate) mod prepared;
+pub(crate) mod probe_grid;
 pub(crate) mod sources;
 pub(crate) mod up;
 
-pub use layout::{Cells, Layout};
+pub use layout::{Cells, Layout, Placed};
 pub use prepared::{Prepared, prepare};
+pub use probe_grid::ProbeGrid;
 pub use sources::kinds;
 pub use up::name as direction_name;

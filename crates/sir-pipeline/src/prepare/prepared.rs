@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use sir_geom::{LoadOptions, Scene};
+use sir_geom::{BoundingBox, LoadOptions, Scene};
 use sir_lines::Focus;
 use sir_mesh::Subdivision;
 use sir_radiosity::{FocusSides, Model, ModelError, SolveError, Source, emits, sources, total_power};
@@ -16,7 +16,7 @@ use crate::prepare::up::{Up, sky_doubt};
 use crate::text::diagnostic::Diagnostic;
 
 use crate::plan::{Action, Pipeline, SceneLight, Stage, Transport};
-use crate::prepare::layout::Layout;
+use crate::prepare::layout::Placed;
 use crate::progress::Progress;
 use crate::stopwatch::Stopwatch;
 
@@ -47,8 +47,8 @@ pub struct Prepared {
     pub focus: Option<Focus>,
     /// Sides in the focus.
     pub inside: FocusSides,
-    /// Sensors of each stage `Sensors`, by the number of the stage.
-    pub layouts: BTreeMap<usize, Layout>,
+    /// Sensors or probes of each stage `Sensors`, by the number of the stage.
+    pub placed: BTreeMap<usize, Placed>,
     /// Time to read the scene \[s\].
     pub load_seconds: f64,
     /// Time to make the patches and the acceleration structure \[s\].
@@ -119,7 +119,9 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
             if inside.is_empty() {
                 return Err(pipeline.diagnostics(nothing_inside(pipeline, &model.scene)).into());
             }
-            let layouts = layouts(pipeline, &model, up).map_err(|problems| pipeline.diagnostics(problems))?;
+            let bounds = focus.map(|focus| focus.bounds());
+            let placed =
+                place(pipeline, &model, up, bounds).map_err(|problems| pipeline.diagnostics(problems))?;
             let survey = Survey::new(&model.scene, &model.accel, &sources, up, SURVEY_LINES);
             let mut suspicions = survey.suspicions(focus.is_some());
             suspicions.extend(doubt);
@@ -136,7 +138,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 sources,
                 focus,
                 inside,
-                layouts,
+                placed,
                 load_seconds,
                 build_seconds,
             })
@@ -177,22 +179,23 @@ fn nothing_inside(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
 }
 
 /// Places all sensors. The error has a problem for each stage whose sensors cannot be placed.
-fn layouts(
+fn place(
     pipeline: &Pipeline,
     model: &Model,
     up: DVec3,
-) -> Result<BTreeMap<usize, Layout>, Vec<Diagnostic>> {
-    let (mut layouts, mut problems) = (BTreeMap::new(), Vec::new());
+    focus: Option<BoundingBox>,
+) -> Result<BTreeMap<usize, Placed>, Vec<Diagnostic>> {
+    let (mut all, mut problems) = (BTreeMap::new(), Vec::new());
     for (number, stage) in pipeline.stages.iter().enumerate() {
         let Action::Sensors(sensors) = &stage.action else { continue };
-        match Layout::new(&sensors.at.value, model, up) {
-            Ok(layout) => drop(layouts.insert(number, layout)),
+        match Placed::new(&sensors.at.value, model, up, focus) {
+            Ok(placed) => drop(all.insert(number, placed)),
             Err((message, help)) => {
                 problems.push(Diagnostic { span: sensors.at.span.0.clone(), message, help });
             }
         }
     }
-    if problems.is_empty() { Ok(layouts) } else { Err(problems) }
+    if problems.is_empty() { Ok(all) } else { Err(problems) }
 }
 
 fn model_problem(error: ModelError, span: std::ops::Range<usize>) -> Diagnostic {

@@ -4,6 +4,7 @@ pub(crate) mod compare;
 pub(crate) mod light;
 pub(crate) mod lines;
 pub(crate) mod page;
+pub(crate) mod probes;
 pub(crate) mod result;
 pub(crate) mod sensors;
 

@@ -1,5 +1,6 @@
 //! Facts of a page: the figures of a run, as JSON for its script.
 
+use glam::DVec3;
 use serde_json::{Value, json};
 use sir_geom::{Camera, Projection, Scene};
 use sir_radiosity::Measurement;
@@ -76,6 +77,29 @@ pub(crate) fn of_sensors(
         "summary": summary.in_short(units),
         "report": summary,
         "map": map,
+        "points": points.collect::<Vec<_>>(),
+    })
+}
+
+/// Returns what the measurements at probes contribute to the facts: their means over all directions.
+pub(crate) fn of_probes(
+    positions: &[DVec3],
+    means: &[Measurement],
+    summary: &SensorsReport,
+    units: Units,
+) -> Value {
+    let rounded = |x: f64| format!("{x:.5e}").parse::<f64>().unwrap_or(x);
+    let points = positions.iter().zip(means).take(MAX_POINTS).map(|(position, m)| {
+        let light = [m.luminance(), sir_geom::luminance(m.direct), m.luminance_error()];
+        // The mean over all directions has none.
+        let numbers = position.to_array().into_iter().chain([0.0; 3]).chain(light);
+        numbers.map(rounded).collect::<Vec<_>>()
+    });
+    json!({
+        "name": summary.name,
+        "summary": format!("Means over all directions at probes: {}", summary.in_short(units)),
+        "report": summary,
+        "map": None::<Value>,
         "points": points.collect::<Vec<_>>(),
     })
 }

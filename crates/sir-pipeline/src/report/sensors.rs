@@ -5,20 +5,24 @@ use sir_radiosity::Measurement;
 
 use crate::units::Units;
 
-/// Summary of the measurements of sensors. All irradiances are weighted for luminance.
+/// Summary of the measurements of sensors. All irradiances are weighted for luminance; those of probes are means over
+/// all directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SensorsReport {
     /// Name of the sensors.
     pub name: String,
-    /// Number of sensors.
+    /// Number of sensors, or of valid probes.
     pub points: usize,
+    /// Number of invalid probes; `None` for sensors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub invalid: Option<usize>,
     /// Number of rays over the hemispheres of all sensors. The same number was aimed at emitting surfaces, if there are
     /// any.
     pub rays: u64,
     /// Mean irradiance \[W/m²\].
     pub mean: f64,
-    /// Standard error of the mean \[W/m²\], from the spread of repeats; otherwise it combines the sampling errors, which are independent between sensors, and
-    /// the errors of patches, which are assumed to be the same for all sensors.
+    /// Standard error of the mean \[W/m²\], from the spread of repeats; otherwise it combines the sampling errors, which
+    /// are independent between sensors, and the errors of patches, which are assumed to be the same for all sensors.
     pub mean_error: f64,
     /// Smallest irradiance \[W/m²\].
     pub minimum: f64,
@@ -40,6 +44,7 @@ impl SensorsReport {
         Self {
             name: name.into(),
             points: measured.len(),
+            invalid: None,
             rays: measured.iter().map(|m| m.rays).sum(),
             mean,
             mean_error: mean_error.unwrap_or_else(|| (squares / (n * n) + inherited * inherited).sqrt()),
@@ -54,14 +59,22 @@ impl SensorsReport {
     pub fn in_short(&self, units: Units) -> String {
         let Self { mean, mean_error, minimum, maximum, uniformity, .. } = *self;
         let decimals = decimals(mean_error);
-        format!(
-            "mean {mean:.decimals$} ± {mean_error:.decimals$} {}, minimum {}, maximum {}, U0 = {}",
+        let mut text = format!(
+            "mean {mean:.decimals$} ± {mean_error:.decimals$} {}, minimum {}, maximum {}",
             units.irradiance(),
             significant(minimum),
             significant(maximum),
-            // Standards state two decimals; a small value would round to zero.
-            if uniformity < 0.1 { format!("{uniformity:.1e}") } else { format!("{uniformity:.2}") },
-        )
+        );
+        // Standards define uniformity on a plane, not for probes.
+        if self.invalid.is_none() {
+            // They state two decimals; a small value would round to zero.
+            text += &if uniformity < 0.1 {
+                format!(", U0 = {uniformity:.1e}")
+            } else {
+                format!(", U0 = {uniformity:.2}")
+            };
+        }
+        text
     }
 }
 

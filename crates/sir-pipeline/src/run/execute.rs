@@ -123,7 +123,7 @@ pub fn run_together(
     )?;
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     let prepared = agree(comm, prepare(&pipeline, progress))?;
-    agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
+    agree(comm, check_memory(&prepared, &pipeline, progress))?;
     let seed = options.seed.unwrap_or(pipeline.seed);
     let fingerprint = fingerprint::of_run(&pipeline, seed, &prepared);
     agree(comm, same_everywhere(comm, fingerprint))?;
@@ -195,7 +195,7 @@ pub fn resume_together(
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     // The warnings were shown when the run began.
     let prepared = agree(comm, prepare(&pipeline, &NoProgress))?;
-    agree(comm, check_memory(&prepared.model, &pipeline, progress))?;
+    agree(comm, check_memory(&prepared, &pipeline, progress))?;
     let fingerprint = fingerprint::of_run(&pipeline, head.report.seed, &prepared);
     agree(comm, saved_run::check_fingerprint(directory, &head, fingerprint))?;
     if comm.is_first() {

@@ -3,7 +3,8 @@
 //! * `execute`: starts or resumes a run; `resume`: contents of a checkpoint; `directory`: run directories, `lock`: their locks.
 //! * `stages`: one stage after the other; `lighting`: the light so far; `repeating`: repeats of
 //!   the stages with lines; `sharing`: their number; `split`: the lines of a `Solve`, `pilot`: how they are found; `reach`: the global lines that met what is lit.
-//! * `save`: images, lit scenes and tables; `sensor_files`: files of sensors.
+//! * `save`: images, lit scenes and tables; `sensor_files`, `probe_files`: files of sensors and
+//!   probes; `measured`: their measurements in all repeats.
 
 pub(crate) mod computed;
 mod directory;
@@ -11,8 +12,10 @@ pub(crate) mod execute;
 mod lighting;
 mod lightmap;
 pub(crate) mod lock;
+mod measured;
 pub(crate) mod pages;
 mod pilot;
+mod probe_files;
 mod reach;
 mod repeat_sums;
 mod repeating;

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use sir_geom::Rgb;
 use sir_mesh::SideSums;
 use sir_parallel::{Communicator, StageTime, Threads};
-use sir_radiosity::{MIN_REPEATS, Model, PowerUnit, RepeatedMeasurements, Repeats, Solution, Visitor, share};
+use sir_radiosity::{MIN_REPEATS, Model, PowerUnit, Repeats, Solution, Visitor, share};
 
 use crate::format::{duration, grouped};
 use crate::plan::{Action, Pipeline, Until};
@@ -17,6 +17,7 @@ use crate::report::result::{
 };
 use crate::run::computed::{Computed, PartErrors};
 use crate::run::lighting::{Done, Lighting};
+use crate::run::measured::Measured;
 use crate::run::sharing::{SHARED, Sharing};
 use crate::run::step::{Step, UseOfLight};
 use crate::watcher::Watcher;
@@ -72,9 +73,7 @@ impl<'a> RepeatSums<'a> {
                 (Some(sharing), Until::Times(sharing.repeats), None)
             }
         };
-        // The number of repeats may not be known, or be large.
-        let most = at_most.unwrap_or(u64::MAX).min(SHARED);
-        let share_rays = if let Until::Times(times) = until { times.min(most) } else { most };
+        let share_rays = until.share_rays(at_most);
         let sides = prepared.model.mesh.side_count();
         let parts = parts_of_tables(pipeline, prepared);
         let direct_step = if pipeline.shows_direct() {
@@ -101,11 +100,10 @@ impl<'a> RepeatSums<'a> {
             let UseOfLight { is_result, is_direct } = use_of_light;
             let measured = match action {
                 Action::Save(_) => continue,
-                Action::Sensors(_) => prepared.layouts.get(&place.0).map(|layout| layout.sensors.len()),
+                Action::Sensors(_) => prepared.placed.get(&place.0).map(Measured::new),
                 _ => None,
             };
             let light = (is_result || is_direct).then(|| sums(is_result));
-            let measured = measured.map(RepeatedMeasurements::new);
             steps.push(Step::new(place, action, light, use_of_light, measured));
         }
         Self {
@@ -348,6 +346,13 @@ impl Convergence {
 }
 
 impl Until {
+    /// Returns the number of repeats that share the rays of sensors.
+    pub(crate) fn share_rays(self, at_most: Option<u64>) -> u64 {
+        // The number of repeats may not be known, or be large.
+        let most = at_most.unwrap_or(u64::MAX).min(SHARED);
+        if let Self::Times(times) = self { times.min(most) } else { most }
+    }
+
     /// Returns true if another repeat should run after `done` repeats, at least one, which took `seconds` and whose
     /// mean has the relative error `error`.
     pub(super) fn wants_more(self, done: u64, error: Option<f64>, seconds: f64) -> bool {

@@ -9,11 +9,13 @@ use std::time::Instant;
 use sir_lines::seed_of_repeat;
 use sir_mesh::Per;
 use sir_parallel::{Checkpoints, Saved, Start, Threads};
-use sir_radiosity::{MIN_REPEATS, Points, SensorStage, SensorTask};
+use sir_radiosity::{MIN_REPEATS, Points, ProbeStage, ProbeTask, SensorStage, SensorTask};
 
 use crate::error::Error;
 use crate::format::{duration, grouped};
 use crate::plan::{Action, Output, Repeat, Save, Sensors, Until};
+use crate::prepare::layout::{Layout, Placed};
+use crate::prepare::probe_grid::ProbeGrid;
 use crate::progress::{PAUSE, StageProgress};
 use crate::ranks::agree;
 use crate::report::page::{facts, title};
@@ -22,6 +24,7 @@ use crate::report::sensors::SensorsReport;
 use crate::run::computed::Computed;
 use crate::run::execute::Run;
 use crate::run::lighting::Lighting;
+use crate::run::measured::Measured;
 use crate::run::reach::{dark_warning, few_lines_warning};
 use crate::run::repeat_sums::RepeatSums;
 use crate::run::save::view_of;
@@ -142,27 +145,39 @@ impl Run<'_> {
         seed: u64,
     ) -> Result<(), Error> {
         let (number, _) = repeating.steps[step].place;
-        let (Some(layout), Some(solution)) =
-            (self.prepared.layouts.get(&number), lighting.solution(&self.threads()))
+        let (Some(placed), Some(solution)) =
+            (self.prepared.placed.get(&number), lighting.solution(&self.threads()))
         else {
             return Ok(());
         };
         let settings = sensors.settings().shared(repeating.share_rays);
         let mut executor = self.executor_without_checkpoints();
-        let total = settings.rays * layout.sensors.len() as u64;
+        let total = settings.rays * placed.sensors() as u64;
         executor.observer = Box::new(self.observer(repeating, "Sensors", total));
         // Each stage `Sensors` has independent random numbers.
         let seed = seed.wrapping_add((number as u64) << 48);
-        let model = &self.prepared.model;
-        let task = SensorTask { model, solution: &solution, sensors: &layout.sensors, settings, seed };
-        let done = executor.run::<SensorStage<'_>>(task, Start::Fresh(()));
-        drop(executor);
-        let done = agree(self.comm, done.map_err(|error| self.interrupted_measuring(error)))?;
-        let step = &mut repeating.steps[step];
-        step.time += done.time;
-        if let Some(measured) = &mut step.measured {
-            measured.add(&done.outcome);
-        }
+        let (model, solution) = (&self.prepared.model, &solution);
+        let time = match placed {
+            Placed::Sensors(Layout { sensors, .. }) => {
+                let task = SensorTask { model, solution, sensors, settings, seed };
+                let done = executor.run::<SensorStage<'_>>(task, Start::Fresh(()));
+                let done = agree(self.comm, done.map_err(|error| self.interrupted_measuring(error)))?;
+                if let Some(Measured::Sensors(measured)) = &mut repeating.steps[step].measured {
+                    measured.add(&done.outcome);
+                }
+                done.time
+            }
+            Placed::Probes(ProbeGrid { valid, .. }) => {
+                let task = ProbeTask { model, solution, positions: valid, settings, seed };
+                let done = executor.run::<ProbeStage<'_>>(task, Start::Fresh(()));
+                let done = agree(self.comm, done.map_err(|error| self.interrupted_measuring(error)))?;
+                if let Some(Measured::Probes(measured)) = &mut repeating.steps[step].measured {
+                    measured.add(&done.outcome);
+                }
+                done.time
+            }
+        };
+        repeating.steps[step].time += time;
         Ok(())
     }
 
@@ -187,11 +202,22 @@ impl Run<'_> {
                 }
                 Action::Sensors(sensors) => {
                     for step in &repeating.steps[steps] {
-                        let Some(measured) = &step.measured else { continue };
-                        let (means, error) = (measured.means(), measured.error_of_mean());
-                        let summary = SensorsReport::new(&sensors.name, &means, error);
+                        let summary = match &step.measured {
+                            Some(Measured::Sensors(measured)) => {
+                                let (means, error) = (measured.means(), measured.error_of_mean());
+                                let summary = SensorsReport::new(&sensors.name, &means, error);
+                                self.write_sensors(number, sensors, &means, &summary)?;
+                                summary
+                            }
+                            Some(Measured::Probes(measured)) => self.write_probes(
+                                number,
+                                sensors,
+                                &measured.means(),
+                                measured.error_of_mean(),
+                            )?,
+                            None => continue,
+                        };
                         report.time = Time::of_lines(step.time, summary.rays);
-                        self.write_sensors(number, sensors, &means, &summary)?;
                         report.sensors = Some(summary);
                     }
                 }

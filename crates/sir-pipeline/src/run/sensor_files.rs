@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sir_radiosity::{Measurement, Sensor};
 use sir_view::{Map, ViewError, write_atomically, write_map};
@@ -27,24 +27,27 @@ pub(crate) fn write(
     units: Units,
     directory: &Path,
 ) -> Result<Vec<OutputReport>, Error> {
-    let place = |name: &Path| -> Result<_, Error> {
-        let path = directory.join(name);
-        if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent).map_err(Error::directory(parent))?;
-        }
-        Ok(path)
-    };
-    let table = place(&sensors.table())?;
+    let table = place(directory, &sensors.table())?;
     write_atomically(&table, |file| write_table(file, &layout.sensors, measured))?;
     let mut written = vec![output(directory, &sensors.table(), "sensors")?];
     if let (Some(map), Some(cells)) = (sensors.map(), &layout.cells) {
-        write_map(&place(&map)?, &map_of(cells, measured, summary, units))?;
+        write_map(&place(directory, &map)?, &map_of(cells, measured, summary, units))?;
         written.push(output(directory, &map, "map")?);
     }
     Ok(written)
 }
 
-fn output(directory: &Path, name: &Path, kind: &str) -> Result<OutputReport, Error> {
+/// Returns the path of an output, whose folder is made.
+pub(super) fn place(directory: &Path, name: &Path) -> Result<PathBuf, Error> {
+    let path = directory.join(name);
+    if let Some(parent) = path.parent() {
+        fs::create_dir_all(parent).map_err(Error::directory(parent))?;
+    }
+    Ok(path)
+}
+
+/// Returns the report of an output that has been written.
+pub(super) fn output(directory: &Path, name: &Path, kind: &str) -> Result<OutputReport, Error> {
     let path = directory.join(name);
     let bytes = fs::metadata(&path).map_err(|source| ViewError::Io { what: "read", path, source })?.len();
     Ok(OutputReport {

@@ -2,13 +2,14 @@
 
 use sir_lightmap::LightmapError;
 use sir_parallel::{Checkpoints, Executor, RunError, Saved, Threads, cores};
-use sir_radiosity::Measurement;
+use sir_radiosity::{Measurement, ProbeMeasurement};
 
 use crate::error::Error;
 use crate::plan::{Action, Output, Sensors};
+use crate::prepare::layout::Placed;
 use crate::prepare::prepared::Prepared;
 use crate::ranks::agree;
-use crate::report::page::of_sensors;
+use crate::report::page::{of_probes, of_sensors};
 use crate::report::result::{
     BalanceReport, ErrorsFrom, LightReport, LinesReport, OutputReport, StageReport, Time,
 };
@@ -16,7 +17,7 @@ use crate::report::sensors::SensorsReport;
 use crate::run::computed::Computed;
 use crate::run::execute::Run;
 use crate::run::save::{Saver, save};
-use crate::run::sensor_files;
+use crate::run::{probe_files, sensor_files};
 
 impl Run<'_> {
     /// Runs all stages, or those from the stage of `saved` on.
@@ -83,7 +84,7 @@ impl Run<'_> {
         measured: &[Measurement],
         summary: &SensorsReport,
     ) -> Result<(), Error> {
-        let Some(layout) = self.prepared.layouts.get(&number) else { return Ok(()) };
+        let Some(Placed::Sensors(layout)) = self.prepared.placed.get(&number) else { return Ok(()) };
         if self.pipeline.has_page() {
             self.pages.sensors.push(of_sensors(layout, measured, summary, self.pipeline.units));
         }
@@ -94,6 +95,32 @@ impl Run<'_> {
         };
         self.head.report.outputs.extend(agree(self.comm, written)?);
         Ok(())
+    }
+
+    /// Writes the files of the probes of a stage `Sensors` on rank 0, and returns their summary. `error` is the error
+    /// of the mean over all probes, if it is known from the spread of repeats.
+    pub(crate) fn write_probes(
+        &mut self,
+        number: usize,
+        sensors: &Sensors,
+        measured: &[ProbeMeasurement],
+        error: Option<f64>,
+    ) -> Result<SensorsReport, Error> {
+        let means: Vec<Measurement> = measured.iter().map(ProbeMeasurement::mean).collect();
+        let mut summary = SensorsReport::new(&sensors.name, &means, error);
+        let Some(Placed::Probes(grid)) = self.prepared.placed.get(&number) else { return Ok(summary) };
+        summary.invalid = Some(grid.len() - grid.valid.len());
+        if self.pipeline.has_page() {
+            self.pages.sensors.push(of_probes(&grid.valid, &means, &summary, self.pipeline.units));
+        }
+        let written = if self.comm.is_first() {
+            let units = self.pipeline.units;
+            probe_files::write(sensors, grid, measured, self.prepared, units, &self.directory)
+        } else {
+            Ok(Vec::new())
+        };
+        self.head.report.outputs.extend(agree(self.comm, written)?);
+        Ok(summary)
     }
 
     /// Converts the error of an interrupted measurement. Sensors have no checkpoints of their own.

@@ -2,12 +2,13 @@
 
 use sir_lines::Focus;
 use sir_parallel::{StageTime, Threads};
-use sir_radiosity::{Model, RepeatedMeasurements, RepeatedTotals, Repeats, Visitor};
+use sir_radiosity::{Model, RepeatedTotals, Repeats, Visitor};
 
 use crate::plan::Action;
 use crate::report::lines::Facts;
 use crate::report::result::DomainReport;
 use crate::run::lighting::{Done, Lighting};
+use crate::run::measured::Measured;
 
 /// A stage that is run in every repeat.
 pub(super) struct Step<'a> {
@@ -22,7 +23,7 @@ pub(super) struct Step<'a> {
     pub(super) light: Option<Repeats>,
     pub(super) use_of_light: UseOfLight,
     /// Sums of the measurements of this stage.
-    pub(super) measured: Option<RepeatedMeasurements>,
+    pub(super) measured: Option<Measured>,
 }
 
 /// Use of the light after a stage.
@@ -40,7 +41,7 @@ impl<'a> Step<'a> {
         action: &'a Action,
         light: Option<Repeats>,
         use_of_light: UseOfLight,
-        measured: Option<RepeatedMeasurements>,
+        measured: Option<Measured>,
     ) -> Self {
         let (totals, time) = (RepeatedTotals::default(), StageTime::default());
         Self { place, action, totals, batches: 0, time, domain: None, light, use_of_light, measured }

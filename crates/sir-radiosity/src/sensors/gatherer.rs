@@ -7,6 +7,7 @@ use sir_lines::{Purpose, Streams};
 use crate::aimed::Emitters;
 use crate::model::Model;
 use crate::sensors::measurement::Measurement;
+use crate::sensors::ray_set::Gathering;
 use crate::sensors::replication::{PatchHits, Replication};
 use crate::sensors::sensor::{REPLICATIONS, Sensor, SensorSettings};
 use crate::sensors::start::SensorStart;
@@ -49,6 +50,8 @@ impl<'s> Gatherer<'s> {
         let start = SensorStart::of(sensor, self.model, &mut tracer);
         let lights = self.lights(sensor, start, &mut tracer);
         let choice = self.emitters.from(start.origin, sensor.direction());
+        let Self { model, solution, .. } = *self;
+        let gathering = Gathering { model, solution, start, normal: sensor.direction(), choice: &choice };
         let stream = |k| self.streams.line(number * REPLICATIONS + k);
         let SensorSettings { rays, error: target, replications: count, first } = self.settings;
         let mut replications: Vec<_> = (0..count).map(|k| Replication::new(&mut stream(k))).collect();
@@ -57,14 +60,7 @@ impl<'s> Gatherer<'s> {
         let mut rays = if target > 0.0 { most.min(first.div_ceil(count)) } else { most };
         loop {
             for replication in &mut replications {
-                replication.trace(
-                    rays,
-                    (self.model, self.solution),
-                    (start, sensor.direction()),
-                    &choice,
-                    &mut tracer,
-                    &mut patch_hits,
-                );
+                replication.trace(rays, gathering, &mut tracer, &mut patch_hits);
             }
             let unmet = self.brightness.unmet(&patch_hits.extremes, rays * count);
             let mut measurement = Measurement::of(&replications, unmet, lights);

@@ -7,12 +7,17 @@
 
 mod gatherer;
 mod measurement;
+mod ray_set;
 mod repeated;
 mod replication;
 mod sensor;
 mod stage;
 mod start;
 mod unmet;
+
+pub(crate) use ray_set::{Gathering, RayLight, RaySet};
+pub(crate) use repeated::Spread;
+pub(crate) use unmet::{Brightness, Extremes, Squares};
 
 pub use gatherer::Gatherer;
 pub use measurement::Measurement;

@@ -17,21 +17,21 @@ pub struct RepeatedMeasurements {
 
 /// Mean and squared deviations of a number.
 #[derive(Clone, Copy, Debug, Default)]
-struct Spread {
-    mean: f64,
-    squares: f64,
+pub(crate) struct Spread {
+    pub(crate) mean: f64,
+    pub(crate) squares: f64,
 }
 
 impl Spread {
     /// Adds the value with the number `count`, from 1 (Welford 1962).
-    fn add(&mut self, value: f64, count: u64) {
+    pub(crate) fn add(&mut self, value: f64, count: u64) {
         let deviation = value - self.mean;
         self.mean += deviation / count as f64;
         self.squares += deviation * (value - self.mean);
     }
 
     /// Returns the standard error of the mean of `count` values.
-    fn error(self, count: u64) -> f64 {
+    pub(crate) fn error(self, count: u64) -> f64 {
         (self.squares / (count * (count - 1)).max(1) as f64).sqrt()
     }
 }
@@ -49,6 +49,9 @@ struct Sums {
 }
 
 impl RepeatedMeasurements {
+    /// Memory of a sensor in a run \[bytes\]: its sums, the measurement of a repeat, and the means.
+    pub const BYTES_PER_SENSOR: usize = size_of::<Sums>() + 4 * size_of::<Measurement>();
+
     /// Returns the sums over no repeats.
     #[must_use]
     pub fn new(sensors: usize) -> Self {

@@ -17,14 +17,14 @@ use crate::solution::Solution;
 
 /// The brightest light so far: the maximum per band, and of the luminance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Peak {
+pub(crate) struct Peak {
     bands: Rgb,
     luminance: f64,
 }
 
 impl Peak {
     /// Raises the peak to a light, if that is brighter.
-    pub(super) fn raise(&mut self, light: Rgb) {
+    pub(crate) fn raise(&mut self, light: Rgb) {
         self.bands = self.bands.max(light);
         self.luminance = self.luminance.max(luminance(light));
     }
@@ -39,9 +39,9 @@ impl Peak {
 
 /// Squared errors, per band and of the luminance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Squares {
-    pub(super) bands: Rgb,
-    pub(super) luminance: f64,
+pub(crate) struct Squares {
+    pub(crate) bands: Rgb,
+    pub(crate) luminance: f64,
 }
 
 impl Squares {
@@ -61,20 +61,20 @@ struct Class {
 
 /// Brightest light that rays have met, and that rays aimed at emitters have not met.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Extremes {
+pub(crate) struct Extremes {
     /// Reflected light at the surfaces that were hit.
-    pub(super) reflected: Peak,
+    pub(crate) reflected: Peak,
     /// Light of the sky, as irradiance by a sky of this radiance everywhere.
-    pub(super) sky: Peak,
+    pub(crate) sky: Peak,
     /// Contribution of a ray that arrived at the emitter at which it was aimed.
-    pub(super) arrived: Peak,
+    pub(crate) arrived: Peak,
     /// Contribution that a ray would have had that was blocked on the way.
-    pub(super) blocked: Peak,
+    pub(crate) blocked: Peak,
 }
 
 /// Brightness of everything in a scene that lights a sensor, except lights without a surface.
 #[derive(Clone, Debug)]
-pub(super) struct Brightness {
+pub(crate) struct Brightness {
     /// Distribution of the reflected light over the surfaces, from bright to dark.
     reflected: Vec<Class>,
     /// Brightest direction of the sky, as irradiance by a sky of this radiance everywhere.
@@ -83,7 +83,7 @@ pub(super) struct Brightness {
 
 impl Brightness {
     /// Returns the brightness of the sky, and of the light that a solution reflects.
-    pub(super) fn of(model: &Model, solution: &Solution) -> Self {
+    pub(crate) fn of(model: &Model, solution: &Solution) -> Self {
         let mut classes: BTreeMap<u64, Class> = BTreeMap::new();
         let mut total = 0.0;
         model.mesh.for_each_side(|triangle, _, _, side| {
@@ -105,7 +105,7 @@ impl Brightness {
     }
 
     /// Returns the squared standard errors by light that none of `rays` rays has met.
-    pub(super) fn unmet(&self, extremes: &Extremes, rays: u64) -> Squares {
+    pub(crate) fn unmet(&self, extremes: &Extremes, rays: u64) -> Squares {
         let Extremes { reflected, sky, arrived, blocked } = *extremes;
         let rays = rays as f64;
         let largest = 1.0 / (rays + 2.0);
