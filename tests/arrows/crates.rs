@@ -5,7 +5,7 @@ use std::process::Command;
 use serde_json::Value;
 
 /// Crates of the workspace, from the bottom to the top, each with the crates that it may use.
-const LAYERS: [(&str, &[&str]); 15] = [
+const LAYERS: [(&str, &[&str]); 16] = [
     ("sir-types", &[]),
     ("sir-geom", &["sir-types"]),
     ("sir-mesh", &["sir-geom"]),
@@ -19,6 +19,7 @@ const LAYERS: [(&str, &[&str]); 15] = [
     ("sir-validate", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel"]),
     ("sir-view", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
     ("sir-report", &["sir-geom", "sir-mesh", "sir-view"]),
+    ("sir-lightmap", &["sir-geom", "sir-mesh", "sir-view"]),
     // Pipelines do not depend on validation.
     (
         "sir-pipeline",
@@ -31,6 +32,7 @@ const LAYERS: [(&str, &[&str]); 15] = [
             "sir-parallel",
             "sir-view",
             "sir-report",
+            "sir-lightmap",
         ],
     ),
     (
