@@ -49,8 +49,11 @@ pub(crate) fn compact(json: &mut Value) -> Option<Vec<bool>> {
     Some(views)
 }
 
+/// Visits all references to elements of a list.
+type ForEach = fn(&mut Value, &mut dyn FnMut(&mut Value));
+
 /// Gives the used elements of a list numbers without gaps, in all references. Returns true for each one that is used.
-fn renumber(json: &mut Value, name: &str, for_each: fn(&mut Value, &mut dyn FnMut(&mut Value))) -> Vec<bool> {
+fn renumber(json: &mut Value, name: &str, for_each: ForEach) -> Vec<bool> {
     let mut used = BTreeSet::new();
     for_each(json, &mut |reference| used.extend(reference.as_u64()));
     let is_used: Vec<bool> = (0..list(json, name).len() as u64).map(|i| used.contains(&i)).collect();

@@ -16,21 +16,13 @@ pub enum LightmapError {
     #[error(transparent)]
     View(#[from] ViewError),
     /// The charts do not fit the pages.
-    #[error(
-        "the {charts} charts of the lightmap do not fit {pages} of {size} texels ({why}); set `size: {needed}` or more{or}"
-    )]
+    #[error("{what}; set `size: {needed}` or more, or a smaller `{or}`")]
     TooSmall {
-        /// Number of charts.
-        charts: String,
-        /// Number of pages, in words.
-        pages: String,
-        /// Size of the pages.
-        size: u32,
-        /// Reason.
-        why: String,
-        /// Size with which they would fit.
+        /// What does not fit, and why.
+        what: String,
+        /// Size with which they would fit \[texels\].
         needed: u32,
-        /// Another remedy, or nothing.
+        /// Field that is another remedy.
         or: &'static str,
     },
     /// The surfaces cannot be unwrapped.

@@ -67,6 +67,8 @@
 //! Light is not resolved finer than patches. Where patches are larger than texels, the noise of a patch looks like a low
 //! pyramid over it. Triangles too thin for single precision have no texels; [`Lightmap::notes`] tells their area.
 
+mod atlas;
+mod base;
 mod clip;
 mod compact;
 mod dark;
@@ -75,6 +77,7 @@ mod document;
 mod encode;
 mod error;
 mod existing;
+mod input;
 mod layout;
 mod lightmap;
 mod lit;
@@ -85,6 +88,7 @@ mod seams;
 mod texels;
 mod text;
 mod unwrap;
+mod variants;
 mod write;
 
 pub use error::LightmapError;

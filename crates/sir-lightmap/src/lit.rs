@@ -6,35 +6,18 @@ use glam::{DAffine3, DVec2};
 use serde_json::{Value, json};
 use sir_geom::Side;
 
-use crate::document::{Document, FLOAT, list, object};
+use crate::base::base_primitives;
+use crate::document::{Document, list, object};
 use crate::error::LightmapError;
 use crate::existing::LIGHTMAP_SET;
-use crate::layout::{Layout, Rectangle, Sheet, Unfolded};
-use crate::objects::{Objects, is_double_sided};
+use crate::layout::{Layout, Rectangle, Sheet};
+use crate::objects::Objects;
+use crate::variants::{Lighter, PageImage, Style};
 
 const CLAMP_TO_EDGE: u32 = 33_071;
 const LINEAR: u32 = 9_729;
 
-/// Extension of materials that refers to a lightmap.
-const EXTENSION: &str = "MOZ_lightmap";
-const UNLIT: &str = "KHR_materials_unlit";
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
-
-/// Image of a page, as the lit document has it.
-pub(crate) struct PageImage {
-    pub(crate) png: Vec<u8>,
-    /// Factor from its linear values in `[0, 1]` to irradiance as it is shown.
-    pub(crate) intensity: f64,
-}
-
-/// Use of the pages in a document.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Style {
-    /// Beside the materials of the author. With `expand`, every instance has coordinates of its own.
-    Lightmap { expand: bool },
-    /// In place of the materials.
-    Combined,
-}
 
 /// Where an instance of a mesh has its light, for the manifest.
 #[derive(Clone, Debug)]
@@ -53,15 +36,6 @@ pub(crate) struct Lit {
     pub(crate) is_existing: bool,
 }
 
-/// Material of a primitive with a lightmap.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Variant {
-    material: Option<usize>,
-    /// Page and set of coordinates; `None` if the rectangle differs from node to node.
-    lightmap: Option<(u32, u32)>,
-    is_one_sided: bool,
-}
-
 /// Adds the lightmap to the document, and returns where each instance has its light.
 pub(crate) fn light(
     document: &mut Document,
@@ -71,7 +45,7 @@ pub(crate) fn light(
     style: Style,
 ) -> Result<Vec<Lit>, LightmapError> {
     let textures = add_textures(document, pages);
-    let mut lighter = Lighter { textures, pages, style, variants: BTreeMap::new() };
+    let mut lighter = Lighter::new(textures, pages, style);
     let expand = style != Style::Lightmap { expand: false };
     let mut lit = Vec::new();
     let shared = shared_meshes(document, objects);
@@ -235,293 +209,5 @@ fn collect_sets(value: &Value, used: &mut BTreeSet<u64>) {
         }
         Value::Array(elements) => elements.iter().for_each(|element| collect_sets(element, used)),
         _ => {}
-    }
-}
-
-/// A primitive of a sheet before it has lightmap coordinates.
-struct Base<'a> {
-    sheet: &'a Sheet,
-    unfolded: &'a Unfolded,
-    json: Value,
-    /// True if it is one side of a surface that has two.
-    is_one_sided: bool,
-}
-
-/// Returns the primitives of all sheets of a mesh, with vertices split at the edges of charts.
-fn base_primitives<'a>(
-    document: &mut Document,
-    objects: &Objects,
-    number: usize,
-    sheets: &[&'a Sheet],
-) -> Result<Vec<Base<'a>>, LightmapError> {
-    let mesh = &objects.meshes[number];
-    let source = list(&document.json["meshes"][mesh.index], "primitives").to_vec();
-    let mut base = Vec::new();
-    for (i, json) in source.iter().enumerate() {
-        let is_split = sheets.len() > 1 && mesh.primitives[i].is_two_sided;
-        for &sheet in sheets {
-            let unfolded = &sheet.primitives[i];
-            let mut json = json.clone();
-            if unfolded.triangles.is_empty() {
-                // Points and lines stay as they are.
-                if sheet.side == Side::Front {
-                    base.push(Base { sheet, unfolded, json, is_one_sided: false });
-                }
-                continue;
-            }
-            let is_back = sheet.side == Side::Back;
-            split_vertices(document, &mut json, &unfolded.origin, is_back)?;
-            let corners = |&[a, b, c]: &[u32; 3]| if is_back { [a, c, b] } else { [a, b, c] };
-            let indices = unfolded.triangles.iter().flat_map(corners);
-            let indices = document.add_indices(indices);
-            let members = object(&mut json);
-            members.insert("indices".into(), json!(indices));
-            members.remove("mode");
-            let is_one_sided = is_split && is_double_sided(document, &json);
-            base.push(Base { sheet, unfolded, json, is_one_sided });
-        }
-    }
-    Ok(base)
-}
-
-/// Replaces the attributes of a primitive by copies with these elements. For the back of a surface, normals are turned.
-fn split_vertices(
-    document: &mut Document,
-    primitive: &mut Value,
-    origin: &[u32],
-    is_back: bool,
-) -> Result<(), LightmapError> {
-    let replace = |document: &mut Document, attributes: &mut Value| -> Result<(), LightmapError> {
-        for (name, accessor) in object(attributes).iter_mut() {
-            let Some(index) = accessor.as_u64().map(|index| index as usize) else { continue };
-            let count = document.json["accessors"][index]["count"].as_u64().unwrap_or(0);
-            let is_same =
-                origin.len() as u64 == count && origin.iter().zip(0u32..).all(|(&origin, i)| origin == i);
-            let is_turned = is_back && (name == "NORMAL" || name == "TANGENT");
-            if is_same && !is_turned {
-                continue;
-            }
-            let copy = document.add_selection(index, origin)?;
-            if is_turned {
-                document.negate(copy, if name == "NORMAL" { 0..3 } else { 3..4 });
-            }
-            *accessor = json!(copy);
-        }
-        Ok(())
-    };
-    replace(document, &mut primitive["attributes"])?;
-    if let Some(targets) = primitive.get_mut("targets").and_then(Value::as_array_mut) {
-        for target in targets {
-            replace(document, target)?;
-        }
-    }
-    Ok(())
-}
-
-/// Adds meshes and materials with lightmaps.
-struct Lighter<'a> {
-    textures: Vec<usize>,
-    pages: &'a [PageImage],
-    style: Style,
-    /// Index of each variant of a material; those of new ones are counted from the end of the list.
-    variants: BTreeMap<Variant, usize>,
-}
-
-impl Lighter<'_> {
-    /// Returns a primitive with lightmap coordinates at a place, and with the material for it.
-    fn primitive(
-        &mut self,
-        document: &mut Document,
-        base: &Base<'_>,
-        place: Rectangle,
-        set: u32,
-        lightmap: Option<(u32, u32)>,
-    ) -> Value {
-        let Base { unfolded, is_one_sided, .. } = *base;
-        let mut json = base.json.clone();
-        if unfolded.triangles.is_empty() {
-            return json;
-        }
-        let coordinates: Vec<[f32; 2]> =
-            unfolded.coordinates.iter().map(|&uv| place.place(uv).as_vec2().to_array()).collect();
-        let accessor = document.add_vectors(&coordinates, false);
-        if self.style == Style::Combined {
-            let unused = |name: &str| name.starts_with("TEXCOORD_") || name.starts_with("COLOR_");
-            object(&mut json["attributes"]).retain(|name, _| !unused(name));
-        }
-        for other in 0..set {
-            // Sets must be numbered without gaps.
-            let name = format!("TEXCOORD_{other}");
-            if json["attributes"].get(&name).is_none() {
-                json["attributes"][name] = json!(accessor);
-            }
-        }
-        json["attributes"][format!("TEXCOORD_{set}")] = json!(accessor);
-        let material = json["material"].as_u64().map(|index| index as usize);
-        json["material"] = json!(self.material(document, Variant { material, lightmap, is_one_sided }));
-        json
-    }
-
-    /// Returns the index of a variant of a material, which is added on first use.
-    fn material(&mut self, document: &mut Document, variant: Variant) -> usize {
-        if let Some(&index) = self.variants.get(&variant) {
-            return index;
-        }
-        let mut json = variant.material.map_or_else(
-            // The reader of scenes takes it for gray, too.
-            || json!({ "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.5, 0.5, 1.0], "metallicFactor": 0.0 } }),
-            |index| document.json["materials"][index].clone(),
-        );
-        if variant.is_one_sided {
-            object(&mut json).remove("doubleSided");
-        }
-        if let (Some((page, _)), Style::Combined) = (variant.lightmap, self.style) {
-            json = unlit(&json, self.textures[page as usize]);
-            document.use_extension(UNLIT);
-        } else if let Some((page, set)) = variant.lightmap {
-            let page = page as usize;
-            object(&mut json).entry("extensions").or_insert_with(|| json!({}));
-            json["extensions"][EXTENSION] = json!({
-                "index": self.textures[page], "texCoord": set, "intensity": self.pages[page].intensity,
-            });
-            document.use_extension(EXTENSION);
-        }
-        let index = document.add("materials", json);
-        self.variants.insert(variant, index);
-        index
-    }
-
-    /// Adds a mesh with these primitives, or puts them into the mesh of the source.
-    fn place_mesh(
-        &mut self,
-        document: &mut Document,
-        source: usize,
-        primitives: Vec<Value>,
-        can_replace: bool,
-    ) -> usize {
-        let meshes = document.list_mut("meshes");
-        if can_replace {
-            meshes[source]["primitives"] = json!(primitives);
-            return source;
-        }
-        let mut mesh = meshes[source].clone();
-        mesh["primitives"] = json!(primitives);
-        meshes.push(mesh);
-        meshes.len() - 1
-    }
-
-    /// Puts the variants of materials in the place of the materials that nothing else uses.
-    fn finish(self, document: &mut Document) {
-        let mut of_source: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (variant, &index) in &self.variants {
-            if let Some(source) = variant.material {
-                of_source.entry(source).or_default().push(index);
-            }
-        }
-        let mut used: BTreeSet<u64> = BTreeSet::new();
-        for primitive in list(&document.json, "meshes").iter().flat_map(|mesh| list(mesh, "primitives")) {
-            used.extend(primitive["material"].as_u64());
-            // Variants of materials that the file itself offers.
-            collect_members(&primitive["extensions"], "material", &mut used);
-        }
-        let count = list(&document.json, "materials").len();
-        let mut target: Vec<usize> = (0..count).collect();
-        for (&source, variants) in &of_source {
-            if let (false, Some(&first)) = (used.contains(&(source as u64)), variants.first()) {
-                target[first] = source;
-            }
-        }
-        // New materials close the gaps.
-        let materials = document.list_mut("materials");
-        let mut next = 0;
-        let mut kept = Vec::with_capacity(materials.len());
-        let added: BTreeSet<usize> = self.variants.values().copied().collect();
-        let first_new = added.first().copied().unwrap_or(count);
-        for (i, material) in std::mem::take(materials).into_iter().enumerate() {
-            if i < first_new {
-                kept.push(material);
-                next += 1;
-            } else if target[i] != i {
-                let place = target[i];
-                kept[place] = material;
-            } else {
-                target[i] = next;
-                kept.push(material);
-                next += 1;
-            }
-        }
-        *materials = kept;
-        for mesh in document.list_mut("meshes") {
-            for primitive in mesh["primitives"].as_array_mut().into_iter().flatten() {
-                if let Some(index) = primitive["material"].as_u64() {
-                    primitive["material"] = json!(target[index as usize]);
-                }
-            }
-        }
-    }
-}
-
-/// Returns an unlit material with the transparency and the sides of another one, and a texture as its color.
-fn unlit(material: &Value, texture: usize) -> Value {
-    let mut json = json!({
-        "pbrMetallicRoughness": { "baseColorTexture": { "index": texture }, "metallicFactor": 0.0 },
-        "extensions": { UNLIT: {} },
-    });
-    for name in ["name", "alphaMode", "alphaCutoff", "doubleSided", "extras"] {
-        if let Some(value) = material.get(name) {
-            json[name] = value.clone();
-        }
-    }
-    if json["alphaMode"] == "MASK" {
-        // Texels have the share of the surface that is left.
-        json["alphaCutoff"] = json!(0.5);
-    }
-    json
-}
-
-/// Collects the numbers of all members with a name, at any depth.
-fn collect_members(value: &Value, name: &str, found: &mut BTreeSet<u64>) {
-    match value {
-        Value::Object(members) => {
-            found.extend(members.get(name).and_then(Value::as_u64));
-            members.values().for_each(|member| collect_members(member, name, found));
-        }
-        Value::Array(elements) => elements.iter().for_each(|element| collect_members(element, name, found)),
-        _ => {}
-    }
-}
-
-impl Document {
-    /// Changes the sign of some components of an accessor that was added and has a view of its own.
-    fn negate(&mut self, accessor: usize, components: std::ops::Range<usize>) {
-        let of = &self.json["accessors"][accessor];
-        let (component, count) =
-            (of["componentType"].as_u64().unwrap_or(0), of["count"].as_u64().unwrap_or(0));
-        let Some(view) = of["bufferView"].as_u64() else { return };
-        let bytes = self.view_mut(view as usize);
-        let stride = bytes.len() / (count as usize).max(1);
-        for element in bytes.chunks_exact_mut(stride.max(1)) {
-            for c in components.clone() {
-                match component {
-                    x if x == u64::from(FLOAT) => {
-                        if let Some(sign) = element.get_mut(4 * c + 3) {
-                            *sign ^= 0x80;
-                        }
-                    }
-                    5122 => {
-                        if let Some([a, b]) = element.get_mut(2 * c..2 * c + 2) {
-                            let negative = i16::from_le_bytes([*a, *b]).saturating_neg();
-                            [*a, *b] = negative.to_le_bytes();
-                        }
-                    }
-                    5120 => {
-                        if let Some(byte) = element.get_mut(c) {
-                            *byte = (*byte as i8).saturating_neg() as u8;
-                        }
-                    }
-                    _ => {}
-                }
-            }
-        }
     }
 }

@@ -91,8 +91,8 @@ impl Mesh {
 impl Objects {
     /// Collects the meshes from which the triangles of a scene come. Triangles without one have no place yet.
     pub(crate) fn of_file(document: &Document, scene: &Scene) -> Result<Self, LightmapError> {
-        let mut objects = Self::default();
-        objects.places = vec![Place { instance: u32::MAX, triangle: 0 }; scene.triangles().len()];
+        let nowhere = Place { instance: u32::MAX, triangle: 0 };
+        let mut objects = Self { places: vec![nowhere; scene.triangles().len()], ..Self::default() };
         let Some(file) = document.file() else { return Ok(objects) };
         let mut known: BTreeMap<u32, usize> = BTreeMap::new();
         let mut numbers: BTreeMap<usize, u32> = BTreeMap::new();

@@ -125,10 +125,10 @@ fn pairs(objects: &Objects, layout: &Layout) -> Vec<[EdgeSide; 2]> {
             };
             let mut others = sides.iter().enumerate().filter(|(j, b)| *j != i && continues(b));
             // Where several surfaces go on, none is the continuation.
-            if let (Some((j, b)), None) = (others.next(), others.next()) {
-                if i < j {
-                    pairs.push([*a, *b]);
-                }
+            if let (Some((j, b)), None) = (others.next(), others.next())
+                && i < j
+            {
+                pairs.push([*a, *b]);
             }
         }
     }
@@ -270,13 +270,12 @@ pub(crate) fn fit(
             }
         }
     }
-    let mut steps = SeamSteps::default();
-    steps.before = measure(layout, &pairs, texels).0;
+    let before = measure(layout, &pairs, texels).0;
     if !rows.starts.is_empty() {
         solve(&mut rows, texels, observer)?;
     }
-    (steps.after, steps.inside, steps.points) = measure(layout, &pairs, texels);
-    Ok(steps)
+    let (after, inside, points) = measure(layout, &pairs, texels);
+    Ok(SeamSteps { before, after, inside, points })
 }
 
 /// Returns the mean step across edges and inside charts, and the number of points.

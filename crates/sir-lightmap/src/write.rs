@@ -13,7 +13,8 @@ use crate::Observer;
 use crate::encode::{png_rgba, png_rgbm, png_srgb, scale};
 use crate::error::LightmapError;
 use crate::lightmap::{Lightmap, open};
-use crate::lit::{Lit, PageImage, Style, light};
+use crate::lit::{Lit, light};
+use crate::variants::{PageImage, Style};
 
 /// Files to write.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -178,7 +178,7 @@ pub enum Error {
     View(#[from] ViewError),
     /// A lightmap cannot be made.
     #[error(transparent)]
-    Lightmap(#[from] LightmapError),
+    Lightmap(Box<LightmapError>),
     /// A directory to be compared holds no result.
     #[error("{} is not a run directory: it has no readable result.json ({why})", directory.display())]
     NoResult {
@@ -201,6 +201,12 @@ pub enum Error {
 impl From<SolveError> for Error {
     fn from(error: SolveError) -> Self {
         Self::Run(error.into())
+    }
+}
+
+impl From<LightmapError> for Error {
+    fn from(error: LightmapError) -> Self {
+        Self::Lightmap(Box::new(error))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Layouts: charts, pages, and what does not fit.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use glam::DVec2;
 use sir_geom::shapes::{self, Facing};
@@ -26,7 +26,7 @@ fn overlap([a, b, c]: [DVec2; 3], texel: DVec2) -> bool {
 
 /// Checks that no two triangles share a texel unless they touch on the surface, and returns the number of texels.
 fn check_texels(scene: &Scene, lightmap: &Lightmap<'_>) -> usize {
-    let mut owners: HashMap<(u32, i64, i64), Vec<(sir_geom::TriangleId, Side)>> = HashMap::new();
+    let mut owners: BTreeMap<(u32, i64, i64), Vec<(sir_geom::TriangleId, Side)>> = BTreeMap::new();
     for t in scene.triangle_ids() {
         for side in [Side::Front, Side::Back] {
             let Some((page, corners)) = lightmap.place(t, side) else { continue };

@@ -129,7 +129,7 @@ pub(super) fn memory(prepared: &Prepared, pipeline: &Pipeline) -> (Vec<(&'static
         _ => None,
     });
     let lightmaps = pipeline.outputs().filter_map(|output| match output {
-        Output::Lightmap(lightmap) => Some(lightmap_bytes(lightmap, model)),
+        Output::Lightmap(lightmap) => Some(lightmap_bytes(lightmap, &prepared.model)),
         _ => None,
     });
     let memory = vec![

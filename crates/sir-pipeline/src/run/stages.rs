@@ -162,7 +162,8 @@ impl Run<'_> {
         let saver = Saver { pipeline, prepared, directory, threads, progress, stop: &options.stop };
         match save(saver, light, outputs, &mut pages.pages, &mut reports) {
             Ok(true) => Ok(reports),
-            Ok(false) | Err(Error::Lightmap(LightmapError::Stopped)) => {
+            Ok(false) => Err(Error::InterruptedSaving { directory: self.directory.clone() }),
+            Err(Error::Lightmap(error)) if matches!(*error, LightmapError::Stopped) => {
                 Err(Error::InterruptedSaving { directory: self.directory.clone() })
             }
             Err(error) => Err(error),
