@@ -157,7 +157,7 @@ async function start() {
   const expose = () => {
     const stops = Number(element('exposure').value);
     renderer.toneMappingExposure = 2 ** stops;
-    element('exposure-text').textContent = `${stops} stops`;
+    element('exposure-text').textContent = `${stops.toFixed(1)} stops`;
     draw();
   };
   const curve = () => {
