@@ -8,6 +8,11 @@ cargo test --workspace --features mpi "$@"
 browser=${SIR_BROWSER:-$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)}
 if [ -n "$browser" ]; then
     SIR_BROWSER=$browser cargo test -p sir --features mpi --test browser -- --ignored
+    if command -v npm >/dev/null && (cd examples/three && npm ci --silent --no-audit --no-fund); then
+        SIR_BROWSER=$browser cargo test -p sir --features mpi --test lightmap_browser -- --ignored
+    else
+        echo "Tests of lightmaps in a browser were not run: npm does not install three.js in examples/three."
+    fi
 else
     echo "Tests of pages in a browser were not run: there is no Chromium (SIR_BROWSER sets its command)."
 fi

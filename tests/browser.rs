@@ -10,6 +10,8 @@
     reason = "a step that fails is a test that fails"
 )]
 
+mod common;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -59,15 +61,8 @@ impl Page {
 
     /// Opens the page with a state of its view, and returns what the browser printed. Fails if the page reports an error.
     fn open(&self, state: &str, arguments: &[String]) -> String {
-        let browser = std::env::var_os("SIR_BROWSER").expect("SIR_BROWSER is the command of Chromium");
-        let mut command = Command::new(browser);
-        command.args([
-            "--headless=new",
-            "--no-sandbox",
-            "--use-angle=swiftshader",
-            "--enable-unsafe-swiftshader",
-        ]);
-        command.args(["--hide-scrollbars", "--force-device-scale-factor=1", "--virtual-time-budget=30000"]);
+        let mut command = Command::new(common::browser());
+        command.args(common::BROWSER_ARGUMENTS).arg("--virtual-time-budget=30000");
         command.args(["--enable-logging=stderr", &format!("--window-size={},{}", SIZE.0, SIZE.1)]);
         command.arg(format!("--user-data-dir={}", self.path("profile").display())).args(arguments);
         let output = command
