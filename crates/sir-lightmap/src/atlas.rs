@@ -9,9 +9,9 @@ use crate::existing;
 use crate::input::Input;
 use crate::layout::{Layout, Rectangle, Sheet};
 use crate::objects::Objects;
+use crate::observer::{Observer, Step};
 use crate::options::LightmapOptions;
 use crate::text::grouped;
-use crate::{Observer, Step};
 
 /// Number of charts from which they are placed by the faster, less dense method.
 const MANY_CHARTS: u32 = 4_000;

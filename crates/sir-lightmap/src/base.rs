@@ -3,10 +3,11 @@
 use serde_json::{Value, json};
 use sir_geom::Side;
 
-use crate::document::{Document, FLOAT, list, object};
+use crate::document::{Document, FLOAT};
 use crate::error::LightmapError;
-use crate::layout::{Sheet, Unfolded};
-use crate::objects::{Objects, is_double_sided};
+use crate::json::{list, object};
+use crate::layout::{ABSENT, Sheet, Unfolded};
+use crate::objects::Objects;
 
 /// A primitive of a sheet before it has lightmap coordinates.
 pub(crate) struct Base<'a> {
@@ -23,12 +24,13 @@ pub(crate) fn base_primitives<'a>(
     objects: &Objects,
     number: usize,
     sheets: &[&'a Sheet],
+    is_split: bool,
 ) -> Result<Vec<Base<'a>>, LightmapError> {
     let mesh = &objects.meshes[number];
     let source = list(&document.json["meshes"][mesh.index], "primitives").to_vec();
     let mut base = Vec::new();
     for (i, json) in source.iter().enumerate() {
-        let is_split = sheets.len() > 1 && mesh.primitives[i].is_two_sided;
+        let is_one_sided = is_split && mesh.primitives[i].is_two_sided;
         for &sheet in sheets {
             let unfolded = &sheet.primitives[i];
             let mut json = json.clone();
@@ -42,12 +44,11 @@ pub(crate) fn base_primitives<'a>(
             let is_back = sheet.side == Side::Back;
             split_vertices(document, &mut json, &unfolded.origin, is_back)?;
             let corners = |&[a, b, c]: &[u32; 3]| if is_back { [a, c, b] } else { [a, b, c] };
-            let indices = unfolded.triangles.iter().flat_map(corners);
-            let indices = document.add_indices(indices);
+            let own = unfolded.triangles.iter().filter(|&&triangle| triangle != ABSENT);
+            let indices = document.add_indices(own.flat_map(corners));
             let members = object(&mut json);
             members.insert("indices".into(), json!(indices));
             members.remove("mode");
-            let is_one_sided = is_split && is_double_sided(document, &json);
             base.push(Base { sheet, unfolded, json, is_one_sided });
         }
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use crate::document::{array, list, object};
+use crate::json::{array, list, object};
 
 /// Extensions of which it is known where they refer to accessors and buffer views: nowhere, or where this file looks.
 const KNOWN: [&str; 25] = [

@@ -2,9 +2,9 @@
 
 use sir_geom::Side;
 
-use crate::lightmap::Solution;
 use crate::objects::Objects;
 use crate::options::LightmapSides;
+use crate::solution::Solution;
 
 /// Sides of the triangles of all meshes that have light.
 pub(crate) struct Dark {

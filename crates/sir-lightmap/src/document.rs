@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use sir_geom::{GltfFile, RawElements};
 
 use crate::compact::compact;
 use crate::error::LightmapError;
+use crate::json::{array, list, object};
 
 /// Component type of 32-bit floats in glTF.
 pub(crate) const FLOAT: u32 = 5126;
@@ -97,6 +98,17 @@ impl Document {
         let scene = scene.min(scenes.len() - 1);
         array(object(&mut scenes[scene]).entry("nodes").or_insert_with(|| json!([]))).push(json!(index));
         index
+    }
+
+    /// Adds a member to the extras of the default scene, unless these are no object.
+    pub(crate) fn add_scene_extras(&mut self, name: &str, value: Value) {
+        let scene = self.json["scene"].as_u64().unwrap_or(0) as usize;
+        if let Some(scene) = self.list_mut("scenes").get_mut(scene) {
+            let extras = object(scene).entry("extras").or_insert_with(|| json!({}));
+            if let Some(extras) = extras.as_object_mut() {
+                extras.insert(name.to_owned(), value);
+            }
+        }
     }
 
     /// Adds an extension to those that the document uses.
@@ -296,31 +308,4 @@ fn bounds(bytes: &[u8], stride: usize, component: u64, width: usize) -> [Vec<Val
         }
     }
     [low, high].map(|all| all.into_iter().map(|x| json!(x)).collect())
-}
-
-/// Returns a list of a document; an absent one is empty.
-pub(crate) fn list<'a>(json: &'a Value, name: &str) -> &'a [Value] {
-    json[name].as_array().map_or(&[], Vec::as_slice)
-}
-
-/// Returns the members of an object. Another value becomes an empty object.
-pub(crate) fn object(value: &mut Value) -> &mut Map<String, Value> {
-    if !value.is_object() {
-        *value = json!({});
-    }
-    match value {
-        Value::Object(members) => members,
-        _ => unreachable!("it has just become an object"),
-    }
-}
-
-/// Returns the elements of a list. Another value becomes an empty list.
-pub(crate) fn array(value: &mut Value) -> &mut Vec<Value> {
-    if !value.is_array() {
-        *value = json!([]);
-    }
-    match value {
-        Value::Array(elements) => elements,
-        _ => unreachable!("it has just become a list"),
-    }
 }

@@ -8,7 +8,7 @@ use sir_geom::Side;
 use uvunwrap::OutputMesh;
 
 use crate::existing::Existing;
-use crate::layout::{NO_CHART, Unfolded};
+use crate::layout::{ABSENT, NO_CHART, Unfolded};
 use crate::objects::{Mesh, Objects};
 
 /// Cosine of the largest bend of a surface across which light continues: 30°, as in pictures.
@@ -109,7 +109,7 @@ impl Input {
             let (of, known) = (&mut all[primitive], &mut known[primitive]);
             if of.triangles.is_empty() {
                 let count = mesh.primitives[primitive].triangles.len();
-                (of.triangles, of.charts) = (vec![[0; 3]; count], vec![NO_CHART; count]);
+                (of.triangles, of.charts) = (vec![ABSENT; count], vec![NO_CHART; count]);
             }
             let [a, b, c] = [corners[0], corners[1], corners[2]].map(|v| {
                 *known.entry(v).or_insert_with(|| {

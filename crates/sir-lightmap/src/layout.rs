@@ -8,6 +8,9 @@ use crate::objects::{Objects, Place};
 /// Chart number of triangles without texels.
 pub(crate) const NO_CHART: u32 = u32::MAX;
 
+/// Vertices of a triangle that a sheet does not have.
+pub(crate) const ABSENT: [u32; 3] = [0; 3];
+
 /// Layout of all sheets on pages.
 #[derive(Debug, Default)]
 pub(crate) struct Layout {
@@ -105,6 +108,14 @@ impl Layout {
         Some(OnPage { page: rectangle.page, corners })
     }
 
+    /// Returns true if a side of a triangle of the scene is in the layout, with or without texels.
+    pub(crate) fn has(&self, objects: &Objects, t: TriangleId, side: Side) -> bool {
+        let Some((mesh, primitive, number)) = objects.locate(t) else { return false };
+        let sheet = self.of_mesh[mesh][usize::from(side == Side::Back)];
+        let triangles = sheet.map(|sheet| &self.sheets[sheet].primitives[primitive].triangles);
+        triangles.and_then(|triangles| triangles.get(number)).is_some_and(|&triangle| triangle != ABSENT)
+    }
+
     /// Returns where a side of an instance lies.
     pub(crate) fn rectangle(&self, instance: usize, side: Side) -> Option<Rectangle> {
         self.rectangles[instance][usize::from(side == Side::Back)]
@@ -122,8 +133,7 @@ impl Unfolded {
         self.origin.extend(other.origin);
         self.coordinates.extend(other.coordinates);
         for (i, (triangle, chart)) in other.triangles.into_iter().zip(other.charts).enumerate() {
-            // Triangles of this part have other corners than the first vertex.
-            if triangle != [0; 3] {
+            if triangle != ABSENT {
                 self.triangles[i] = triangle.map(|v| v + first);
                 self.charts[i] = chart;
             }

@@ -11,8 +11,9 @@
 //!   document, for which [`Scene::mesh_instances`](sir_geom::Scene::mesh_instances) tells from which mesh it comes.
 //! * **Layout.** `unwrap` unfolds each side of each mesh into charts, with the crate `uvunwrap`, and places them on pages. A
 //!   layout that the file has is kept if it is valid (`existing`). Charts end at creases, so that no texel mixes the light of
-//!   two walls. Surfaces without any light, such as the outsides of a room, take one texel each (`dark`).
-//! * **Texels.** `texels` cuts the polygons of the display mesh at the edges of texels and integrates exactly. A texel starts
+//!   two walls. Backs without any light, such as the outsides of a room, are left out, and other surfaces without light take
+//!   one texel each (`dark`).
+//! * **Texels.** `means` gives vertices values that keep the power of patches. `texels` cuts the polygons of the display mesh at the edges of texels and integrates exactly. A texel starts
 //!   no ray, so none starts behind a wall: where other bakers leak, this one takes the mean of what lies in the texel.
 //! * **Seams.** `seams` fits the texels on both sides of edges of charts to each other, within their errors; `dilate` gives
 //!   the texels around charts the light of their neighbors.
@@ -64,8 +65,8 @@
 //!
 //! # Limits
 //!
-//! Light is not resolved finer than patches. Where patches are larger than texels, the noise of a patch looks like a low
-//! pyramid over it. Triangles too thin for single precision have no texels; [`Lightmap::notes`] tells their area.
+//! Light is not resolved finer than patches, and single patches that differ from their neighbors are smoothed, as in
+//! pictures. Errors of texels are upper limits. Triangles too thin for single precision have no texels; [`Lightmap::notes`] tells their area.
 
 mod atlas;
 mod base;
@@ -78,13 +79,17 @@ mod encode;
 mod error;
 mod existing;
 mod input;
+mod json;
 mod layout;
 mod lightmap;
 mod lit;
 mod loose;
+mod means;
 mod objects;
+mod observer;
 mod options;
 mod seams;
+mod solution;
 mod texels;
 mod text;
 mod unwrap;
@@ -92,26 +97,9 @@ mod variants;
 mod write;
 
 pub use error::LightmapError;
-pub use lightmap::{Lightmap, Solution};
+pub use lightmap::Lightmap;
+pub use observer::{Observer, Step};
 pub use options::{LightmapOptions, LightmapSides};
 pub use seams::SeamSteps;
+pub use solution::Solution;
 pub use write::LightmapFiles;
-
-/// Step of making a lightmap.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// Meshes are unfolded into charts. Counts triangles.
-    Unwrapping,
-    /// Charts are placed on pages. The total is not known.
-    Packing,
-    /// Texels get their light. Counts sides of patches.
-    Filling,
-    /// Texels at the edges of charts are fitted to each other.
-    Seams,
-}
-
-/// Observer of the work.
-pub trait Observer: Sync {
-    /// Receives the amount of work done and in total, if it is known. Returns false to stop.
-    fn progress(&self, step: Step, done: u64, total: Option<u64>) -> bool;
-}

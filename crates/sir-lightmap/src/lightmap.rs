@@ -1,10 +1,6 @@
 //! A lightmap: from a solution to texels.
 
-use std::path::Path;
-
-use glam::DVec3;
-use sir_geom::{Rgb, Scene, Side, TriangleId};
-use sir_mesh::PatchMesh;
+use sir_geom::{Rgb, Side, TriangleId};
 use sir_view::{DisplayMesh, Exposure};
 
 use crate::dark::Dark;
@@ -12,35 +8,15 @@ use crate::dilate::dilate;
 use crate::document::Document;
 use crate::error::LightmapError;
 use crate::layout::Layout;
+use crate::loose;
+use crate::means::keep_power;
 use crate::objects::Objects;
+use crate::observer::Observer;
 use crate::options::{LightmapOptions, LightmapSides};
 use crate::seams::{self, SeamSteps};
+use crate::solution::Solution;
 use crate::texels::{self, Light, Texels};
 use crate::unwrap::unwrap;
-use crate::{Observer, loose};
-
-/// The solution of which a lightmap is made.
-#[derive(Clone, Copy)]
-pub struct Solution<'a> {
-    /// The scene.
-    pub scene: &'a Scene,
-    /// Its patches.
-    pub mesh: &'a PatchMesh,
-    /// Irradiance of each side of a patch \[W/m²\].
-    pub irradiance: &'a [Rgb],
-    /// Standard error of the irradiance of each side \[W/m²\].
-    pub errors: &'a [Rgb],
-    /// True if `irradiance` was denoised, for the manifest.
-    pub is_denoised: bool,
-    /// Direct irradiance of each side \[W/m²\], if direct and reflected light are wanted apart.
-    pub direct: Option<&'a [Rgb]>,
-    /// File from which the scene was read.
-    pub source: &'a Path,
-    /// Length of a unit of the file \[m\].
-    pub scale: f64,
-    /// Direction of the scene that is up.
-    pub up: DVec3,
-}
 
 /// A lightmap: charts on pages of texels, with the light of a solution.
 pub struct Lightmap<'a> {
@@ -83,7 +59,8 @@ impl<'a> Lightmap<'a> {
         let display = DisplayMesh::new(scene, mesh, irradiance);
         let exposure = Exposure::Auto.factor_for_mesh(&display);
         let fill = |display: &DisplayMesh<'_>, irradiance: &[Rgb]| {
-            let light = Light { display, irradiance, errors, is_radiosity: false };
+            let light =
+                Light { display, vertices: &keep_power(display, irradiance), errors, is_radiosity: false };
             texels::fill(&objects, &layout, &light, options.sides, options.threads, observer)
         };
         let mut texels = fill(&display, irradiance)?;
@@ -190,7 +167,8 @@ impl<'a> Lightmap<'a> {
     pub(crate) fn radiosity(&self, observer: &dyn Observer) -> Result<Texels, LightmapError> {
         let Solution { scene, mesh, irradiance, errors, .. } = self.solution;
         let display = DisplayMesh::new(scene, mesh, irradiance);
-        let light = Light { display: &display, irradiance, errors, is_radiosity: true };
+        let vertices = keep_power(&display, irradiance);
+        let light = Light { display: &display, vertices: &vertices, errors, is_radiosity: true };
         let LightmapOptions { sides, threads, padding, .. } = self.options;
         let mut texels = texels::fill(&self.objects, &self.layout, &light, sides, threads, observer)?;
         dilate(&mut texels, &self.layout, padding);

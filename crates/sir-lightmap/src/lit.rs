@@ -7,9 +7,10 @@ use serde_json::{Value, json};
 use sir_geom::Side;
 
 use crate::base::base_primitives;
-use crate::document::{Document, list, object};
+use crate::document::Document;
 use crate::error::LightmapError;
 use crate::existing::LIGHTMAP_SET;
+use crate::json::{list, object};
 use crate::layout::{Layout, Rectangle, Sheet};
 use crate::objects::Objects;
 use crate::variants::{Lighter, PageImage, Style};
@@ -36,13 +37,15 @@ pub(crate) struct Lit {
     pub(crate) is_existing: bool,
 }
 
-/// Adds the lightmap to the document, and returns where each instance has its light.
+/// Adds the lightmap to the document, and returns where each instance has its light. `is_split` is true if the sides of
+/// two-sided surfaces have texels of their own.
 pub(crate) fn light(
     document: &mut Document,
     objects: &Objects,
     layout: &Layout,
     pages: &[PageImage],
     style: Style,
+    is_split: bool,
 ) -> Result<Vec<Lit>, LightmapError> {
     let textures = add_textures(document, pages);
     let mut lighter = Lighter::new(textures, pages, style);
@@ -59,7 +62,7 @@ pub(crate) fn light(
             Style::Combined => 0,
         };
         // Vertices are the same in all copies of the mesh; only the coordinates differ.
-        let base = base_primitives(document, objects, number, &sheets)?;
+        let base = base_primitives(document, objects, number, &sheets, is_split)?;
         let mut is_first = true;
         let is_own = expand || sheets.len() > 1 || front.instances.len() == 1;
         let mut common = None;
@@ -99,10 +102,12 @@ pub(crate) fn light(
             node_json["mesh"] = json!(index);
             let extras = object(node_json).entry("extras").or_insert_with(|| json!({}));
             if let Some(extras) = extras.as_object_mut() {
-                extras.insert(
-                    "lightmap".into(),
-                    json!({ "page": rectangle.page, "uv_rect": uv_rect, "texCoord": set }),
-                );
+                let (index, intensity) = lighter.texture(rectangle.page);
+                let place = json!({
+                    "page": rectangle.page, "uv_rect": uv_rect, "texCoord": set,
+                    "index": index, "intensity": intensity,
+                });
+                extras.insert("lightmap".into(), place);
             }
             let page = rectangle.page;
             let (is_existing, of_node) = (front.existing.is_some(), of.of_node);

@@ -6,8 +6,9 @@ use glam::{DAffine3, DVec2, DVec3};
 use serde_json::Value;
 use sir_geom::{Scene, Sides, TriangleId};
 
-use crate::document::{Document, list};
+use crate::document::Document;
 use crate::error::LightmapError;
+use crate::json::list;
 
 /// Distance from a corner, in barycentric coordinates, within which a point is that corner.
 const CORNER: f64 = 1e-9;

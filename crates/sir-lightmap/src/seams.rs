@@ -12,8 +12,8 @@ use sir_geom::{Side, Weld};
 use crate::error::LightmapError;
 use crate::layout::{Layout, NO_CHART, Rectangle, Sheet};
 use crate::objects::Objects;
+use crate::observer::{Observer, Step};
 use crate::texels::Texels;
-use crate::{Observer, Step};
 
 /// Distance below which corners are the same, relative to the distance of the farthest from the middle.
 const TOLERANCE: f64 = 1e-6;

@@ -1,23 +1,21 @@
 //! Texels: exact means of the light over what each texel covers.
 //!
-//! The light is the interpolated irradiance of the display mesh, plus a correction that keeps the mean of every patch: a
-//! pyramid over each of its polygons, which is zero at the edges, so that no steps appear. Where the correction would make
-//! light negative, the interpolated irradiance is multiplied by a factor instead. Polygons are cut exactly at the edges of
-//! texels; over each part, the mean of a linear function is its value at the centroid.
+//! The light is interpolated between the vertices of the display mesh, with values that keep the power of patches. Polygons
+//! are cut exactly at the edges of texels; over each part, the mean of a linear function is its value at the centroid.
 
 use std::thread;
 
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 use sir_geom::{Barycentric, Rgb, Scene, Side, TriangleId};
-use sir_mesh::{PatchId, PatchMesh, Piece, SideId};
+use sir_mesh::{PatchId, PatchMesh, Piece};
 use sir_view::{DisplayMesh, DisplayPiece};
 
 use crate::clip::{Clipper, area_and_centroid, intersect};
 use crate::error::LightmapError;
 use crate::layout::{Layout, OnPage};
 use crate::objects::Objects;
+use crate::observer::{Observer, Step};
 use crate::options::LightmapSides;
-use crate::{Observer, Step};
 
 /// Number of sides that a thread works on at a time.
 const BLOCK: usize = 2_048;
@@ -45,9 +43,9 @@ pub(crate) struct Texels {
 /// What the texels show.
 pub(crate) struct Light<'a> {
     pub(crate) display: &'a DisplayMesh<'a>,
-    /// Irradiance of each side \[W/m²\], which the display mesh interpolates.
-    pub(crate) irradiance: &'a [Rgb],
-    /// Its standard errors.
+    /// Irradiance at the vertices of the display mesh \[W/m²\].
+    pub(crate) vertices: &'a [Rgb],
+    /// Standard errors of the irradiance of each side \[W/m²\].
     pub(crate) errors: &'a [Rgb],
     /// True to show the radiosity, with textures, in place of the irradiance.
     pub(crate) is_radiosity: bool,
@@ -156,27 +154,21 @@ struct Part {
     /// Range of its corners in `Filler::corners`, which are barycentric coordinates.
     corners: std::ops::Range<usize>,
     /// Interpolated irradiance as a function of barycentric coordinates.
-    light: Linear<Rgb>,
-    /// Pyramid: one at the center of the polygon, zero at its edges.
-    pyramid: Linear<f64>,
+    light: Linear,
     /// Area \[m²\].
     area: f64,
-    centroid: DVec2,
 }
 
-/// A linear function in the plane.
+/// Irradiance as a linear function in the plane.
 #[derive(Clone, Copy)]
-struct Linear<T> {
-    start: T,
-    slope: [T; 2],
+struct Linear {
+    start: Rgb,
+    slope: [Rgb; 2],
 }
 
-impl<T> Linear<T>
-where
-    T: Copy + std::ops::Add<Output = T> + std::ops::Sub<Output = T> + std::ops::Mul<f64, Output = T>,
-{
+impl Linear {
     /// Returns the function with these values at three points.
-    fn through([a, b, c]: [DVec2; 3], values: [T; 3]) -> Self {
+    fn through([a, b, c]: [DVec2; 3], values: [Rgb; 3]) -> Self {
         let inverse = DMat2::from_cols(b - a, c - a).inverse();
         let (b, c) = (values[1] - values[0], values[2] - values[0]);
         let slope =
@@ -184,8 +176,9 @@ where
         Self { start: values[0] - slope[0] * a.x - slope[1] * a.y, slope }
     }
 
-    fn at(&self, p: DVec2) -> T {
-        self.start + self.slope[0] * p.x + self.slope[1] * p.y
+    /// Returns the value at a point, which is not below zero.
+    fn at(&self, p: DVec2) -> Rgb {
+        (self.start + self.slope[0] * p.x + self.slope[1] * p.y).max(Rgb::ZERO)
     }
 }
 
@@ -247,7 +240,6 @@ impl<'a> Filler<'a> {
         for piece in group {
             self.collect(piece, patch);
         }
-        let correction = self.correction(id);
         let covered = self.mesh.covered_area(triangle, patch) / self.mesh.patch_area(triangle, patch);
         let covered = covered.max(LEAST_COVERED);
         let first = self.contributions.len();
@@ -260,21 +252,13 @@ impl<'a> Filler<'a> {
             };
             on_page = Some((part.triangle, place));
             match place {
-                Some(place) => self.distribute(part, &place, &correction, covered, side),
-                None if self.is_shown(part.triangle, side) => self.lost += part.area,
+                Some(place) => self.distribute(part, &place, covered, side),
+                None if self.layout.has(self.objects, part.triangle, texels_of) => self.lost += part.area,
                 None => {}
             }
         }
         self.parts = parts;
         self.merge(first, self.light.errors[id.index()]);
-    }
-
-    /// Returns true if a side of a triangle of the scene is in the layout.
-    fn is_shown(&self, triangle: TriangleId, side: Side) -> bool {
-        let Some((mesh, primitive, _)) = self.objects.locate(triangle) else { return false };
-        side == Side::Front
-            || self.sides == LightmapSides::Split
-                && self.objects.meshes[mesh].primitives[primitive].is_two_sided
     }
 
     /// Collects the parts of a piece of the display mesh in the pieces of the patch.
@@ -285,41 +269,18 @@ impl<'a> Filler<'a> {
             .pieces(piece.triangle, patch)
             .filter(|of| is_cell || of.triangle == piece.triangle)
             .collect();
-        let display = self.light.display;
-        let point = |v: u32| {
-            let vertex = display.vertices()[v as usize];
-            let light = Rgb::from_array(vertex.irradiance.map(f64::from));
-            (display.positions()[vertex.position as usize], light)
-        };
-        let center = center_of_fan(piece.triangles);
+        let Light { display, vertices, .. } = *self.light;
+        let position = |v: u32| display.positions()[display.vertices()[v as usize].position as usize];
         for of in &of_patch {
             let flat = Flat::new(self.scene.corners(of.triangle));
             for t in piece.triangles {
-                let corners = t.map(point);
-                let places = corners.map(|(p, _)| flat.place(p));
-                let lights = corners.map(|(_, light)| light);
-                if center.is_some() {
-                    self.cut(of, places, lights, [0.0, 0.0, 1.0]);
-                    continue;
-                }
-                // Without a center, each triangle has a pyramid of its own.
-                let middle = (places[0] + places[1] + places[2]) / 3.0;
-                let light = (lights[0] + lights[1] + lights[2]) / 3.0;
-                for i in 0..3 {
-                    let j = (i + 1) % 3;
-                    self.cut(
-                        of,
-                        [places[i], places[j], middle],
-                        [lights[i], lights[j], light],
-                        [0.0, 0.0, 1.0],
-                    );
-                }
+                self.cut(of, t.map(|v| flat.place(position(v))), t.map(|v| vertices[v as usize]));
             }
         }
     }
 
     /// Adds the common part of a piece of a patch and a triangle in the same plane.
-    fn cut(&mut self, piece: &Piece, triangle: [DVec2; 3], light: [Rgb; 3], pyramid: [f64; 3]) {
+    fn cut(&mut self, piece: &Piece, triangle: [DVec2; 3], light: [Rgb; 3]) {
         self.polygon.clear();
         self.polygon.extend(piece.corners().iter().map(|p| DVec2::new(p.v, p.w)));
         let [a, b, c] = triangle;
@@ -328,53 +289,21 @@ impl<'a> Filler<'a> {
         }
         intersect(&mut self.polygon, triangle, &mut self.spare);
         let (area, centroid) = area_and_centroid(&self.polygon);
-        let (light, pyramid) = (Linear::through(triangle, light), Linear::through(triangle, pyramid));
-        let is_finite = light.at(centroid).is_finite() && pyramid.at(centroid).is_finite();
-        if area > 0.0 && is_finite {
+        let light = Linear::through(triangle, light);
+        if area > 0.0 && light.at(centroid).is_finite() {
             let start = self.corners.len();
             self.corners.extend_from_slice(&self.polygon);
             self.parts.push(Part {
                 triangle: piece.triangle,
                 corners: start..self.corners.len(),
                 light,
-                pyramid,
                 area: 2.0 * self.scene.area(piece.triangle) * area,
-                centroid,
             });
         }
     }
 
-    /// Returns what makes the mean over the parts that of the patch.
-    fn correction(&self, id: SideId) -> Correction {
-        let goal = self.light.irradiance[id.index()];
-        let (mut area, mut light, mut pyramid) = (0.0, Rgb::ZERO, 0.0);
-        let mut least = Rgb::INFINITY;
-        for part in &self.parts {
-            area += part.area;
-            light += part.area * part.light.at(part.centroid);
-            pyramid += part.area * part.pyramid.at(part.centroid);
-        }
-        let missing = goal * area - light;
-        let height = if pyramid > 0.0 { missing / pyramid } else { Rgb::ZERO };
-        for part in &self.parts {
-            for &corner in &self.corners[part.corners.clone()] {
-                least = least.min(part.light.at(corner) + part.pyramid.at(corner) * height);
-            }
-        }
-        let mut correction = Correction { factor: Rgb::ONE, height, level: Rgb::ZERO };
-        for band in 0..3 {
-            if least[band] < 0.0 || pyramid <= 0.0 {
-                correction.height[band] = 0.0;
-                let has_light = light[band] > 0.0;
-                correction.factor[band] = if has_light { goal[band] * area / light[band] } else { 0.0 };
-                correction.level[band] = if has_light { 0.0 } else { goal[band] };
-            }
-        }
-        correction
-    }
-
     /// Adds the light of a part to its texels.
-    fn distribute(&mut self, part: &Part, place: &OnPage, correction: &Correction, covered: f64, side: Side) {
+    fn distribute(&mut self, part: &Part, place: &OnPage, covered: f64, side: Side) {
         let [a, b, c] = place.corners;
         let to_page = DAffine2::from_cols(b - a, c - a, a);
         let determinant = to_page.matrix2.determinant();
@@ -399,7 +328,7 @@ impl<'a> Filler<'a> {
             let (x, y) = (x.clamp(0, i64::from(width) - 1), y.clamp(0, i64::from(height) - 1));
             let on_surface = covered * spread * area;
             let at = to_triangle.transform_point2(centroid);
-            let irradiance = correction.light(part, at);
+            let irradiance = part.light.at(at);
             let (shown, opacity) = if light.is_radiosity {
                 let point = Barycentric { v: at.x, w: at.y };
                 let of = (part.triangle, point);
@@ -447,22 +376,6 @@ impl<'a> Filler<'a> {
     }
 }
 
-/// What is applied to the interpolated irradiance of a side, per band.
-struct Correction {
-    factor: Rgb,
-    /// Height of the pyramid.
-    height: Rgb,
-    /// Irradiance where none is interpolated.
-    level: Rgb,
-}
-
-impl Correction {
-    fn light(&self, part: &Part, at: DVec2) -> Rgb {
-        let light = self.factor * part.light.at(at) + part.pyramid.at(at) * self.height + self.level;
-        light.max(Rgb::ZERO)
-    }
-}
-
 /// Barycentric coordinates of points in the plane of a triangle.
 struct Flat {
     corner: DVec3,
@@ -480,10 +393,4 @@ impl Flat {
     fn place(&self, p: DVec3) -> DVec2 {
         DVec2::new((p - self.corner).dot(self.v), (p - self.corner).dot(self.w))
     }
-}
-
-/// Returns the center of triangles that are a fan around their last vertex.
-fn center_of_fan(triangles: &[[u32; 3]]) -> Option<u32> {
-    let &[.., center] = triangles.first()?;
-    (triangles.len() > 3 && triangles.iter().all(|t| t[2] == center)).then_some(center)
 }

@@ -5,7 +5,6 @@ use std::rc::Rc;
 use sir_geom::Side;
 use uvunwrap::{Atlas, Density, Error};
 
-use crate::Observer;
 use crate::atlas::Sizes;
 use crate::document::Document;
 use crate::error::LightmapError;
@@ -13,6 +12,7 @@ use crate::existing::{self, Existing};
 use crate::input::Input;
 use crate::layout::Layout;
 use crate::objects::Objects;
+use crate::observer::Observer;
 use crate::options::{LightmapOptions, LightmapSides};
 
 /// Factor of the size of surfaces without light, of which a texel shows all that there is.
@@ -52,11 +52,13 @@ pub(crate) fn unwrap(
 /// Returns true if a side of a triangle of a mesh has no light: of the mesh, the primitive and the number in it.
 pub(crate) type IsDark<'a> = dyn Fn(usize, Side, usize, usize) -> bool + 'a;
 
-/// Collects the sides of all meshes. With `is_dark`, those without light are apart, where a mesh has one instance.
+/// Collects the sides of all meshes. Backs without light are left out. `with_dark` is true to keep fronts without light apart,
+/// where a mesh has one instance.
 fn inputs(
     objects: &Objects,
     existing: &[Option<Rc<Existing>>],
-    is_dark: Option<&IsDark<'_>>,
+    is_dark: &IsDark<'_>,
+    with_dark: bool,
     options: &LightmapOptions,
 ) -> Vec<Input> {
     let mut inputs = Vec::new();
@@ -67,7 +69,13 @@ fn inputs(
             let is_split = options.sides == LightmapSides::Split;
             let has_side =
                 |primitive: usize| side == Side::Front || is_split && mesh.primitives[primitive].is_two_sided;
-            let is_apart = is_dark.filter(|_| instances.len() == 1 && existing[number].is_none());
+            // Backs without light, such as the outsides of a room, are left out.
+            let is_apart = match side {
+                Side::Front => {
+                    Some(is_dark).filter(|_| with_dark && instances.len() == 1 && existing[number].is_none())
+                }
+                Side::Back => Some(is_dark),
+            };
             let lit = |p: usize, t: usize| {
                 has_side(p) && !is_apart.is_some_and(|is_dark| is_dark(number, side, p, t))
             };
@@ -79,7 +87,8 @@ fn inputs(
             };
             let lit = Input { existing: existing[number].clone(), ..of(&lit) };
             let dark = Input { scale: DARK_SCALE, ..of(&dark) };
-            inputs.extend([lit, dark].into_iter().filter(|input| !input.triangles.is_empty()));
+            let all = if side == Side::Front { vec![lit, dark] } else { vec![lit] };
+            inputs.extend(all.into_iter().filter(|input| !input.triangles.is_empty()));
         }
     }
     inputs
@@ -98,18 +107,25 @@ fn pack(
         None => Density::Auto { page_size: options.size },
     };
     let fits = |atlas: &Atlas| atlas.page_count <= 1 && atlas.width.max(atlas.height) <= options.size;
-    if options.texels_per_meter.is_some() || options.pages == 1 {
-        let inputs = inputs(objects, existing, Some(is_dark), options);
+    let mut single = None;
+    {
+        let inputs = inputs(objects, existing, is_dark, true, options);
         let sizes = Sizes { objects, inputs: &inputs, options, observer };
         match sizes.generate(one_page, false) {
-            Ok(atlas) if fits(&atlas) => return Ok(sizes.layout(&atlas)),
-            Ok(atlas) if options.texels_per_meter.is_none() => return Err(sizes.too_small(&atlas, None)),
+            Ok(atlas) if fits(&atlas) => single = Some(sizes.layout(&atlas)),
+            Ok(atlas) if options.texels_per_meter.is_none() && options.pages == 1 => {
+                return Err(sizes.too_small(&atlas, None));
+            }
             // With a density there are as many pages as needed.
             Ok(_) | Err(Error::AtlasTooLarge { .. }) => {}
             Err(error) => return Err(sizes.error(error)),
         }
     }
-    let inputs = inputs(objects, existing, None, options);
+    let single = match single {
+        Some(layout) if options.texels_per_meter.is_some() || options.pages == 1 => return Ok(layout),
+        other => other,
+    };
+    let inputs = inputs(objects, existing, is_dark, false, options);
     let sizes = Sizes { objects, inputs: &inputs, options, observer };
     if let Some(texels) = options.texels_per_meter {
         let density = Density::Fixed { texels_per_unit: texels as f32, page_size: Some(options.size) };
@@ -143,8 +159,14 @@ fn pack(
             None => 0.8 * density,
         };
     }
-    match fitting {
-        Some((_, atlas)) => Ok(sizes.layout(&atlas)),
-        None => Err(refusal.unwrap_or(LightmapError::Stopped)),
+    match (fitting, single) {
+        // On several pages a mesh stays on one, which may fill them worse than a single page.
+        (Some((density, atlas)), single)
+            if single.as_ref().is_none_or(|of| of.texels_per_meter < density) =>
+        {
+            Ok(sizes.layout(&atlas))
+        }
+        (_, Some(layout)) => Ok(layout),
+        (_, None) => Err(refusal.unwrap_or(LightmapError::Stopped)),
     }
 }

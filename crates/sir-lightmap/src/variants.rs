@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::{Value, json};
 
 use crate::base::Base;
-use crate::document::{Document, list, object};
+use crate::document::Document;
+use crate::json::{list, object};
 use crate::layout::Rectangle;
 
 /// Extension of materials that refers to a lightmap.
@@ -50,6 +51,11 @@ impl<'a> Lighter<'a> {
     /// Creates it, with the indices of the textures of the pages.
     pub(crate) fn new(textures: Vec<usize>, pages: &'a [PageImage], style: Style) -> Self {
         Self { textures, pages, style, variants: BTreeMap::new() }
+    }
+
+    /// Returns the index of the texture of a page, and the factor from its values to irradiance as it is shown.
+    pub(crate) fn texture(&self, page: u32) -> (usize, f64) {
+        (self.textures[page as usize], self.pages[page as usize].intensity)
     }
 
     /// Returns a primitive with lightmap coordinates at a place, and with the material for it.

@@ -9,11 +9,12 @@ use sir_view::{
     ExrFormat, color_channels, srgb, tone_map, write_atomically, write_exr_channels, write_glb_file,
 };
 
-use crate::Observer;
 use crate::encode::{png_rgba, png_rgbm, png_srgb, scale};
 use crate::error::LightmapError;
 use crate::lightmap::{Lightmap, open};
 use crate::lit::{Lit, light};
+use crate::observer::Observer;
+use crate::options::LightmapSides;
 use crate::variants::{PageImage, Style};
 
 /// Files to write.
@@ -87,9 +88,12 @@ impl Lightmap<'_> {
         }
         let mut manifest = self.manifest(files, scale, rgbm_scale);
         manifest["pages"] = json!(listed);
-        let Self { mut document, objects, layout, options, .. } = self;
-        let lit =
-            light(&mut document, &objects, &layout, &images, Style::Lightmap { expand: options.expand })?;
+        let Self { mut document, objects, layout, options, exposure, .. } = self;
+        let is_split = options.sides == LightmapSides::Split;
+        let style = Style::Lightmap { expand: options.expand };
+        let lit = light(&mut document, &objects, &layout, &images, style, is_split)?;
+        let shown = json!({ "exposure": exposure, "scale": scale, "unit": files.unit });
+        document.add_scene_extras("lightmap", shown);
         manifest["scene"] = json!(name(path));
         manifest["objects"] = lit.iter().map(|lit| object(&document.json, lit)).collect();
         let manifest_path = beside(".json");
@@ -121,7 +125,8 @@ impl Lightmap<'_> {
         let images: Vec<PageImage> = (0..pages as usize).map(page).collect();
         // Meshes and materials are changed, so the document is read again.
         let (mut document, objects) = open(&self.solution)?;
-        light(&mut document, &objects, &self.layout, &images, Style::Combined)?;
+        let is_split = self.options.sides == LightmapSides::Split;
+        light(&mut document, &objects, &self.layout, &images, Style::Combined, is_split)?;
         let (json, binary) = document.into_parts();
         Ok(write_glb_file(path, &json, &binary)?)
     }

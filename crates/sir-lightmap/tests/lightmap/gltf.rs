@@ -187,7 +187,9 @@ fn everything_of_the_author_is_kept() {
         let (json, manifest) =
             write(&source, &scene, &mesh, LightmapOptions { expand, ..options(512) }, &lit);
         let before: Value = serde_json::from_str(&fs::read_to_string(&source).unwrap()).unwrap();
-        for list in ["cameras", "scenes", "extensions", "asset"] {
+        assert!(json["scenes"][0]["extras"]["lightmap"]["exposure"].is_f64());
+        assert_eq!(json["scenes"][0]["nodes"], before["scenes"][0]["nodes"]);
+        for list in ["cameras", "extensions", "asset"] {
             assert_eq!(json[list], before[list], "{list}");
         }
         // Accessors have other numbers.
@@ -226,7 +228,11 @@ fn everything_of_the_author_is_kept() {
         assert_eq!(objects.iter().filter(is_whole).count(), if expand { 7 } else { 2 });
         for object in objects {
             let node = &json["nodes"][object["node"].as_u64().unwrap() as usize];
-            assert_eq!(node["extras"]["lightmap"]["uv_rect"], object["uv_rect"]);
+            let place = &node["extras"]["lightmap"];
+            assert_eq!(place["uv_rect"], object["uv_rect"]);
+            let texture = &json["textures"][place["index"].as_u64().unwrap() as usize];
+            assert_eq!(texture["name"], "lightmap 0");
+            assert!(place["intensity"].as_f64().unwrap() > 0.0);
             assert_eq!(node["mesh"], object["mesh"]);
             let mesh = &json["meshes"][object["mesh"].as_u64().unwrap() as usize];
             for primitive in mesh["primitives"].as_array().unwrap() {
@@ -272,6 +278,29 @@ fn both_sides_of_a_curtain_have_their_own_light() {
         assert_eq!((material["name"].as_str(), material.get("doubleSided")), (Some("cloth"), None));
         assert!(primitive.get("mode").is_none(), "strips are triangles now");
     }
+}
+
+#[test]
+fn backs_without_light_are_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = room(folder.path());
+    let scene = load(&source, &LoadOptions::default()).unwrap().scene;
+    let mesh = patches(&scene, 500, true);
+    let mut light = light(&mesh);
+    mesh.for_each_side(|_, _, side, id| {
+        if side == Side::Back {
+            light[id.index()] = Rgb::ZERO;
+        }
+    });
+    let of = solution(&scene, &mesh, &light, &light, &source);
+    let lightmap = Lightmap::new(of, options(256), &GoOn).unwrap();
+    assert!(lightmap.notes().is_empty(), "{:?}", lightmap.notes());
+    let lit = folder.path().join("lit.glb");
+    lightmap.write(&lit, LightmapFiles::default(), &GoOn).unwrap();
+    let built = load(&lit, &LoadOptions::default()).unwrap().scene;
+    assert_eq!(triangles(&built), triangles(&scene));
+    let cloth = built.materials().iter().find(|material| material.name == "cloth").unwrap();
+    assert_eq!(cloth.sides, sir_geom::Sides::Front);
 }
 
 /// Writes a square with a second set of coordinates.

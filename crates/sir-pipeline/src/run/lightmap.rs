@@ -13,7 +13,7 @@ use crate::format::grouped;
 use crate::plan::{Action, Lightmap};
 use crate::progress::{Meter, StageKind};
 use crate::run::computed::Computed;
-use crate::run::save::Saver;
+use crate::run::saver::Saver;
 
 /// Makes a lightmap of this irradiance and writes its files. Returns those beside the lit scene.
 pub(crate) fn write(

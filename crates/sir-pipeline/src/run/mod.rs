@@ -21,6 +21,7 @@ mod repeat_sums;
 mod repeating;
 pub(crate) mod resume;
 pub(crate) mod save;
+mod saver;
 mod sensor_files;
 mod sharing;
 pub(crate) mod split;

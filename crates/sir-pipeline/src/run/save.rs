@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::Ordering::Relaxed;
 
 use sir_geom::Camera;
 use sir_radiosity::{Model, Solution};
@@ -13,33 +13,21 @@ use sir_view::{default_camera, render, write_exr, write_glb, write_png};
 
 use crate::error::Error;
 use crate::plan;
-use crate::plan::{Image, Output, Pipeline};
+use crate::plan::{Image, Output};
 use crate::prepare::cameras::chosen_camera;
 use crate::prepare::prepared::Prepared;
-use crate::progress::Progress;
 use crate::report::page::Shown;
 use crate::report::result::OutputReport;
 use crate::run::computed::{Computed, PartErrors};
 use crate::run::lightmap;
 use crate::run::pages::Page;
+use crate::run::saver::Saver;
 
 /// Width of the picture from which the exposure of a camera follows.
 const PREVIEW_WIDTH: u32 = 200;
 
 /// Ratio of height to width of an image whose camera has no aspect ratio.
 const DEFAULT_SHAPE: f64 = 0.75;
-
-/// What the outputs of all stages `Save` have in common.
-#[derive(Clone, Copy)]
-pub(crate) struct Saver<'a> {
-    pub(crate) pipeline: &'a Pipeline,
-    pub(crate) prepared: &'a Prepared,
-    pub(crate) directory: &'a Path,
-    pub(crate) threads: usize,
-    pub(crate) progress: &'a dyn Progress,
-    /// Becomes true when the run is asked to stop.
-    pub(crate) stop: &'a AtomicBool,
-}
 
 /// Writes the outputs of a stage, one after the other, until the run is asked to stop. Adds its pages to `pages` and what was
 /// written to `reports`. Returns true if all are written.

@@ -16,7 +16,8 @@ use crate::report::result::{
 use crate::report::sensors::SensorsReport;
 use crate::run::computed::Computed;
 use crate::run::execute::Run;
-use crate::run::save::{Saver, save};
+use crate::run::save::save;
+use crate::run::saver::Saver;
 use crate::run::{probe_files, sensor_files};
 
 impl Run<'_> {
