@@ -13,8 +13,8 @@ use crate::observer::{Observer, Step};
 use crate::options::LightmapOptions;
 use crate::text::grouped;
 
-/// Number of charts from which they are placed by the faster, less dense method.
-const MANY_CHARTS: u32 = 4_000;
+/// Number of triangles from which charts are placed by the faster, less dense method.
+const MANY_TRIANGLES: usize = 5_000;
 
 /// Share of a page that charts fill, at least, if they are placed by the faster method.
 const FILLED: f64 = 0.4;
@@ -70,7 +70,7 @@ impl Sizes<'_> {
             }
         };
         let triangles: usize = self.inputs.iter().map(|input| input.triangles.len()).sum();
-        let packing = if triangles > 10 * MANY_CHARTS as usize { Packing::Fast } else { Packing::Shape };
+        let packing = if triangles > MANY_TRIANGLES { Packing::Fast } else { Packing::Shape };
         let generate = || uvunwrap::generate_with_progress(&meshes, &options(packing), report);
         // Without a pool, all processors would work.
         match rayon::ThreadPoolBuilder::new().num_threads(self.options.threads.max(1)).build() {
