@@ -59,8 +59,8 @@ impl<'a> Lightmap<'a> {
         let display = DisplayMesh::new(scene, mesh, irradiance);
         let exposure = Exposure::Auto.factor_for_mesh(&display);
         let fill = |display: &DisplayMesh<'_>, irradiance: &[Rgb]| {
-            let light =
-                Light { display, vertices: &keep_power(display, irradiance), errors, is_radiosity: false };
+            let [vertices, errors] = &keep_power(display, irradiance, errors);
+            let light = Light { display, vertices, errors, is_radiosity: false };
             texels::fill(&objects, &layout, &light, options.sides, options.threads, observer)
         };
         let mut texels = fill(&display, irradiance)?;
@@ -167,8 +167,8 @@ impl<'a> Lightmap<'a> {
     pub(crate) fn radiosity(&self, observer: &dyn Observer) -> Result<Texels, LightmapError> {
         let Solution { scene, mesh, irradiance, errors, .. } = self.solution;
         let display = DisplayMesh::new(scene, mesh, irradiance);
-        let vertices = keep_power(&display, irradiance);
-        let light = Light { display: &display, vertices: &vertices, errors, is_radiosity: true };
+        let [vertices, errors] = &keep_power(&display, irradiance, errors);
+        let light = Light { display: &display, vertices, errors, is_radiosity: true };
         let LightmapOptions { sides, threads, padding, .. } = self.options;
         let mut texels = texels::fill(&self.objects, &self.layout, &light, sides, threads, observer)?;
         dilate(&mut texels, &self.layout, padding);

@@ -14,8 +14,9 @@ const ROUNDS: usize = 2;
 /// Number of times that what is missing is averaged over the patches around.
 const AVERAGES: usize = 2;
 
-/// Returns the irradiance \[W/m²\] of the vertices of a display mesh, for this irradiance of the sides of patches.
-pub(crate) fn keep_power(display: &DisplayMesh<'_>, irradiance: &[Rgb]) -> Vec<Rgb> {
+/// Returns the irradiance \[W/m²\] of the vertices of a display mesh, for this irradiance of the sides of patches, and the mean
+/// standard error of the sides around each vertex.
+pub(crate) fn keep_power(display: &DisplayMesh<'_>, irradiance: &[Rgb], errors: &[Rgb]) -> [Vec<Rgb>; 2] {
     let mut light: Vec<Rgb> =
         display.vertices().iter().map(|v| Rgb::from_array(v.irradiance.map(f64::from))).collect();
     let shares = Shares::new(display, irradiance.len());
@@ -36,7 +37,9 @@ pub(crate) fn keep_power(display: &DisplayMesh<'_>, irradiance: &[Rgb]) -> Vec<R
     let factor =
         Rgb::from_array(std::array::from_fn(|k| if found[k] > 0.0 { goal[k] / found[k] } else { 1.0 }));
     light.iter_mut().for_each(|light| *light *= factor);
-    light
+    let mut errors = shares.to_vertices(errors);
+    shares.set_centers(&mut errors);
+    [light, errors]
 }
 
 /// Returns the center of triangles that are a fan around their last vertex.

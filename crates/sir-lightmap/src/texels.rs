@@ -45,13 +45,14 @@ pub(crate) struct Light<'a> {
     pub(crate) display: &'a DisplayMesh<'a>,
     /// Irradiance at the vertices of the display mesh \[W/m²\].
     pub(crate) vertices: &'a [Rgb],
-    /// Standard errors of the irradiance of each side \[W/m²\].
+    /// Standard errors there \[W/m²\].
     pub(crate) errors: &'a [Rgb],
     /// True to show the radiosity, with textures, in place of the irradiance.
     pub(crate) is_radiosity: bool,
 }
 
 /// Light that a patch gives to a texel.
+#[derive(Clone, Copy)]
 struct Contribution {
     texel: u32,
     coverage: f64,
@@ -61,8 +62,8 @@ struct Contribution {
     opaque: f64,
     /// Power \[W\].
     power: Rgb,
-    /// Variance of the power \[W²\].
-    variance: Rgb,
+    /// Standard error of the power \[W\].
+    deviation: Rgb,
 }
 
 /// Returns the texels of a layout.
@@ -118,7 +119,9 @@ pub(crate) fn fill(
 
 impl Texels {
     fn add(&mut self, contribution: &Contribution) {
-        let Contribution { texel, coverage, area, opaque, power, variance } = *contribution;
+        let Contribution { texel, coverage, area, opaque, power, deviation } = *contribution;
+        // Patches have independent errors.
+        let variance = deviation * deviation;
         let i = texel as usize;
         self.area[i] += area as f32;
         self.coverage[i] += coverage as f32;
@@ -155,6 +158,8 @@ struct Part {
     corners: std::ops::Range<usize>,
     /// Interpolated irradiance as a function of barycentric coordinates.
     light: Linear,
+    /// Its standard error, likewise.
+    error: Linear,
     /// Area \[m²\].
     area: f64,
 }
@@ -258,7 +263,7 @@ impl<'a> Filler<'a> {
             }
         }
         self.parts = parts;
-        self.merge(first, self.light.errors[id.index()]);
+        self.merge(first);
     }
 
     /// Collects the parts of a piece of the display mesh in the pieces of the patch.
@@ -269,18 +274,20 @@ impl<'a> Filler<'a> {
             .pieces(piece.triangle, patch)
             .filter(|of| is_cell || of.triangle == piece.triangle)
             .collect();
-        let Light { display, vertices, .. } = *self.light;
+        let Light { display, vertices, errors, .. } = *self.light;
         let position = |v: u32| display.positions()[display.vertices()[v as usize].position as usize];
         for of in &of_patch {
             let flat = Flat::new(self.scene.corners(of.triangle));
             for t in piece.triangles {
-                self.cut(of, t.map(|v| flat.place(position(v))), t.map(|v| vertices[v as usize]));
+                let light = t.map(|v| vertices[v as usize]);
+                let error = t.map(|v| errors[v as usize]);
+                self.cut(of, t.map(|v| flat.place(position(v))), light, error);
             }
         }
     }
 
     /// Adds the common part of a piece of a patch and a triangle in the same plane.
-    fn cut(&mut self, piece: &Piece, triangle: [DVec2; 3], light: [Rgb; 3]) {
+    fn cut(&mut self, piece: &Piece, triangle: [DVec2; 3], light: [Rgb; 3], error: [Rgb; 3]) {
         self.polygon.clear();
         self.polygon.extend(piece.corners().iter().map(|p| DVec2::new(p.v, p.w)));
         let [a, b, c] = triangle;
@@ -289,7 +296,7 @@ impl<'a> Filler<'a> {
         }
         intersect(&mut self.polygon, triangle, &mut self.spare);
         let (area, centroid) = area_and_centroid(&self.polygon);
-        let light = Linear::through(triangle, light);
+        let (light, error) = (Linear::through(triangle, light), Linear::through(triangle, error));
         if area > 0.0 && light.at(centroid).is_finite() {
             let start = self.corners.len();
             self.corners.extend_from_slice(&self.polygon);
@@ -297,6 +304,7 @@ impl<'a> Filler<'a> {
                 triangle: piece.triangle,
                 corners: start..self.corners.len(),
                 light,
+                error,
                 area: 2.0 * self.scene.area(piece.triangle) * area,
             });
         }
@@ -345,34 +353,30 @@ impl<'a> Filler<'a> {
                 area: on_surface,
                 opaque: on_surface * opacity,
                 power: on_surface * shown,
-                variance: Rgb::ZERO,
+                deviation: on_surface * part.error.at(at),
             });
         });
     }
 
-    /// Adds up what one side gives to each texel, from the contribution `first` on, and sets the variance.
-    fn merge(&mut self, first: usize, error: Rgb) {
+    /// Adds up what one side gives to each texel, from the contribution `first` on.
+    fn merge(&mut self, first: usize) {
         self.contributions[first..].sort_by_key(|contribution| contribution.texel);
         let mut kept = first;
         for i in first..self.contributions.len() {
-            let Contribution { texel, coverage, area, opaque, power, .. } = self.contributions[i];
-            if kept > first && self.contributions[kept - 1].texel == texel {
+            let next = self.contributions[i];
+            if kept > first && self.contributions[kept - 1].texel == next.texel {
                 let known = &mut self.contributions[kept - 1];
-                known.coverage += coverage;
-                known.area += area;
-                known.opaque += opaque;
-                known.power += power;
+                known.coverage += next.coverage;
+                known.area += next.area;
+                known.opaque += next.opaque;
+                known.power += next.power;
+                known.deviation += next.deviation;
             } else {
-                self.contributions[kept] =
-                    Contribution { texel, coverage, area, opaque, power, variance: Rgb::ZERO };
+                self.contributions[kept] = next;
                 kept += 1;
             }
         }
         self.contributions.truncate(kept);
-        for contribution in &mut self.contributions[first..] {
-            let deviation = contribution.area * error;
-            contribution.variance = deviation * deviation;
-        }
     }
 }
 

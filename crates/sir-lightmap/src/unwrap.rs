@@ -18,6 +18,9 @@ use crate::options::{LightmapOptions, LightmapSides};
 /// Factor of the size of surfaces without light, of which a texel shows all that there is.
 const DARK_SCALE: f32 = 0.01;
 
+/// Largest size of pages that is used without being asked for \[texels\].
+const MAX_SIZE: u32 = 16_384;
+
 /// Number of attempts to find the density for several pages.
 const ATTEMPTS: usize = 8;
 
@@ -40,8 +43,18 @@ pub(crate) fn unwrap(
             None => None,
         });
     }
+    let mut options = *options;
     loop {
-        let layout = Job { objects, existing: &existing, is_dark, options, observer }.pack()?;
+        let packed = Job { objects, existing: &existing, is_dark, options: &options, observer }.pack();
+        let layout = match packed {
+            // The light may have taken hours, so it is not lost for this.
+            Err(LightmapError::TooSmall { what, needed, .. }) if needed <= MAX_SIZE => {
+                notes.push(format!("{what}; pages of {needed} texels are used instead"));
+                options.size = needed;
+                continue;
+            }
+            packed => packed?,
+        };
         let Some((sheet, why)) = existing::too_coarse(&layout) else { return Ok(layout) };
         let mesh = layout.sheets[sheet].mesh;
         notes.push(existing::note(&objects.meshes[mesh], &why));
