@@ -51,18 +51,13 @@ function refuse(response, status, text) {
   response.writeHead(status, { 'Content-Type': 'text/plain; charset=utf-8' }).end(`${text}\n`);
 }
 
-function answer(request, response, scene, manifest) {
+function answer(request, response, scene) {
   const { method, url } = request;
   if (method !== 'GET' && method !== 'HEAD') return refuse(response, 405, 'Only GET and HEAD are answered.');
   // A page of another site may have a name that leads here.
   if (!/^(127\.0\.0\.1|localhost)(:\d+)?$/.test(request.headers.host ?? '')) return refuse(response, 403, 'Unknown host.');
   const path = url.split('?')[0];
   if (path === '/scene.glb') return send(response, method, scene, 'model/gltf-binary');
-  if (path === '/scene.json') {
-    const type = 'application/json';
-    if (existsSync(manifest)) return send(response, method, manifest, type);
-    return response.writeHead(200, { 'Content-Type': type }).end('null');
-  }
   const file = find(path);
   if (!file) return refuse(response, 404, 'There is no such file.');
   send(response, method, file, TYPES[extname(file)]);
@@ -78,7 +73,6 @@ if (!scene || process.argv.length > 4) stop('usage: node serve.mjs path/to/room-
 if (extname(scene) !== '.glb' || !existsSync(scene)) stop(`${scene} is not a GLB file.`);
 if (!existsSync(join(ROOT, 'node_modules', 'three'))) stop(`three.js is not installed; run "npm ci" in ${ROOT}.`);
 if (!/^\d{1,5}$/.test(port) || Number(port) > 65535) stop(`${port} is not a port.`);
-const manifest = scene.replace(/\.glb$/, '.json');
-const server = createServer((request, response) => answer(request, response, scene, manifest));
+const server = createServer((request, response) => answer(request, response, scene));
 server.on('error', (error) => stop(error.message));
 server.listen(Number(port), '127.0.0.1', () => console.log(`http://127.0.0.1:${server.address().port}/`));

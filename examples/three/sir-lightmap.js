@@ -3,21 +3,16 @@
 /**
  * Lightmaps of SIR for the GLTFLoader of three.js. This file can be copied into other projects.
  *
- *     loader.register((parser) => new SirLightmapPlugin(parser, { manifest }));
+ *     loader.register((parser) => new SirLightmapPlugin(parser));
  *
- * Light on a surface is in one of two places of a GLB file of SIR:
- *
- * - Materials have the extension MOZ_lightmap: `{ index, texCoord, intensity }`, a texture, its set of coordinates, and the
- *   factor from linear texels to irradiance as it is shown.
- * - Nodes that share a mesh have `extras.lightmap`: `{ page, uv_rect, texCoord }`, where `uv_rect` is corner and size of the
- *   place of the node on the texture "lightmap N".
+ * In a GLB file of SIR, `extras.lightmap` of a node has the light of its mesh: `{ index, texCoord, intensity, uv_rect }`, a
+ * texture, its set of coordinates, the factor from linear texels to irradiance as it is shown, and corner and size of the
+ * place of the node on the texture. `extras.lightmap` of the scene has the exposure that the intensity contains.
  *
  * three.js adds `lightMapIntensity * texel` to the irradiance of a surface. The diffuse radiance is `color / pi` times that.
  */
 
 import { Material, MeshLambertMaterial, SRGBColorSpace } from 'three';
-
-const EXTENSION = 'MOZ_lightmap';
 
 /** Sets of texture coordinates that three.js has. */
 const CHANNELS = 4;
@@ -27,26 +22,25 @@ export class SirLightmapPlugin {
   /**
    * @param {object} parser The parser of GLTFLoader.
    * @param {object} [options]
-   * @param {object|null} [options.manifest] Contents of the JSON file beside the GLB file. Without it, surfaces that emit
-   *   light keep the radiance of the file, while reflected light is as bright as its exposure makes it.
    * @param {'diffuse'|'source'} [options.materials] `diffuse` replaces materials by MeshLambertMaterial, which reflects
    *   exactly the light that SIR computed. `source` keeps the materials of the file: metals, and highlights of lights that
    *   you add. MeshStandardMaterial then gives a few per cent of the light to its highlights, which a lightmap lacks.
    * @param {boolean} [options.lights] True to keep the lights of the file. Their light is in the lightmap already.
    */
-  constructor(parser, { manifest = null, materials = 'diffuse', lights = false } = {}) {
-    this.name = EXTENSION;
+  constructor(parser, { materials = 'diffuse', lights = false } = {}) {
+    this.name = 'SIR_lightmap';
     this.parser = parser;
-    this.manifest = manifest;
     this.materials = materials;
     this.lights = lights;
-    this.exposure = manifest?.exposure ?? 1;
+    this.exposure = 1;
     this.textures = new Map();
     this.lit = new Map();
   }
 
   /** Adds the light after all scenes are loaded. Sets `gltf.userData.lightmap`: `{ meshes, exposure }`. */
   async afterRoot(gltf) {
+    const { json } = this.parser;
+    this.exposure = json.scenes?.[json.scene ?? 0]?.extras?.lightmap?.exposure ?? 1;
     const meshes = [];
     for (const scene of gltf.scenes) {
       scene.traverse((object) => {
@@ -70,27 +64,14 @@ export class SirLightmapPlugin {
   place(mesh) {
     const { json, associations } = this.parser;
     const material = json.materials?.[associations.get(mesh.material)?.materials];
-    const extension = material?.extensions?.[EXTENSION];
-    if (extension) {
-      return { texture: extension.index, channel: extension.texCoord ?? 0, intensity: extension.intensity ?? 1, rect: [0, 0, 1, 1] };
-    }
+    // Colors of unlit materials have the light already.
     if (material?.extensions?.KHR_materials_unlit) return null;
     let object = mesh;
     while (object && associations.get(object)?.nodes === undefined) object = object.parent;
     const lightmap = json.nodes[associations.get(object)?.nodes]?.extras?.lightmap;
     if (!lightmap) return null;
-    const texture = json.textures?.findIndex((texture) => texture.name === `lightmap ${lightmap.page}`) ?? -1;
-    if (texture < 0) throw new Error(`The file has no texture "lightmap ${lightmap.page}".`);
-    return { texture, channel: lightmap.texCoord, intensity: this.intensity(), rect: lightmap.uv_rect };
-  }
-
-  /** Returns the factor of all pages: from the manifest, or else from any material that has it. */
-  intensity() {
-    if (this.manifest) return this.manifest.png.scale * this.manifest.exposure;
-    const extensions = this.parser.json.materials?.map((material) => material.extensions?.[EXTENSION]);
-    const intensity = extensions?.find((extension) => extension)?.intensity;
-    if (intensity === undefined) throw new Error('The brightness of this lightmap is only in its manifest (the JSON file beside it).');
-    return intensity;
+    const { index, texCoord, intensity, uv_rect } = lightmap;
+    return { texture: index, channel: texCoord, intensity, rect: uv_rect };
   }
 
   /** Returns the material of a mesh with its light. Meshes with the same light share it. */

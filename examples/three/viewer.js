@@ -38,19 +38,13 @@ addEventListener('hashchange', () => location.reload());
 
 /** Loads the scene with its light. */
 async function load() {
-  // `null` if there is no manifest beside the scene.
-  const response = await fetch('scene.json');
-  if (!response.ok) throw new Error(`the server answers ${response.status} for scene.json`);
-  const manifest = await response.json();
   const loader = new GLTFLoader();
   const settings = {
-    manifest,
     materials: options.get('materials') ?? 'diffuse',
     lights: options.get('lights') === '1',
   };
   loader.register((parser) => new SirLightmapPlugin(parser, settings));
-  const gltf = await loader.loadAsync('scene.glb');
-  return { gltf, manifest };
+  return loader.loadAsync('scene.glb');
 }
 
 /** Returns three numbers of an option, or null. */
@@ -98,7 +92,7 @@ async function start() {
   installToneCurve();
   const renderer = new WebGLRenderer({ canvas: element('canvas'), antialias: true });
   renderer.setPixelRatio(devicePixelRatio);
-  const { gltf, manifest } = await load();
+  const gltf = await load();
   const scene = new Scene();
   scene.background = new Color(0);
   scene.add(gltf.scene);
@@ -170,10 +164,7 @@ async function start() {
   // Colors of a file without lightmap have a tone curve already.
   element('tone').value = options.get('tone') ?? (meshes > 0 ? 'sir' : 'none');
   if (!element('tone').value) throw new Error(`there is no tone curve "${options.get('tone')}"`);
-  const notes = [];
-  if (meshes === 0) notes.push('The file has no lightmap.');
-  if (meshes > 0 && !manifest) notes.push('There is no manifest beside the file, so lamps have another exposure than lit surfaces.');
-  element('note').textContent = notes.join(' ');
+  element('note').textContent = meshes > 0 ? '' : 'The file has no lightmap.';
   element('panel').hidden = options.get('panel') === '0';
   element('message').hidden = true;
 
