@@ -19,7 +19,7 @@ use crate::options::{LightmapOptions, LightmapSides};
 const DARK_SCALE: f32 = 0.01;
 
 /// Largest size of pages that is used without being asked for \[texels\].
-const MAX_SIZE: u32 = 16_384;
+const MAX_SIZE: u32 = 8_192;
 
 /// Number of attempts to find the density for several pages.
 const ATTEMPTS: usize = 8;
@@ -51,6 +51,11 @@ pub(crate) fn unwrap(
             Err(LightmapError::TooSmall { what, needed, .. }) if needed <= MAX_SIZE => {
                 notes.push(format!("{what}; pages of {needed} texels are used instead"));
                 options.size = needed;
+                continue;
+            }
+            Err(LightmapError::TooSmall { what, .. }) if options.padding > 1 => {
+                notes.push(format!("{what}; charts are only 2 texels apart"));
+                options.padding = 1;
                 continue;
             }
             packed => packed?,

@@ -75,6 +75,10 @@ impl Observer for Watch<'_> {
         if let Ok(mut state) = self.state.lock() {
             if state.as_ref().is_none_or(|(known, _)| *known != step) {
                 let (title, unit) = titles(step);
+                if step == Step::Packing {
+                    // It may take minutes for many charts, and nobody knows how many.
+                    self.saver.progress.note(title);
+                }
                 let meter = self.saver.progress.begin(title, total.unwrap_or(0), StageKind::Work(unit));
                 *state = Some((step, meter));
             }
