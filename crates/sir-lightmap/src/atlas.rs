@@ -144,7 +144,7 @@ impl Sizes<'_> {
         let LightmapOptions { size: given, pages, texels_per_meter, .. } = *self.options;
         let pages = if pages == 1 { "a page".to_owned() } else { format!("{pages} pages") };
         let what = format!("the {charts} of the lightmap do not fit {pages} of {given} texels ({why})");
-        let needed = (size.max(1.2 * f64::from(given)) as u32).next_multiple_of(64);
+        let needed = (size.max(1.2 * f64::from(given)).min(1e9) as u32).next_multiple_of(64);
         let or = if texels_per_meter.is_some() { "texels_per_meter" } else { "padding" };
         LightmapError::TooSmall { what, needed, or }
     }

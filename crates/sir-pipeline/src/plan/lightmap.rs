@@ -20,7 +20,9 @@ record! {
         /// Width and maximum height of a page.
         pub size: u32 = count(64, 16_384, 2048).or(1024).unit("texels");
         /// Texels per meter of surface, on as many pages as needed. If omitted, it is as high as `pages` allow.
-        pub texels_per_meter: Option<f64> = positive(20.0).optional("what fits");
+        pub texels_per_meter: Option<f64> = positive(20.0)
+            .with_range(|x| 0.0 < x && x <= 10_000.0, "above 0 and up to 10,000")
+            .optional("what fits");
         /// Number of pages, if `texels_per_meter` is omitted. A mesh stays on one page.
         pub pages: u32 = count(1, 64, 2).or(1);
         /// Empty texels around each chart, which take the light of their neighbors.
