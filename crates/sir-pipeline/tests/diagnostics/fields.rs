@@ -66,7 +66,7 @@ fn unknown_names_and_fields() {
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
       |       ^^^^^^^
       |
-      = help: outputs are `Image`, `Gltf`, `Table` and `Report`
+      = help: outputs are `Image`, `Gltf`, `Table`, `Report` and `Lightmap`
 
     error: unknown output `Imgae`
      --> x.ron:7:31
@@ -82,7 +82,7 @@ fn unknown_names_and_fields() {
     7 | Save([Picture(path: "a.png"), Imgae(path: "b.png"), "c.png"]),
       |                                                     ^^^^^^^
       |
-      = help: outputs are `Image`, `Gltf`, `Table` and `Report`
+      = help: outputs are `Image`, `Gltf`, `Table`, `Report` and `Lightmap`
     "#);
     insta::assert_snapshot!(problems("Pipelin(stages: [])"), @r"
     error: the file must contain `Pipeline(…)`, but it contains `Pipelin(…)`
