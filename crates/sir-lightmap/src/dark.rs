@@ -3,11 +3,10 @@
 //! A few patches may have no light by chance. So a surface counts as dark only if no light falls on all that is connected
 //! with it, and that has several patches. Then the layout does not depend on the noise of a run.
 
-use std::collections::HashMap;
-
 use sir_geom::{Rgb, Side};
 use sir_mesh::SideId;
 
+use crate::connected::{Sets, numbers};
 use crate::objects::{Objects, Primitive};
 use crate::options::LightmapSides;
 use crate::solution::Solution;
@@ -74,39 +73,11 @@ impl Dark {
 /// Returns the number of the connected surface of each triangle: triangles that share a position. `count` is the number of
 /// surfaces so far.
 fn surfaces(primitive: &Primitive, count: &mut u32) -> Vec<u32> {
-    let mut known: HashMap<[u64; 3], u32> = HashMap::new();
-    let points: Vec<u32> = primitive
-        .positions
-        .iter()
-        .map(|p| {
-            let next = known.len() as u32;
-            *known.entry(p.map(|x| (x + 0.0).to_bits())).or_insert(next)
-        })
-        .collect();
-    let mut parents: Vec<u32> = (0..known.len() as u32).collect();
-    let mut root = |mut point: u32, joined: Option<u32>| {
-        while parents[point as usize] != point {
-            parents[point as usize] = parents[parents[point as usize] as usize];
-            point = parents[point as usize];
-        }
-        if let Some(other) = joined {
-            parents[point as usize] = other;
-        }
-        point
-    };
-    for t in &primitive.triangles {
-        let [a, b, c] = t.map(|v| root(points[v as usize], None));
-        let least = a.min(b).min(c);
-        for point in [a, b, c] {
-            root(point, Some(least));
-        }
-    }
-    let mut numbers: HashMap<u32, u32> = HashMap::new();
-    let of = |t: &[u32; 3]| {
-        *numbers.entry(root(points[t[0] as usize], None)).or_insert_with(|| {
-            *count += 1;
-            *count - 1
-        })
-    };
-    primitive.triangles.iter().map(of).collect()
+    let (points, all) = numbers(primitive.positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())));
+    let mut sets = Sets::new(all);
+    primitive.triangles.iter().for_each(|t| sets.join(t.map(|v| points[v as usize])));
+    let (surfaces, found) = numbers(primitive.triangles.iter().map(|t| sets.root(points[t[0] as usize])));
+    let first = *count;
+    *count += found;
+    surfaces.into_iter().map(|surface| first + surface).collect()
 }

@@ -6,6 +6,7 @@ use glam::{DAffine2, DVec2, DVec3};
 use uvunwrap::OutputMesh;
 
 use crate::clip::Clipper;
+use crate::connected::{Sets, numbers};
 use crate::document::Document;
 use crate::error::LightmapError;
 use crate::layout::{Layout, NO_CHART, Rectangle, Unfolded};
@@ -196,41 +197,31 @@ pub(crate) fn too_coarse(layout: &Layout) -> Option<(usize, String)> {
 
 /// Numbers the charts: triangles that are connected by equal coordinates.
 fn number_charts(primitives: &mut [Unfolded]) {
-    let mut numbers: BTreeMap<[u32; 2], usize> = BTreeMap::new();
-    let mut parents: Vec<usize> = Vec::new();
-    let bits = |uv: [f32; 2]| uv.map(|x| (x + 0.0).to_bits());
-    let mut all = Vec::new();
-    for (p, primitive) in primitives.iter().enumerate() {
-        for (i, t) in primitive.triangles.iter().enumerate() {
-            let corners = t.map(|v| {
-                *numbers.entry(bits(primitive.coordinates[v as usize])).or_insert_with(|| {
-                    parents.push(parents.len());
-                    parents.len() - 1
-                })
-            });
-            let [a, b, c] = corners.map(|corner| root(&mut parents, corner));
-            let least = a.min(b).min(c);
-            [a, b, c].iter().for_each(|&other| parents[other] = least);
-            all.push((p, i, corners[0]));
-        }
+    let bits = |uv: &[f32; 2]| uv.map(|x| (x + 0.0).to_bits());
+    let (points, count) = numbers(primitives.iter().flat_map(|p| &p.coordinates).map(bits));
+    let mut sets = Sets::new(count);
+    let starts: Vec<usize> = primitives
+        .iter()
+        .scan(0, |next, p| Some(std::mem::replace(next, *next + p.coordinates.len())))
+        .collect();
+    for (primitive, &start) in primitives.iter().zip(&starts) {
+        primitive.triangles.iter().for_each(|t| sets.join(t.map(|v| points[start + v as usize])));
     }
-    let mut charts: BTreeMap<usize, u32> = BTreeMap::new();
-    for (p, _, corner) in all {
-        let next = charts.len() as u32;
-        let chart = *charts.entry(root(&mut parents, corner)).or_insert(next);
-        let primitive = &mut primitives[p];
-        let [a, b, c] = primitive.triangles[primitive.charts.len()]
-            .map(|v| DVec2::from_array(primitive.coordinates[v as usize].map(f64::from)));
-        primitive.charts.push(if (b - a).perp_dot(c - a) == 0.0 { NO_CHART } else { chart });
+    let roots = primitives
+        .iter()
+        .zip(&starts)
+        .flat_map(|(primitive, &start)| primitive.triangles.iter().map(move |t| start + t[0] as usize));
+    let (charts, _) = numbers(roots.map(|corner| sets.root(points[corner])));
+    let mut charts = charts.into_iter();
+    for primitive in primitives {
+        let place = |v: u32| DVec2::from_array(primitive.coordinates[v as usize].map(f64::from));
+        let has_area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(place);
+            (b - a).perp_dot(c - a) != 0.0
+        };
+        let chart = |(t, chart)| if has_area(t) { chart } else { NO_CHART };
+        primitive.charts = primitive.triangles.iter().zip(&mut charts).map(chart).collect();
     }
-}
-
-fn root(parents: &mut [usize], mut of: usize) -> usize {
-    while parents[of] != of {
-        parents[of] = parents[parents[of]];
-        of = parents[of];
-    }
-    of
 }
 
 /// Returns the share of the points of the unit square in a triangle that lie in more than one.

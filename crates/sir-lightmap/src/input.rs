@@ -7,6 +7,7 @@ use glam::DVec3;
 use sir_geom::Side;
 use uvunwrap::OutputMesh;
 
+use crate::connected::numbers;
 use crate::existing::Existing;
 use crate::layout::{ABSENT, NO_CHART, Unfolded};
 use crate::objects::{Mesh, Objects};
@@ -134,15 +135,7 @@ impl Input {
 /// both sides, and a texel must not mix it.
 fn creases(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[bool; 3]> {
     // Vertices at equal positions are one, as for the unwrapper.
-    let mut known: HashMap<[u32; 3], u32> = HashMap::new();
-    let bits = |p: &[f32; 3]| p.map(|x| (x + 0.0).to_bits());
-    let numbers: Vec<u32> = positions
-        .iter()
-        .map(|p| {
-            let next = known.len() as u32;
-            *known.entry(bits(p)).or_insert(next)
-        })
-        .collect();
+    let (numbers, _) = numbers(positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())));
     let normals: Vec<DVec3> = indices
         .chunks_exact(3)
         .map(|t| {

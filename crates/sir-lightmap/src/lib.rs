@@ -72,6 +72,7 @@ mod atlas;
 mod base;
 mod clip;
 mod compact;
+mod connected;
 mod dark;
 mod dilate;
 mod document;

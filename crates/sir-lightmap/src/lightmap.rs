@@ -31,7 +31,6 @@ pub struct Lightmap<'a> {
     /// Factor from radiance to brightness on a screen that suits the scene.
     pub(crate) exposure: f64,
     pub(crate) notes: Vec<String>,
-    pub(crate) denoised: bool,
 }
 
 impl<'a> Lightmap<'a> {
@@ -85,20 +84,7 @@ impl<'a> Lightmap<'a> {
             ));
         }
         let direct = direct.map(|direct| direct.light);
-        let denoised = solution.is_denoised;
-        Ok(Self {
-            solution,
-            options,
-            document,
-            objects,
-            layout,
-            texels,
-            direct,
-            steps,
-            exposure,
-            notes,
-            denoised,
-        })
+        Ok(Self { solution, options, document, objects, layout, texels, direct, steps, exposure, notes })
     }
 
     /// Returns width and height of a page \[texels\], and the number of pages.

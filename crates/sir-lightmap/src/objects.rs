@@ -137,7 +137,7 @@ impl Objects {
     }
 
     /// Marks the primitives of which both sides have light and are shown.
-    pub(crate) fn find_sides(&mut self, document: &Document, scene: &Scene) {
+    fn find_sides(&mut self, document: &Document, scene: &Scene) {
         for t in scene.triangle_ids() {
             let Some((mesh, primitive, _)) = self.locate(t) else { continue };
             let json = &document.json["meshes"][self.meshes[mesh].index]["primitives"][primitive];
@@ -176,12 +176,12 @@ impl Objects {
 }
 
 /// Returns true if the material of a primitive says that both of its sides are shown.
-pub(crate) fn is_double_sided(document: &Document, primitive: &Value) -> bool {
+fn is_double_sided(document: &Document, primitive: &Value) -> bool {
     let material = primitive["material"].as_u64().map(|i| &document.json["materials"][i as usize]);
     material.is_some_and(|material| material["doubleSided"] == true)
 }
 
 /// Returns the name of an element, or an empty string.
-pub(crate) fn name(element: &Value) -> String {
+fn name(element: &Value) -> String {
     element["name"].as_str().unwrap_or_default().to_owned()
 }

@@ -165,7 +165,7 @@ impl Lightmap<'_> {
             "mean": level,
             "error": noise,
             "relative_error": if level > 0.0 { noise / level } else { 0.0 },
-            "denoised": self.denoised,
+            "denoised": self.solution.is_denoised,
             "png": {
                 "encoding": "sRGB",
                 "decode": "irradiance = scale * linear(rgb)",
