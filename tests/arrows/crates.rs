@@ -5,8 +5,9 @@ use std::process::Command;
 use serde_json::Value;
 
 /// Crates of the workspace, from the bottom to the top, each with the crates that it may use.
-const LAYERS: [(&str, &[&str]); 16] = [
+const LAYERS: [(&str, &[&str]); 17] = [
     ("sir-types", &[]),
+    ("sir-photometry", &[]),
     ("sir-geom", &["sir-types"]),
     ("sir-mesh", &["sir-geom"]),
     ("sir-lines", &["sir-types"]),

@@ -1,0 +1,13 @@
+//! Photometric files of luminaires, and the luminous intensity that they describe.
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod distribution;
+mod error;
+mod opening;
+mod photometry;
+
+pub use distribution::{Coordinates, IntensityDistribution};
+pub use error::TableError;
+pub use opening::{Opening, Outline};
+pub use photometry::Photometry;
