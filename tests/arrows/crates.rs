@@ -8,7 +8,7 @@ use serde_json::Value;
 const LAYERS: [(&str, &[&str]); 17] = [
     ("sir-types", &[]),
     ("sir-photometry", &[]),
-    ("sir-geom", &["sir-types"]),
+    ("sir-geom", &["sir-types", "sir-photometry"]),
     ("sir-mesh", &["sir-geom"]),
     ("sir-lines", &["sir-types"]),
     ("sir-scenes", &["sir-geom"]),
@@ -25,6 +25,7 @@ const LAYERS: [(&str, &[&str]); 17] = [
     (
         "sir-pipeline",
         &[
+            "sir-photometry",
             "sir-geom",
             "sir-mesh",
             "sir-lines",

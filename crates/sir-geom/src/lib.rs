@@ -43,6 +43,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod appearance;
+mod beam;
 mod builder;
 mod camera;
 mod color;
@@ -62,12 +63,13 @@ mod text;
 mod texture;
 mod warning;
 
+pub use beam::Beam;
 pub use builder::SceneBuilder;
 pub use camera::{Camera, Projection};
 pub use color::{Rgb, luminance};
 pub use error::SceneError;
 pub use index::{FaceId, GroupId, MaterialId, VertexId};
-pub use light::{Arrival, Light, LightKind, Spread};
+pub use light::{Arrival, Light, LightKind, Spread, Tabulated};
 #[cfg(feature = "gltf")]
 pub use load::{GltfFile, GltfPrimitive, RawElements};
 pub use load::{LoadError, LoadOptions, SidesPolicy, load, load_with};

@@ -1,8 +1,10 @@
 //! Lights without a surface: point lights and parallel light.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use sir_photometry::IntensityDistribution;
 
 use crate::color::Rgb;
 
@@ -16,7 +18,7 @@ pub struct Light {
 }
 
 /// Kind of a [`Light`], with its parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum LightKind {
     /// Light from a point.
     Point {
@@ -37,7 +39,7 @@ pub enum LightKind {
 }
 
 /// Angular distribution of the intensity of a point light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Spread {
     /// Equal in all directions.
     Isotropic,
@@ -57,6 +59,48 @@ pub enum Spread {
         /// Cosine of half the opening angle of the outer cone, below `inner`.
         outer: f64,
     },
+    /// As tabulated in a photometric file.
+    Tabulated(Tabulated),
+}
+
+/// Tabulated angular distribution, of a luminaire in an orientation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tabulated {
+    /// Distribution, with a largest intensity of 1.
+    shape: Arc<IntensityDistribution>,
+    /// Axes of the luminaire.
+    frame: DMat3,
+}
+
+impl Tabulated {
+    /// Returns the distribution of a luminaire whose axes are the columns of `frame`, a rotation.
+    #[must_use]
+    pub fn new(distribution: IntensityDistribution, frame: DMat3) -> Self {
+        let largest = distribution.largest();
+        Self { shape: Arc::new(distribution.scaled(1.0 / largest)), frame }
+    }
+
+    /// Returns the same distribution of a luminaire in another orientation.
+    #[must_use]
+    pub fn turned(&self, frame: DMat3) -> Self {
+        Self { shape: Arc::clone(&self.shape), frame }
+    }
+
+    /// Returns the axes of the luminaire, which is aimed at −z and has its length along x.
+    #[must_use]
+    pub fn frame(&self) -> DMat3 {
+        self.frame
+    }
+
+    /// Returns the direction that belongs to a point of the unit square, with a density in proportion to the intensity.
+    #[must_use]
+    pub fn sample(&self, point: [f64; 2]) -> DVec3 {
+        self.frame * self.shape.sample(point)
+    }
+
+    fn share(&self, direction: DVec3) -> f64 {
+        self.shape.intensity(self.frame.transpose() * direction)
+    }
 }
 
 /// Unoccluded light that arrives at a point from a light.
@@ -88,25 +132,27 @@ impl Spread {
 
     /// Returns the intensity in a direction of unit length relative to the largest intensity, from 0 to 1.
     #[must_use]
-    pub fn share(self, direction: DVec3) -> f64 {
-        match self {
+    pub fn share(&self, direction: DVec3) -> f64 {
+        match *self {
             Self::Isotropic => 1.0,
             Self::Lambertian { axis } => axis.dot(direction).max(0.0),
             Self::Spot { axis, inner, outer } => {
                 let t = ((axis.dot(direction) - outer) / (inner - outer)).clamp(0.0, 1.0);
                 t * t
             }
+            Self::Tabulated(ref tabulated) => tabulated.share(direction),
         }
     }
 
     /// Returns the integral of [`share`](Self::share) over all directions \[sr\]: the power divided by the largest
     /// intensity.
     #[must_use]
-    pub fn solid_angle(self) -> f64 {
-        match self {
+    pub fn solid_angle(&self) -> f64 {
+        match *self {
             Self::Isotropic => 4.0 * PI,
             Self::Lambertian { .. } => PI,
             Self::Spot { inner, outer, .. } => 2.0 * PI * ((1.0 - inner) + (inner - outer) / 3.0),
+            Self::Tabulated(ref tabulated) => tabulated.shape.flux(),
         }
     }
 }
@@ -123,13 +169,19 @@ impl LightKind {
             good.then_some(()).ok_or((what, "it must be of unit length"))
         };
         match *self {
-            Self::Point { position, intensity, spread } => {
+            Self::Point { position, intensity, ref spread } => {
                 color("intensity", intensity)?;
                 if !position.is_finite() {
                     return Err(("position", "it must be finite"));
                 }
-                match spread {
+                match *spread {
                     Spread::Isotropic => Ok(()),
+                    Spread::Tabulated(ref tabulated) => {
+                        let frame = tabulated.frame;
+                        let is_rotation = (frame.transpose() * frame).abs_diff_eq(DMat3::IDENTITY, 1e-9)
+                            && frame.determinant() > 0.0;
+                        is_rotation.then_some(()).ok_or(("frame", "it must be a rotation"))
+                    }
                     Spread::Lambertian { axis } => unit("axis", axis),
                     Spread::Spot { axis, inner, outer } => {
                         let good = -1.0 <= outer && outer < inner && inner <= 1.0;
@@ -150,7 +202,7 @@ impl LightKind {
     #[must_use]
     pub fn arrival(&self, point: DVec3) -> Option<Arrival> {
         let arrival = match *self {
-            Self::Point { position, intensity, spread } => {
+            Self::Point { position, intensity, ref spread } => {
                 let distance = position.distance(point);
                 let towards = (position - point).try_normalize()?;
                 let irradiance = intensity * (spread.share(-towards) / (distance * distance));

@@ -1,5 +1,6 @@
 //! Diffuse materials.
 
+use crate::beam::Beam;
 use crate::color::Rgb;
 use crate::texture::{ColorMap, TextureMap};
 
@@ -70,6 +71,8 @@ pub struct Material {
     pub exitance: Rgb,
     /// Texture of the exitance.
     pub exitance_map: Option<ColorMap>,
+    /// Angular distribution of the light of the front, if it is not diffuse.
+    pub beam: Option<Beam>,
     /// Share of the light that it stops.
     pub opacity: Opacity,
     /// Sides that reflect.
@@ -88,6 +91,7 @@ impl Material {
             reflectance_map: None,
             exitance: Rgb::ZERO,
             exitance_map: None,
+            beam: None,
             opacity: Opacity::default(),
             sides: Sides::Front,
             back_emits: false,

@@ -192,6 +192,13 @@ impl Scene {
         }
     }
 
+    /// Returns the radiance that a side of a triangle emits in a direction of unit length, away from it, relative to that of a
+    /// diffuse surface with the same exitance: 1 unless its light is directional.
+    #[must_use]
+    pub fn relative_radiance(&self, id: TriangleId, direction: DVec3) -> f64 {
+        self.material(id).beam.as_ref().map_or(1.0, |beam| beam.relative_radiance(direction))
+    }
+
     /// Returns true if a side of a triangle emits.
     #[must_use]
     pub fn emits(&self, id: TriangleId) -> bool {

@@ -18,7 +18,7 @@ use sir_mesh::PatchId;
 /// counted as *escaped*. Lines of the sky are uniform lines through the box that are accepted in proportion to the
 /// radiance of the sky. With a focus, each light from outside is two sources: what passes `through` a smaller box, and
 /// what passes `around` it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Emitter {
     /// A side of a triangle or of a part of it.
     Surface {
@@ -79,11 +79,16 @@ impl Emitter {
         match self {
             Self::Surface { triangle, corners, normal, .. } => {
                 let origin = point_on_surface(scene, *triangle, *corners, numbers);
-                let line = Line { origin, direction: cosine_direction(*normal, numbers.point()) };
+                let direction = match &scene.material(*triangle).beam {
+                    None => cosine_direction(*normal, numbers.point()),
+                    Some(beam) => beam.sample(|| numbers.unit()),
+                };
+                let line = Line { origin, direction };
                 Ray::leaving(line, *triangle)
             }
             Self::Point { position, spread } => {
                 let direction = match *spread {
+                    Spread::Tabulated(ref tabulated) => tabulated.sample(numbers.point()),
                     Spread::Isotropic => unit_vector(numbers.point()),
                     Spread::Lambertian { axis } => cosine_direction(axis, numbers.point()),
                     Spread::Spot { axis, inner, outer } => {

@@ -10,7 +10,7 @@ use crate::model::Model;
 use crate::power::POWERS;
 
 /// A light source.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// Kind and geometry of the source.
     pub emitter: Emitter,
@@ -29,8 +29,9 @@ pub fn sources(scene: &Scene, mesh: &PatchMesh) -> Vec<Source> {
     let bounds = scene.bounding_box();
     for light in scene.lights() {
         sources.push(match light.kind {
-            LightKind::Point { position, intensity, spread } => {
+            LightKind::Point { position, intensity, ref spread } => {
                 let power = intensity * spread.solid_angle();
+                let spread = spread.clone();
                 Source { emitter: Emitter::Point { position, spread }, power }
             }
             LightKind::Distant { direction, irradiance } => {
@@ -134,8 +135,8 @@ impl FocusedSources {
         let all = sources(scene, &model.mesh);
         let Some(focus) = focus else { return Self::plain(all) };
         let (mut cut, mut inside) = (Vec::with_capacity(all.len() + 8), Vec::new());
-        for source in &all {
-            for (part, in_focus) in split(scene, *source, focus) {
+        for source in all.iter().cloned() {
+            for (part, in_focus) in split(scene, source, focus) {
                 cut.push(part);
                 inside.push(in_focus);
             }

@@ -171,7 +171,7 @@ impl Shader<'_> {
         RaySample { radiance, coverage: 1.0 - transmittance }
     }
 
-    /// Returns the radiance `B/π` of a side that a ray meets \[W/(m² sr)\].
+    /// Returns the radiance of a side that a ray meets \[W/(m² sr)\]: `B/π`, unless its own light is directional.
     fn radiance(&self, ray: &Line, hit: &Hit) -> Rgb {
         let Self { display, rays, settings, .. } = self;
         let Hit { t, triangle, point, side } = *hit;
@@ -179,7 +179,11 @@ impl Shader<'_> {
         let slant = display.scene.normal(triangle).dot(ray.direction).abs().max(1e-3);
         // Square root of the surface area that the ray covers.
         let width = rays.spacing(t) / f64::from(settings.height * settings.grid.max(1)) / slant.sqrt();
-        display.radiosity_at(triangle, point, side, e, width) / std::f64::consts::PI
+        let radiosity = display.radiosity_at(triangle, point, side, e, width);
+        let relative = display.scene.relative_radiance(triangle, -ray.direction);
+        let excess =
+            if relative == 1.0 { Rgb::ZERO } else { (relative - 1.0) * display.emitted(triangle, side) };
+        (radiosity + excess) / std::f64::consts::PI
     }
 }
 

@@ -106,12 +106,15 @@ fn lamps(scene: &Scene) -> Option<usize> {
         }
     }
     for light in scene.lights() {
-        if let LightKind::Point { intensity, spread, .. } = light.kind {
-            match spread {
+        if let LightKind::Point { intensity, ref spread, .. } = light.kind {
+            match *spread {
                 // The same in all directions: no clue.
                 Spread::Isotropic => {}
                 Spread::Lambertian { axis } => add(PI * luminance(intensity), axis),
                 Spread::Spot { axis, .. } => add(spread.solid_angle() * luminance(intensity), axis),
+                Spread::Tabulated(ref tabulated) => {
+                    add(spread.solid_angle() * luminance(intensity), -tabulated.frame().z_axis);
+                }
             }
         }
     }

@@ -121,8 +121,8 @@ fn by_kind(sources: &[Source]) -> Vec<Lights> {
             of_kind.first().is_some_and(|first| discriminant(&first.emitter) == discriminant(&source.emitter))
         };
         match of_kinds.iter_mut().find(|of_kind| is_alike(of_kind)) {
-            Some(of_kind) => of_kind.push(*source),
-            None => of_kinds.push(vec![*source]),
+            Some(of_kind) => of_kind.push(source.clone()),
+            None => of_kinds.push(vec![source.clone()]),
         }
     }
     let lights = of_kinds.iter().map(|of_kind| {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sir_geom::{LightKind, Rgb};
 
+use crate::plan::luminaire::Luminaire;
 use crate::plan::panel::Panel;
 use crate::plan::point::Point;
 use crate::plan::scene_light::SceneLight;
@@ -29,6 +30,8 @@ choice! {
         Distant(Distant),
         /// Emitting parallelogram.
         Panel(Panel),
+        /// Luminaire with a photometric file.
+        Luminaire(Luminaire),
         /// Sky above a ground.
         Sky(Sky),
         /// Uniform light from all directions.
@@ -47,11 +50,12 @@ record! {
 }
 
 impl Lamp {
-    /// Converts the light for a scene. Returns `None` if its numbers contradict each other; those read from a file do
-    /// not.
+    /// Converts the light for a scene with this up direction, of unit length. Returns `None` if its numbers contradict each
+    /// other; those read from a file do not.
     #[must_use]
-    pub fn to_scene(&self) -> Option<SceneLight> {
-        match self {
+    pub fn to_scene(&self, up: DVec3) -> Option<Vec<SceneLight>> {
+        let light = match self {
+            Self::Luminaire(luminaire) => return luminaire.to_scene(up),
             Self::Point(point) => point.to_scene(),
             Self::Distant(Distant { direction, irradiance }) => {
                 let direction = direction.try_normalize()?;
@@ -63,7 +67,14 @@ impl Lamp {
             Self::Environment(Environment { radiance }) => {
                 sir_geom::Sky::everywhere(*radiance).map(SceneLight::Sky)
             }
-        }
+        };
+        light.map(|light| vec![light])
+    }
+
+    /// Returns true if it is placed by the up direction of the scene.
+    #[must_use]
+    pub fn needs_up(&self) -> bool {
+        matches!(self, Self::Luminaire(_))
     }
 }
 

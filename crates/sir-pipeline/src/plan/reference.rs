@@ -6,6 +6,7 @@ use crate::plan::light::Distant;
 use crate::plan::lightmap::Lightmap;
 use crate::plan::lines::{FirstShot, SecondShot, ShadowRays, Solve};
 use crate::plan::load::Load;
+use crate::plan::luminaire::Luminaire;
 use crate::plan::multipath::{Multipath, Replicas};
 use crate::plan::panel::Panel;
 use crate::plan::pipeline::Content;
@@ -30,6 +31,7 @@ pub fn field_tables() -> Vec<(&'static str, String)> {
         table::<Spot>(),
         table::<Distant>(),
         table::<Panel>(),
+        table::<Luminaire>(),
         table::<Sky>(),
         table::<Cie>(),
         table::<Environment>(),

@@ -1,7 +1,10 @@
 //! Lights of a pipeline, converted for a scene.
 
-use glam::DVec3;
-use sir_geom::{Light, Material, Rgb, SceneBuilder, Sky, shapes};
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use sir_geom::{Beam, Light, Material, MaterialId, Rgb, SceneBuilder, Sky, shapes};
+use sir_photometry::OpeningLight;
 
 /// Light to be added to a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +19,17 @@ pub enum SceneLight {
         edges: [DVec3; 2],
         /// Emitted exitance per band \[W/m²\].
         exitance: Rgb,
+    },
+    /// Luminous openings of equal luminaires: black faces that emit outward.
+    Openings {
+        /// Name of the faces.
+        name: String,
+        /// Light of one of them.
+        light: Arc<OpeningLight>,
+        /// Radiant intensity per band of this light, per candela.
+        factor: Rgb,
+        /// Positions \[m\] and axes of the luminaires.
+        frames: Vec<(DVec3, DMat3)>,
     },
     /// Sky: the light from outside of the scene.
     Sky(Sky),
@@ -33,6 +47,39 @@ impl SceneLight {
                 builder.begin_group("panel");
                 shapes::quad(builder, [*corner, corner + a, corner + a + b, corner + b], black);
             }
+            Self::Openings { name, light, factor, frames } => {
+                builder.begin_group(name);
+                // Luminaires with the same axes share the materials of their faces.
+                let mut last: Option<(DMat3, Vec<MaterialId>)> = None;
+                for &(position, frame) in frames {
+                    let materials = match last.take() {
+                        Some((of, materials)) if of == frame => materials,
+                        _ => materials(builder, name, light, *factor, frame),
+                    };
+                    for (face, &material) in light.faces().iter().zip(&materials) {
+                        let corners = face.corners.iter().map(|corner| position + frame * *corner);
+                        let vertices: Vec<_> = corners.map(|corner| builder.add_vertex(corner)).collect();
+                        builder.add_polygon(&vertices, material);
+                    }
+                    last = Some((frame, materials));
+                }
+            }
         }
     }
+}
+
+/// Adds the materials of the faces of an opening.
+fn materials(
+    builder: &mut SceneBuilder,
+    name: &str,
+    light: &Arc<OpeningLight>,
+    factor: Rgb,
+    frame: DMat3,
+) -> Vec<MaterialId> {
+    let material = |face| {
+        let exitance = factor * light.exitance(face);
+        let beam = Beam::new(Arc::clone(light), frame, face);
+        Material { beam, ..Material::diffuse(name, Rgb::ZERO).emitting(exitance) }
+    };
+    (0..light.faces().len()).map(|face| builder.add_material(material(face))).collect()
 }

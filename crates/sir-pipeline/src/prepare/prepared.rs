@@ -15,7 +15,7 @@ use crate::prepare::cameras::camera_problems;
 use crate::prepare::up::{Up, sky_doubt};
 use crate::text::diagnostic::Diagnostic;
 
-use crate::plan::{Action, Pipeline, SceneLight, Stage, Transport};
+use crate::plan::{Action, Lamp, Pipeline, Stage, Transport};
 use crate::prepare::layout::Placed;
 use crate::progress::Progress;
 use crate::stopwatch::Stopwatch;
@@ -63,7 +63,7 @@ pub struct Prepared {
 /// cannot be divided into patches as specified. The latter three are shown with their position in the pipeline.
 pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared, Error> {
     let (mut options, mut stated_up) = (LoadOptions::default(), None);
-    let mut lights: Vec<SceneLight> = Vec::new();
+    let mut lamps: Vec<&Lamp> = Vec::new();
     let mut subdivision = (Subdivision::PerTriangle, 0..0);
     let mut requested_focus = None;
     for stage in &pipeline.stages {
@@ -73,11 +73,10 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 stated_up = load.up;
             }
             Action::Light(light) => {
-                for lamp in &light.lamps {
-                    lights.push(
-                        lamp.to_scene().ok_or_else(|| pipeline.diagnostics(vec![impossible_light(stage)]))?,
-                    );
+                if light.lamps.iter().any(|lamp| lamp.to_scene(DVec3::Y).is_none()) {
+                    return Err(pipeline.diagnostics(vec![impossible_light(stage)]).into());
                 }
+                lamps.extend(&light.lamps);
             }
             Action::Subdivide(subdivide) => subdivision = (subdivide.subdivision(), stage.span.0.clone()),
             Action::Focus(focus) => requested_focus = Some((focus.bounds(), focus.share)),
@@ -86,7 +85,11 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     }
     let watch = Stopwatch::start();
     let built = sir_geom::load_with(pipeline.scene_path(), &options, |builder| {
-        lights.iter().for_each(|light| light.add_to(builder));
+        let needs_up = lamps.iter().any(|lamp| lamp.needs_up());
+        let up =
+            if needs_up { Up::before_lamps(pipeline.scene_path(), builder, stated_up) } else { DVec3::Y };
+        let lights = lamps.iter().filter_map(|lamp| lamp.to_scene(up)).flatten();
+        lights.for_each(|light| light.add_to(builder));
         requested_focus.iter().for_each(|(bounds, _)| builder.split_at(bounds));
     })?;
     let load_seconds = watch.seconds();

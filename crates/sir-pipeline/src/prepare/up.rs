@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use sir_geom::Scene;
+use sir_geom::{Scene, SceneBuilder};
 use sir_view::{more_faces_along_z, up_clues};
 
 /// Up direction of a scene.
@@ -18,6 +18,18 @@ pub(crate) struct Up {
 }
 
 impl Up {
+    /// Returns the up direction of the scene in a file, before the lamps of a pipeline are added to its builder.
+    pub(crate) fn before_lamps(path: &Path, builder: &SceneBuilder, stated: Option<DVec3>) -> DVec3 {
+        if let Some(direction) = stated.and_then(DVec3::try_normalize) {
+            return direction;
+        }
+        if !is_obj(path) {
+            return DVec3::Y;
+        }
+        // What is wrong with the scene is reported when it is built.
+        builder.clone().build().map_or(DVec3::Y, |built| Self::of(path, &built.scene, None).direction)
+    }
+
     /// Returns the up direction of the scene in a file. In this order it is: the one that the pipeline states, +y in
     /// glTF, what the scene shows, or +y as usual in OBJ.
     pub(crate) fn of(path: &Path, scene: &Scene, stated: Option<DVec3>) -> Self {
@@ -29,7 +41,7 @@ impl Up {
         let against = |up: DVec3| clues.iter().filter(move |clue| clue.up != up);
         let why_not = |up: DVec3| against(up).map(|clue| clue.why).collect::<Vec<_>>().join(" and ");
         // OBJ does not define the up direction.
-        if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("obj")) {
+        if !is_obj(path) {
             let up = without_doubt(DVec3::Y, "as glTF defines it");
             // A single lamp or camera may be turned; the format is more reliable.
             let is_doubtful = clues.len() > 1 && against(DVec3::Y).count() == clues.len();
@@ -49,6 +61,11 @@ impl Up {
         }
         Self { doubt: (!objections.is_empty()).then(|| doubt(&up, &objections)), ..up }
     }
+}
+
+/// True for a format that does not define the up direction.
+fn is_obj(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"))
 }
 
 /// Returns a warning if the sky of a scene has another zenith than the scene has up.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use glam::DVec3;
-use sir_geom::{Rgb, Side, TriangleId};
+use sir_geom::{Beam, Rgb, Side, TriangleId};
 use sir_mesh::PatchId;
 
 use crate::aimed::seen::{SeenTriangle, share_of_hemisphere};
@@ -21,7 +21,7 @@ pub(crate) struct Emitters {
     tree: Option<Tree>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct EmittingPatch {
     triangle: TriangleId,
     /// Patch of the triangle, if its patches differ.
@@ -31,6 +31,8 @@ struct EmittingPatch {
     normal: DVec3,
     exitance: Rgb,
     area: f64,
+    /// Angular distribution of its light, if that is not diffuse.
+    beam: Option<Beam>,
 }
 
 /// Distribution of rays over the emitting surfaces for one point, without occlusion.
@@ -49,6 +51,9 @@ pub(crate) struct Choice<'e> {
 
 /// Area of a source over its squared distance, above which its share of the hemisphere is not estimated: an inverse.
 const NEAR: f64 = 16.0;
+
+/// Smallest radiance that is expected of a directional light, relative to that of a diffuse one.
+const DARKEST: f64 = 0.1;
 
 /// A surface that is chosen.
 struct Chosen {
@@ -77,6 +82,19 @@ impl EmittingPatch {
         (a + b + c) / 3.0
     }
 
+    /// Returns the radiance in a direction of unit length, away from it, relative to that of a diffuse surface.
+    fn relative_radiance(&self, direction: DVec3) -> f64 {
+        self.beam.as_ref().map_or(1.0, |beam| beam.relative_radiance(direction))
+    }
+
+    /// Returns an estimate of the radiance that a point receives, likewise. It is never zero, because other parts of the surface
+    /// may send more light there than its center.
+    fn estimated_radiance(&self, origin: DVec3) -> f64 {
+        let Some(beam) = &self.beam else { return 1.0 };
+        let towards = (origin - self.center()).normalize_or_zero();
+        DARKEST + (1.0 - DARKEST) * beam.relative_radiance(towards)
+    }
+
     /// True if the surface is large for its distance.
     fn is_near(&self, origin: DVec3) -> bool {
         NEAR * self.area > origin.distance_squared(self.center())
@@ -95,7 +113,8 @@ impl Emitters {
                 // Including gaps: rays aimed at gaps hit something else.
                 let [a, b, c] = corners;
                 let area = 0.5 * (b - a).cross(c - a).length();
-                Some(EmittingPatch { triangle, patch, side, corners, normal, exitance, area })
+                let beam = scene.material(triangle).beam.clone();
+                Some(EmittingPatch { triangle, patch, side, corners, normal, exitance, area, beam })
             }
             // Lights without a surface are measured separately. Rays that hit nothing measure the sky.
             _ => None,
@@ -153,7 +172,7 @@ fn weight(emitting: &EmittingPatch, origin: DVec3, normal: DVec3) -> f64 {
     if height <= 0.0 {
         return 0.0;
     }
-    let exitance = exitance.element_sum();
+    let exitance = exitance.element_sum() * emitting.estimated_radiance(origin);
     if emitting.is_near(origin) {
         return exitance * share_of_hemisphere(origin, normal, corners);
     }
@@ -198,14 +217,15 @@ impl Choice<'_> {
     /// Veach and Guibas 1995), which is at most `M`. So neither an emitter that nearly touches the sensor nor a small
     /// and bright one makes a few rays carry most of the light.
     fn contribution(&self, k: usize, direction: DVec3, distance: f64) -> Rgb {
-        let EmittingPatch { exitance, area, normal, .. } = self.emitters.patches[k];
+        let emitting = &self.emitters.patches[k];
+        let EmittingPatch { exitance, area, normal, .. } = *emitting;
         let cosine = direction.dot(self.normal);
         let its_cosine = -direction.dot(normal);
         if cosine <= 0.0 || its_cosine <= 0.0 {
             return Rgb::ZERO;
         }
         let aimed = PI * self.probability(k) * distance * distance / (area * its_cosine);
-        exitance * (cosine / (aimed + cosine))
+        exitance * (emitting.relative_radiance(-direction) * cosine / (aimed + cosine))
     }
 
     /// Returns the contribution of a cosine-weighted ray that has hit this side at this distance. `patch` is the patch
@@ -273,7 +293,8 @@ impl Choice<'_> {
                 (direction, area * cosines / to.length_squared())
             }
         };
-        let contribution = exitance * (geometry / (PI * probability));
+        let relative = emitting.relative_radiance(-direction);
+        let contribution = exitance * (relative * geometry / (PI * probability));
         (geometry > 0.0 && contribution.is_finite()).then_some(Aim {
             direction,
             triangle,

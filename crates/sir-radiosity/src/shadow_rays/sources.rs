@@ -32,7 +32,7 @@ const SMALL: f64 = 0.5;
 
 impl Sources {
     pub(super) fn of(model: &Model) -> Self {
-        let lights = model.scene.lights().iter().map(|light| light.kind);
+        let lights = model.scene.lights().iter().map(|light| light.kind.clone());
         let (distant, local): (Vec<_>, Vec<_>) =
             lights.partition(|kind| matches!(kind, LightKind::Distant { .. }));
         let surfaces = Emitters::of(model);

@@ -154,6 +154,12 @@ impl<'a> DisplayMesh<'a> {
         Some((weighted(0) + weighted(1) + weighted(2)) / (w[0] + w[1] + w[2]))
     }
 
+    /// Returns the exitance `M` \[W/m²\] of a side of a triangle; zero for a mesh of errors.
+    #[must_use]
+    pub fn emitted(&self, triangle: TriangleId, side: Side) -> Rgb {
+        if self.emits { self.scene.exitance(triangle, side) } else { Rgb::ZERO }
+    }
+
     /// Returns the radiosity `B = M + ρE` \[W/m²\] of a side of a patch of a triangle on which `irradiance` falls,
     /// averaged over the patch; for a mesh of errors, `ρE`.
     #[must_use]
