@@ -4,10 +4,18 @@
 
 mod distribution;
 mod error;
+mod eulumdat;
+mod ies;
 mod opening;
 mod photometry;
+mod planes;
+mod read;
+mod text;
+mod tilt;
 
 pub use distribution::{Coordinates, IntensityDistribution};
-pub use error::TableError;
-pub use opening::{Opening, Outline};
+pub use error::{PhotometryError, TableError};
+pub use opening::{Along, Opening, Outline};
 pub use photometry::Photometry;
+pub use read::PhotometryOptions;
+pub use tilt::{LampGeometry, Tilt};
