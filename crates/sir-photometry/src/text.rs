@@ -126,9 +126,14 @@ impl<'a> Reader<'a> {
             return None;
         }
         let number = self.place.line;
-        let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
+        let (line, rest) = match self.rest.split_once('\n') {
+            Some(parts) => {
+                self.place = Place { line: number + 1, column: 1 };
+                parts
+            }
+            None => (self.rest, ""),
+        };
         self.rest = rest;
-        self.place = Place { line: number + 1, column: 1 };
         Some((line.trim(), number))
     }
 

@@ -87,7 +87,7 @@ fn around(mut planes: Planes, warnings: &mut Vec<String>) -> Result<Planes, Phot
     if count <= 1 {
         return Ok(planes);
     }
-    if span > 360.0 || span < 180.0 {
+    if !(180.0..=360.0).contains(&span) {
         let expected = "0 only, 0 to 90°, 0 to 180°, 90 to 270° or 0 to 360°";
         return Err(PhotometryError::Angles { what: "horizontal angles", first, last, expected });
     }
