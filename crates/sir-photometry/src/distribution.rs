@@ -81,6 +81,8 @@ impl IntensityDistribution {
         let [mut azimuths, polars] = [azimuths, polars]
             .map(|angles| angles.iter().map(|degrees| degrees.to_radians()).collect::<Vec<f64>>());
         let mut values = values.to_vec();
+        // A table that ends at 180.0000001° ends at the pole.
+        let polars: Vec<f64> = polars.into_iter().map(|polar| polar.min(PI)).collect();
         if let [only] = azimuths[..] {
             azimuths.push(only + TAU);
             values.extend_from_within(..);
@@ -106,6 +108,9 @@ impl IntensityDistribution {
         for (plane, pair) in azimuths.windows(2).enumerate() {
             flux += 0.5 * (pair[1] - pair[0]) * (total_of(plane) + total_of(plane + 1));
             fluxes.push(flux);
+        }
+        if !flux.is_finite() {
+            return Err(TableError::NotFinite);
         }
         if flux <= 0.0 {
             return Err(TableError::Dark);
@@ -142,7 +147,9 @@ impl IntensityDistribution {
         let Some(i) = cell(&self.polars, polar) else { return 0.0 };
         // The azimuth of the table that stands for this one.
         let (first, azimuth) = (self.azimuths[0], libm::atan2(b, a));
-        let azimuth = first + (azimuth - first).rem_euclid(TAU);
+        let turned = (azimuth - first).rem_euclid(TAU);
+        // The first plane of a partial table must not be missed by rounding.
+        let azimuth = first + if turned > TAU - SLACK { 0.0 } else { turned };
         let Some(plane) = cell(&self.azimuths, azimuth) else { return 0.0 };
         let along = share(&self.polars, i, polar);
         let [near, far] = [plane, plane + 1].map(|plane| {
@@ -161,18 +168,22 @@ impl IntensityDistribution {
     #[must_use]
     pub fn sample(&self, [u, v]: [f64; 2]) -> DVec3 {
         let wanted = u * self.flux();
-        let plane = self.fluxes.partition_point(|&flux| flux <= wanted).clamp(1, self.fluxes.len() - 1) - 1;
+        // If `wanted` is rounded up to the whole flux, dark planes at the end must not be chosen.
+        let total = self.flux();
+        let plane = self.fluxes.partition_point(|&flux| flux <= wanted && flux < total);
+        let plane = plane.clamp(1, self.fluxes.len() - 1) - 1;
         let n = self.polars.len();
         let [near, far] = [plane, plane + 1].map(|plane| &self.sums[plane * n..(plane + 1) * n]);
         let width = self.azimuths[plane + 1] - self.azimuths[plane];
         let across = share_of_line([near[n - 1], far[n - 1]], (wanted - self.fluxes[plane]) / width);
         // Sums of the interpolated plane.
         let sum = |i: usize| near[i] + across * (far[i] - near[i]);
-        let wanted = v * sum(n - 1);
+        let total = sum(n - 1);
+        let wanted = v * total;
         let (mut low, mut high) = (0, n - 1);
         while high - low > 1 {
             let middle = low.midpoint(high);
-            if sum(middle) <= wanted {
+            if sum(middle) <= wanted && sum(middle) < total {
                 low = middle;
             } else {
                 high = middle;
@@ -245,12 +256,14 @@ fn check(azimuths: &[f64], polars: &[f64], values: &[f64]) -> Result<(), TableEr
     Ok(())
 }
 
+/// Largest distance \[rad\] of a direction from a table to which it still belongs: a table that reaches a pole or a full turn
+/// must have that direction in spite of rounding.
+const SLACK: f64 = 1e-12;
+
 /// Returns the index of the first of the two angles between which an angle lies; `None` if it is outside of all.
 fn cell(angles: &[f64], angle: f64) -> Option<usize> {
     let (first, last) = (angles.first()?, angles.last()?);
-    // A table that reaches a pole or a full turn must have that direction in spite of rounding.
-    let slack = 1e-12;
-    (first - slack..=last + slack)
+    (first - SLACK..=last + SLACK)
         .contains(&angle)
         .then(|| angles.partition_point(|&other| other <= angle).clamp(1, angles.len() - 1) - 1)
 }

@@ -1,6 +1,98 @@
 //! Errors.
 
+use std::io;
+use std::path::PathBuf;
+
 use thiserror::Error;
+
+/// Reason why a photometric file cannot be read. Lines and columns are counted from 1.
+#[derive(Debug, Error)]
+pub enum PhotometryError {
+    /// The file is absent, is not a regular file, or cannot be read.
+    #[error("cannot read the photometric file {}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: io::Error,
+    },
+    /// The file was read, but its contents have a problem.
+    #[error("{}: {problem}", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// The problem.
+        problem: Box<PhotometryError>,
+    },
+    /// The contents are of no format that is supported.
+    #[error(
+        "this is neither an IES LM-63 nor a EULUMDAT file ({why}); get the file from its maker as .ies or .ldt"
+    )]
+    UnknownFormat {
+        /// What is missing, or what the file seems to be instead.
+        why: &'static str,
+    },
+    /// The file ends too early.
+    #[error("the file ends in line {line} before {what}; it may be incomplete: get it again")]
+    End {
+        /// Last line.
+        line: usize,
+        /// What should follow.
+        what: String,
+    },
+    /// A value is invalid.
+    #[error(
+        "line {line}, column {column}: {what} is \"{found}\" (expected {expected}); correct it, or export the file again"
+    )]
+    Value {
+        /// Line.
+        line: usize,
+        /// Character of the line.
+        column: usize,
+        /// Meaning of the value.
+        what: String,
+        /// Value, shortened if it is long.
+        found: String,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// Angles do not cover the range that the format demands.
+    #[error(
+        "the {what} go from {first}° to {last}° (expected {expected}); correct them, or export the file again"
+    )]
+    Angles {
+        /// Kind of angles.
+        what: &'static str,
+        /// First angle \[°\].
+        first: f64,
+        /// Last angle \[°\].
+        last: f64,
+        /// Ranges that the format allows.
+        expected: &'static str,
+    },
+    /// The file has fewer sets of lamps than the option asks for.
+    #[error("the file has {count} sets of lamps, but set {wanted} was asked for; choose one of them")]
+    LampSet {
+        /// Number of sets.
+        count: usize,
+        /// Number of the set that was asked for, from 1.
+        wanted: usize,
+    },
+    /// The table of intensities is invalid.
+    #[error("{problem}; correct the file, or export it again")]
+    Table {
+        /// The problem.
+        problem: TableError,
+    },
+    /// A tilt file was read, but its contents have a problem.
+    #[error("the tilt file \"{name}\": {problem}")]
+    TiltFile {
+        /// Name of the tilt file, shortened if it is long.
+        name: String,
+        /// The problem.
+        problem: Box<PhotometryError>,
+    },
+}
 
 /// Reason that a table is no distribution of intensity.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -18,8 +110,8 @@ pub enum TableError {
         /// Number of values.
         values: usize,
     },
-    /// A number is infinite or not a number.
-    #[error("a number of the table is not finite")]
+    /// A number is infinite or not a number, or the flux is.
+    #[error("a number of the table is not finite, or its flux is not")]
     NotFinite,
     /// Angles do not ascend.
     #[error("the angles of the table do not ascend")]

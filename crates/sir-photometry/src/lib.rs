@@ -5,13 +5,21 @@
 mod distribution;
 mod emission;
 mod error;
+mod eulumdat;
 mod faces;
+mod ies;
 mod opening;
 mod photometry;
+mod planes;
+mod read;
+mod text;
+mod tilt;
 
 pub use distribution::{Coordinates, IntensityDistribution};
 pub use emission::OpeningLight;
-pub use error::TableError;
+pub use error::{PhotometryError, TableError};
 pub use faces::OpeningFace;
-pub use opening::{Opening, Outline};
+pub use opening::{Along, Opening, Outline};
 pub use photometry::Photometry;
+pub use read::PhotometryOptions;
+pub use tilt::{LampGeometry, Tilt};

@@ -2,6 +2,7 @@
 
 use crate::distribution::IntensityDistribution;
 use crate::opening::Opening;
+use crate::tilt::Tilt;
 
 /// Contents of a photometric file, as far as they matter for light.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,7 +11,8 @@ pub struct Photometry {
     pub format: String,
     /// Name of the luminaire, with that of its manufacturer if the file states it; may be empty.
     pub name: String,
-    /// Intensity \[cd\] with all factors of the file applied: that of the luminaire as it was measured.
+    /// Intensity \[cd\] with all factors of the file applied, except those of its tilt: that of the luminaire as it was
+    /// measured.
     pub distribution: IntensityDistribution,
     /// Rated flux of all lamps together \[lm\]; `None` for absolute photometry, which has no separate lamps.
     pub lamp_flux: Option<f64>,
@@ -23,6 +25,8 @@ pub struct Photometry {
     pub color_temperature: Option<f64>,
     /// Luminous opening.
     pub opening: Opening,
+    /// Dependence of the intensity on the tilt of the luminaire, if the file has it.
+    pub tilt: Option<Tilt>,
     /// What the reader had to guess or leave out, one sentence each.
     pub warnings: Vec<String>,
 }

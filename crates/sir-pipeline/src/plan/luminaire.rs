@@ -8,7 +8,7 @@ use sir_photometry::OpeningLight;
 
 use crate::plan::light_color::{TEMPERATURES, of_black_body, of_unit_luminance};
 use crate::plan::photometric_file::{Photometric, PhotometricFile};
-use crate::plan::scene_light::SceneLight;
+use crate::plan::scene_light::{PlacedLuminaire, SceneLight};
 use crate::text::field::Format as _;
 use crate::text::formats::{Choice, Color, Direction, Text, Vector, count, number, positive};
 use crate::text::reader::{Fields, Reader};
@@ -111,25 +111,30 @@ impl Luminaire {
         let contents = &self.file.contents;
         // Per candela of the file.
         let factor = color * (self.flux_of_one() / contents.distribution.flux());
-        let frames = self.positions().map(|position| Some((position, self.frame(position, up)?)));
-        let frames: Vec<(DVec3, DMat3)> = frames.collect::<Option<_>>()?;
+        let placed = self.positions().map(|position| {
+            let frame = self.frame(position, up)?;
+            Some(PlacedLuminaire { position, frame, factor: factor * self.tilt_factor(frame, up) })
+        });
+        let placed: Vec<PlacedLuminaire> = placed.collect::<Option<_>>()?;
         if self.opening == OpeningChoice::FromFile {
             let light = OpeningLight::new(contents.distribution.clone(), &contents.opening)?;
-            return Some(vec![SceneLight::Openings {
-                name: self.label(),
-                light: Arc::new(light),
-                factor,
-                frames,
-            }]);
+            return Some(vec![SceneLight::Openings { name: self.label(), light: Arc::new(light), placed }]);
         }
         let shape = Tabulated::new(contents.distribution.clone(), DMat3::IDENTITY);
-        let intensity = factor * contents.distribution.largest();
-        let of_frame = |(position, frame)| {
+        let largest = contents.distribution.largest();
+        let to_light = |PlacedLuminaire { position, frame, factor }| {
+            let intensity = factor * largest;
             let spread = Spread::Tabulated(shape.turned(frame));
             let kind = LightKind::Point { position, intensity, spread };
             SceneLight::Light(Light { name: self.label(), kind })
         };
-        Some(frames.into_iter().map(of_frame).collect())
+        Some(placed.into_iter().map(to_light).collect())
+    }
+
+    /// Returns the factor of the light of a luminaire with these axes, if its lamp depends on its tilt.
+    fn tilt_factor(&self, frame: DMat3, up: DVec3) -> f64 {
+        let angle = libm::acos(frame.z_axis.dot(up).clamp(-1.0, 1.0));
+        self.file.contents.tilt.as_ref().map_or(1.0, |tilt| tilt.factor(angle.to_degrees()))
     }
 
     /// Returns the axes of a luminaire at a position. Aimed down, with a rotation of 0, its length is along +x, or along +y if x

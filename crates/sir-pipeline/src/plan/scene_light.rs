@@ -26,13 +26,22 @@ pub enum SceneLight {
         name: String,
         /// Light of one of them.
         light: Arc<OpeningLight>,
-        /// Radiant intensity per band of this light, per candela.
-        factor: Rgb,
-        /// Positions \[m\] and axes of the luminaires.
-        frames: Vec<(DVec3, DMat3)>,
+        /// The luminaires.
+        placed: Vec<PlacedLuminaire>,
     },
     /// Sky: the light from outside of the scene.
     Sky(Sky),
+}
+
+/// A luminaire in a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedLuminaire {
+    /// Position \[m\].
+    pub position: DVec3,
+    /// Axes of the luminaire, which is aimed at −z and has its length along x.
+    pub frame: DMat3,
+    /// Intensity per band \[W/sr\] for a candela of its distribution.
+    pub factor: Rgb,
 }
 
 impl SceneLight {
@@ -47,21 +56,22 @@ impl SceneLight {
                 builder.begin_group("panel");
                 shapes::quad(builder, [*corner, corner + a, corner + a + b, corner + b], black);
             }
-            Self::Openings { name, light, factor, frames } => {
+            Self::Openings { name, light, placed } => {
                 builder.begin_group(name);
-                // Luminaires with the same axes share the materials of their faces.
-                let mut last: Option<(DMat3, Vec<MaterialId>)> = None;
-                for &(position, frame) in frames {
+                // Luminaires with the same light share the materials of their faces.
+                let mut last: Option<(PlacedLuminaire, Vec<MaterialId>)> = None;
+                for &luminaire in placed {
+                    let PlacedLuminaire { position, frame, factor } = luminaire;
                     let materials = match last.take() {
-                        Some((of, materials)) if of == frame => materials,
-                        _ => materials(builder, name, light, *factor, frame),
+                        Some((of, materials)) if (of.frame, of.factor) == (frame, factor) => materials,
+                        _ => materials(builder, name, light, factor, frame),
                     };
                     for (face, &material) in light.faces().iter().zip(&materials) {
                         let corners = face.corners.iter().map(|corner| position + frame * *corner);
                         let vertices: Vec<_> = corners.map(|corner| builder.add_vertex(corner)).collect();
                         builder.add_polygon(&vertices, material);
                     }
-                    last = Some((frame, materials));
+                    last = Some((luminaire, materials));
                 }
             }
         }
