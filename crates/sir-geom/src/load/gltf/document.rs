@@ -24,6 +24,8 @@ pub(super) struct Document {
     pub(super) extensions: BTreeSet<String>,
     /// Extensions of nodes that the crate `gltf` does not know, by node.
     pub(super) nodes: BTreeMap<usize, NodeExtensions>,
+    /// Photometric files of lights (`EXT_lights_ies`).
+    pub(super) profiles: Vec<LightProfile>,
     /// Extensions of textures, each of which has an image in another format, by texture.
     pub(super) textures: BTreeMap<usize, Vec<String>>,
 }
@@ -35,6 +37,28 @@ pub(super) struct NodeExtensions {
     pub(super) is_hidden: bool,
     /// Accessors by attribute (`EXT_mesh_gpu_instancing`).
     pub(super) instances: BTreeMap<String, u32>,
+    /// Light with a photometric file (`EXT_lights_ies`).
+    pub(super) luminaire: Option<NodeLuminaire>,
+}
+
+/// Light of a node with a photometric file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NodeLuminaire {
+    /// Index of the photometric file.
+    pub(super) profile: usize,
+    /// Factor of the intensity per band: its multiplier times its color.
+    pub(super) factor: [f64; 3],
+}
+
+/// Location of a photometric file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct LightProfile {
+    /// Name, or an empty string.
+    pub(super) name: String,
+    /// Address of the file, or its data.
+    pub(super) uri: Option<String>,
+    /// Index of the buffer view with its data.
+    pub(super) view: Option<u32>,
 }
 
 /// Reads the JSON document of the file `path`.
@@ -50,6 +74,7 @@ pub(super) fn parse(path: &Path, json: &[u8]) -> Result<Document, LoadError> {
     }
     check_version(path, &mut document)?;
     let nodes = node_extensions(&document).map_err(invalid)?;
+    let profiles = light_profiles(&document);
     let textures = texture_extensions(&document);
     let animations = document["animations"].as_array().map_or(0, Vec::len);
     forget_unused(&mut document);
@@ -62,7 +87,7 @@ pub(super) fn parse(path: &Path, json: &[u8]) -> Result<Document, LoadError> {
             place => invalid(format!("{}: {message}", short(place))),
         }
     })?;
-    Ok(Document { root, animations, extensions, nodes, textures })
+    Ok(Document { root, animations, extensions, nodes, profiles, textures })
 }
 
 /// Writes whole numbers as integers, because `3`, `3.0` and `0.3e1` are equal (glTF 2.0 specification, section 3.2), and
@@ -157,11 +182,47 @@ fn node_extensions(document: &Value) -> Result<BTreeMap<usize, NodeExtensions>, 
                 node.instances.insert(name.clone(), index);
             }
         }
-        if node.is_hidden || !node.instances.is_empty() {
+        if let Some(light) = extensions.get("EXT_lights_ies") {
+            node.luminaire = Some(node_luminaire(light).ok_or_else(|| {
+                format!(
+                    "nodes[{i}]: its `EXT_lights_ies` needs the index of a `light`, a `multiplier` that is not negative, and a \
+                     `color` of three numbers from 0"
+                )
+            })?);
+        }
+        if node.is_hidden || !node.instances.is_empty() || node.luminaire.is_some() {
             nodes.insert(i, node);
         }
     }
     Ok(nodes)
+}
+
+/// Returns the light of a node with a photometric file; `None` if a member has a wrong type or is out of range.
+fn node_luminaire(light: &Value) -> Option<NodeLuminaire> {
+    let profile = usize::try_from(light.get("light")?.as_u64()?).ok()?;
+    let multiplier = light.get("multiplier").map_or(Some(1.0), Value::as_f64)?;
+    let color: [f64; 3] = match light.get("color") {
+        None => [1.0; 3],
+        Some(color) => {
+            let numbers: Option<Vec<f64>> = color.as_array()?.iter().map(Value::as_f64).collect();
+            // The specification clamps colors to 1.
+            <[f64; 3]>::try_from(numbers?).ok()?.map(|x| x.min(1.0))
+        }
+    };
+    let factor = color.map(|x| x * multiplier);
+    factor.iter().all(|&x| x >= 0.0 && x.is_finite()).then_some(NodeLuminaire { profile, factor })
+}
+
+/// Returns the locations of all photometric files.
+fn light_profiles(document: &Value) -> Vec<LightProfile> {
+    let lights = document["extensions"]["EXT_lights_ies"]["lights"].as_array();
+    let text = |light: &Value, name: &str| light.get(name).and_then(Value::as_str).map(str::to_owned);
+    let profile = |light: &Value| LightProfile {
+        name: text(light, "name").unwrap_or_default(),
+        uri: text(light, "uri"),
+        view: light.get("bufferView").and_then(Value::as_u64).and_then(|view| u32::try_from(view).ok()),
+    };
+    lights.into_iter().flatten().map(profile).collect()
 }
 
 /// Returns the names of the extensions with which textures refer to images.

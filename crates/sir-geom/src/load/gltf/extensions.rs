@@ -111,6 +111,7 @@ const EXTENSIONS: [(Effect, &[&str]); 9] = [
     (
         Effect::Read,
         &[
+            "EXT_lights_ies",
             "EXT_mesh_gpu_instancing",
             "KHR_lights_punctual",
             "KHR_materials_emissive_strength",
@@ -302,7 +303,6 @@ const EXTENSIONS: [(Effect, &[&str]); 9] = [
         &[
             "EXT_lights_area",
             "EXT_lights_environment",
-            "EXT_lights_ies",
             "EXT_lights_image_based",
             "INTEL_lights_sunsky",
             "KHR_environment_map",

@@ -17,6 +17,7 @@ mod images;
 mod instances;
 mod known;
 mod light;
+mod luminaire;
 mod material;
 mod primitive;
 mod reader;
@@ -55,6 +56,7 @@ pub(super) fn read(
         notes,
         materials: BTreeMap::new(),
         textures: BTreeMap::new(),
+        profiles: BTreeMap::new(),
         images: Images::default(),
         vertices: 0,
         coordinates: 0,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::builder::SceneBuilder;
 use crate::load::gltf::data::Data;
 use crate::load::gltf::known::{Known, Pixels};
+use crate::load::gltf::luminaire::KnownProfile;
 use crate::load::notes::{Notes, quoted};
 use crate::load::options::LoadOptions;
 use crate::load::texture::{Image, Images};
@@ -20,6 +21,8 @@ pub(super) struct Reader<'a> {
     pub(super) materials: BTreeMap<(Option<usize>, bool), Known>,
     /// Images read so far; `None` for unreadable ones.
     pub(super) textures: BTreeMap<Pixels, Option<Image>>,
+    /// Photometric files read so far, by index.
+    pub(super) profiles: BTreeMap<usize, KnownProfile>,
     pub(super) images: Images,
     /// Number of vertices read so far.
     pub(super) vertices: usize,

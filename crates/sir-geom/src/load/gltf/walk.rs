@@ -41,6 +41,7 @@ impl Reader<'_> {
             self.camera(node, &to_world)?;
             if !is_hidden {
                 self.light(node, &to_world)?;
+                self.luminaire(index.value(), node, &to_world)?;
                 self.mesh(index.value(), node, &to_world)?;
             }
             stack.extend(node.children.iter().flatten().rev().map(|&child| (child, to_world, is_hidden)));
