@@ -14,20 +14,10 @@ const MAX_SIZE: u64 = 64 << 20;
 
 /// Options of the readers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct PhotometryOptions {
     /// Index of the set of lamps, from 0, whose flux scales the intensities of EULUMDAT. IES files have one set only, and
     /// ignore it.
     pub lamp_set: usize,
-}
-
-impl PhotometryOptions {
-    /// Returns options with another set of lamps, from 0.
-    #[must_use]
-    pub fn with_lamp_set(mut self, lamp_set: usize) -> Self {
-        self.lamp_set = lamp_set;
-        self
-    }
 }
 
 impl Photometry {

@@ -113,7 +113,7 @@ fn across(mut planes: Planes, warnings: &mut Vec<String>) -> Result<Planes, Phot
         let expected = "0 to 90° or -90 to 90°";
         return Err(PhotometryError::Angles { what: "horizontal angles", first, last, expected });
     }
-    if near(first, 0.0) {
+    if near(first, 0.0) && last < 180.0 + ROUNDING {
         planes.angles[0] = 0.0;
         planes.mirror_at_first();
     }

@@ -141,6 +141,17 @@ fn values_of_eulumdat_are_located() {
 }
 
 #[test]
+fn planes_of_eulumdat_fit_their_symmetry() {
+    for (symmetry, expected) in [(2, "0 to 180°"), (3, "270 to 450°"), (4, "0 to 90°")] {
+        let mut file = Ldt::new(symmetry, 30.0, angles(0.0, 90.0, 45.0));
+        file.planes.truncate(10);
+        let error = message(&file.text(cosine));
+        let expected = format!("(expected {expected} for the symmetry indicator {symmetry}); correct");
+        assert!(error.starts_with("the angles C go from ") && error.contains(&expected), "{error}");
+    }
+}
+
+#[test]
 fn other_formats_are_named() {
     for (text, expected) in [
         ("", "it is empty"),

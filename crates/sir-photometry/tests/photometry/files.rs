@@ -114,13 +114,11 @@ fn a_set_of_lamps_can_be_chosen() {
     assert_eq!(file.opening, Opening::Flat { outline: Outline::Ellipse, length: 0.2, width: 0.2 });
     assert_eq!(file.warnings, ["The set of lamps 1 of 2 is used; others are: 2 × TC-D 26 W, 3600 lm."]);
 
-    let second =
-        Photometry::read_with(&path("rotational.ldt"), PhotometryOptions::default().with_lamp_set(1))
-            .unwrap();
+    let second = Photometry::read_with(&path("rotational.ldt"), PhotometryOptions { lamp_set: 1 }).unwrap();
     assert_eq!((second.lamp_flux, second.watts), (Some(3600.0), Some(60.0)));
     assert!((second.distribution.flux() / file.distribution.flux() - 0.9).abs() < 1e-12);
 
-    let third = PhotometryOptions::default().with_lamp_set(2);
+    let third = PhotometryOptions { lamp_set: 2 };
     let error = Photometry::read_with(&path("rotational.ldt"), third).unwrap_err().to_string();
     assert!(
         error.contains("rotational.ldt: the file has 2 sets of lamps, but set 3 was asked for"),

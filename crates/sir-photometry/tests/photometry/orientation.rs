@@ -156,6 +156,38 @@ fn tables_that_stop_short_of_the_circle_are_closed() {
 }
 
 #[test]
+fn a_last_plane_at_a_full_turn_is_not_repeated() {
+    let mut ldt = Ldt::new(0, 15.0, full());
+    let expected = ldt.read(lopsided).distribution;
+    for last in [360.0, 359.99] {
+        ldt.planes.push(last);
+        ldt.measured = angles(0.0, 360.0, 15.0);
+        let file = ldt.read(lopsided);
+        assert!((file.distribution.flux() / expected.flux() - 1.0).abs() < 1e-9, "{last}");
+        assert!(file.distribution.intensity(crate::lamps::c_gamma(90.0, 359.995)) > 0.0);
+        ldt.planes.pop();
+    }
+    let mut ies = Ies::new(1, full(), angles(0.0, 360.0, 15.0));
+    ies.horizontal[24] = 359.99;
+    assert!(ies.read(lopsided).distribution.intensity(crate::lamps::type_c(90.0, 359.995)) > 0.0);
+    // Horizontal angles of type A around the axis.
+    let file = Ies::new(3, half(), angles(0.0, 360.0, 2.0)).read(lopsided);
+    assert_same(&file, lopsided, TOLERANCE, "type A");
+}
+
+#[test]
+fn steps_replace_angles_that_do_not_ascend() {
+    let text = Ldt::new(4, 30.0, angles(0.0, 180.0, 10.0)).text(symmetric_in_both);
+    let mut lines: Vec<&str> = text.lines().collect();
+    (lines[4], lines[6]) = ("30", "10");
+    // Twelve planes and 19 angles begin in line 43.
+    lines[42..42 + 12 + 19].fill("0");
+    let file = Photometry::parse(lines.join("\n").as_bytes()).unwrap();
+    assert_same(&file, symmetric_in_both, 0.05, "steps");
+    assert_eq!(file.warnings.len(), 2, "{:?}", file.warnings);
+}
+
+#[test]
 fn a_partial_table_is_dark_elsewhere() {
     let file = Ies::new(2, angles(-30.0, 30.0, 2.0), angles(0.0, 40.0, 2.0)).read(down_symmetric);
     assert_eq!(file.warnings.len(), 2, "{:?}", file.warnings);

@@ -5,8 +5,10 @@ use sir_photometry::{Coordinates, IntensityDistribution, TableError};
 
 use crate::lamps::{c_gamma, type_a, type_b, type_c};
 
-/// Directions of an azimuth and a polar angle.
-const SYSTEMS: [(Coordinates, fn(f64, f64) -> DVec3); 4] = [
+/// Coordinate system, and its directions of an azimuth and a polar angle.
+type System = (Coordinates, fn(f64, f64) -> DVec3);
+
+const SYSTEMS: [System; 4] = [
     (Coordinates::C, |azimuth, polar| type_c(polar, azimuth)),
     (Coordinates::CAcross, |azimuth, polar| c_gamma(polar, azimuth)),
     (Coordinates::A, |azimuth, polar| type_a(polar - 90.0, azimuth)),
@@ -66,16 +68,15 @@ fn poles_and_the_seam_belong_to_the_table() {
 #[test]
 fn edges_of_partial_tables_belong_to_them() {
     for (coordinates, direction) in SYSTEMS {
-        let values = [3.0; 12];
-        let (azimuths, polars) = ([-70.0, -10.0, 50.0, 110.0], [30.0, 60.0, 120.0]);
-        let table = IntensityDistribution::new(coordinates, &azimuths, &polars, &values).unwrap();
-        for azimuth in azimuths {
-            for polar in polars {
-                assert_near(
-                    table.intensity(direction(azimuth, polar)),
-                    3.0,
-                    &format!("{coordinates:?} {azimuth} {polar}"),
-                );
+        for first in -180..180 {
+            let azimuths = [0.0, 60.0, 120.0, 180.0].map(|turn| f64::from(first) + turn);
+            let polars = [30.0, 60.0, 120.0];
+            let table = IntensityDistribution::new(coordinates, &azimuths, &polars, &[3.0; 12]).unwrap();
+            for azimuth in azimuths {
+                for polar in polars {
+                    let what = format!("{coordinates:?} {azimuth} {polar}");
+                    assert_near(table.intensity(direction(azimuth, polar)), 3.0, &what);
+                }
             }
         }
     }

@@ -1,4 +1,4 @@
-//! A fuzzer of the readers of pipeline and scene files.
+//! A fuzzer of the readers of pipeline, scene and photometric files.
 //!
 //!     cargo run --release -p sir-pipeline --example fuzz -- glb --minutes 60 --seed 1
 //!
@@ -28,6 +28,7 @@ use seeds::Target;
 use sir_geom::{Built, LoadOptions, load};
 use sir_lines::Domain;
 use sir_mesh::{PatchSize, Subdivision};
+use sir_photometry::Photometry;
 use sir_pipeline::plan::Pipeline;
 use sir_radiosity::{FirstShot, Model, ShotSettings, run_stage};
 
@@ -158,6 +159,7 @@ fn attempt(target: Target, folder: &Path, bytes: usize) -> Result<Option<String>
     let before = MEMORY.current_usage();
     let outcome = catch_unwind(AssertUnwindSafe(|| match target {
         Target::Pipeline => Pipeline::read(&path).map(drop).map_err(|error| error.chain()),
+        Target::Ies | Target::Ldt => Photometry::read(&path).map(sample).map_err(|error| chain(&error)),
         _ => load(&path, &LoadOptions::default()).map(Some).map_err(|error| chain(&error)).map(light),
     }));
     let memory = MEMORY.peak_usage().saturating_sub(before);
@@ -181,6 +183,22 @@ fn attempt(target: Target, folder: &Path, bytes: usize) -> Result<Option<String>
         Ok(Some(text))
     } else {
         Err(format!("no file is named: {text}"))
+    }
+}
+
+/// Samples directions, and looks up their intensities.
+///
+/// # Panics
+///
+/// If a result is not valid, which is a finding.
+fn sample(file: Photometry) {
+    let light = &file.distribution;
+    assert!(light.flux().is_finite() && light.flux() > 0.0, "flux {}", light.flux());
+    for point in [[0.0, 0.0], [0.2, 0.7], [0.5, 0.5], [1.0 - f64::EPSILON, 1.0 - f64::EPSILON]] {
+        let direction = light.sample(point);
+        assert!((direction.length() - 1.0).abs() < 1e-9, "direction {direction}");
+        let intensity = light.intensity(direction);
+        assert!((0.0..=light.largest() * (1.0 + 1e-9)).contains(&intensity), "intensity {intensity}");
     }
 }
 

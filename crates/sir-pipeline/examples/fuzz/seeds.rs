@@ -13,6 +13,10 @@ pub(crate) enum Target {
     Gltf,
     /// Binary glTF.
     Glb,
+    /// IES LM-63 with a file of tilt factors.
+    Ies,
+    /// EULUMDAT.
+    Ldt,
 }
 
 impl Target {
@@ -23,6 +27,8 @@ impl Target {
             Self::Obj => "a.obj",
             Self::Gltf => "a.gltf",
             Self::Glb => "a.glb",
+            Self::Ies => "a.ies",
+            Self::Ldt => "a.ldt",
         }
     }
 
@@ -113,6 +119,29 @@ impl Target {
                 "t.png",
                 "\n",
             ],
+            Self::Ies | Self::Ldt => &[
+                "TILT=INCLUDE\n",
+                "TILT=NONE\n",
+                "TILT=a.tlt\n",
+                "TILT=../a\n",
+                "IESNA91\n",
+                "IES:LM-63-2019\n",
+                "[MORE] x\n",
+                "[LUMINAIRE]",
+                "\n",
+                " ",
+                ",",
+                "1D3",
+                "-.5",
+                "0 90 ",
+                "0 45 90 180 ",
+                "-90 0 90 ",
+                "90 180 270 ",
+                "2",
+                "3",
+                "4",
+                "360",
+            ],
             Self::Gltf | Self::Glb => &[
                 "{",
                 "}",
@@ -152,6 +181,8 @@ impl Target {
                 ("t.png", PNG.into()),
             ],
             Self::Glb => vec![(file, glb(&document(None), &data())), ("t.png", PNG.into())],
+            Self::Ies => vec![(file, IES.into()), ("a.tlt", "1 3 0 45 90 1 .9 .8\n".into())],
+            Self::Ldt => vec![(file, ldt().into())],
         }
     }
 }
@@ -178,6 +209,21 @@ Pipeline(
 const OBJ: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0 # c\nv 1 1 0\nv 0 1 0 1 1 1\nv 0 0 1\nvt 0 0\nvn 0 0 1\no thing\nusemtl a\n\
     f 1/1/1 2/1 3//1\ng x\ns 1\nf -4 -3 -2 -1\nl 1 2 3\np 1\nusemtl b\nf 1/1 2/-1 \\\n 5/1\nf 2 3 5\n";
 const MTL: &str = "# m\nnewmtl a\nKd 0.5 0.5 0.5\nKe 1 1 1\nNs 10\nmap_Kd -s 1 1 1 t.png\nd 0.5\nnewmtl b\nKd 0.5\nTr 0.1\nmap_d t.png\nmap_Ke t.png\n";
+
+const IES: &str = "IESNA:LM-63-1995\r\n[TEST] 7\r\n[MANUFAC] x\r\n[MORE] y\r\n[LUMINAIRE] z\r\n[_CCT] 3000 K\r\n\
+    TILT=a.tlt\r\n2 1000 1.5 4 3 1 2 -.3 0 .1\r\n.9 1 36\r\n0 30 60 90\r\n0,45,90\r\n\
+    100 80 50 0\r\n100 85. 55 0\r\n1E2 90 60 0\r\n";
+
+/// Returns a EULUMDAT file with four of six planes and two sets of lamps.
+fn ldt() -> String {
+    let header =
+        "x 3 2 6 60 4 30 report luminaire 1 a.ldt today 600 300 100 500 200 10 10 20 20 100 80 1 0 2";
+    let lamps = "1 LED 1000 3000 1B 20 -1 LED 1200,5 4000 1B 25";
+    let ratios = ".5 .5 .5 .5 .5 .5 .5 .5 .5 .5";
+    let angles = "0 60 120 180 240 300 0 30 60 90";
+    let values = "300 200 100 0 300 210 110 0 300 220 120 0 300 230 130 0";
+    format!("{header} {lamps} {ratios} {angles} {values}").replace(' ', "\r\n")
+}
 
 /// A PNG image of one gray pixel.
 const PNG: &[u8] = &[
