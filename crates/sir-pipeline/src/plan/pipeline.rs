@@ -8,13 +8,14 @@ use sir_mesh::Per;
 use sir_radiosity::Points;
 
 use crate::error::Error;
+use crate::plan::light::Lamp;
 use crate::plan::save::{Output, Save};
 use crate::plan::sensors::Place;
 use crate::plan::stage::{Action, Stage, StageList};
 use crate::text::diagnostic::{Diagnostic, Diagnostics};
 use crate::text::field::Format as _;
 use crate::text::formats::{Choice, count};
-use crate::text::reader::Reader;
+use crate::text::reader::{Fields, Reader};
 use crate::text::record::{Body as _, Record as _, record};
 use crate::text::ron_tree;
 use crate::text::ron_tree::Value;
@@ -30,7 +31,7 @@ const POINTS: Choice<Points> = Choice(&[("Sobol", Points::Sobol), ("Random", Poi
 
 record! {
     /// Contents of a pipeline file.
-    pub(crate) struct Content as "Pipeline" {
+    pub(crate) struct Content as "Pipeline", check Content::check {
         /// Seed of all random numbers. Runs with different seeds are independent; `--seed` on the command line takes
         /// precedence.
         pub seed: u64 = count(0, u64::MAX, 1).or(1);
@@ -42,6 +43,19 @@ record! {
         pub points: Points = POINTS.or(Points::Sobol);
         /// Stages, in the order in which they run.
         pub stages: Vec<Stage> = StageList::ALL.required();
+    }
+}
+
+impl Content {
+    fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
+        let has_luminaire = self.stages.iter().any(|stage| match &stage.action {
+            Action::Light(light) => light.lamps.iter().any(|lamp| matches!(lamp, Lamp::Luminaire(_))),
+            _ => false,
+        });
+        if has_luminaire && self.units == Units::Radiometric {
+            let message = "a `Luminaire` needs photometric units (its file states candelas)";
+            reader.problem(fields.place_of("units"), message, "write `units: Photometric` in `Pipeline`");
+        }
     }
 }
 
