@@ -5,6 +5,7 @@ pub(crate) mod layout;
 pub(crate) mod prepared;
 pub(crate) mod probe_grid;
 pub(crate) mod sources;
+mod standard_grid;
 pub(crate) mod up;
 
 pub use layout::{Cells, Layout, Placed};

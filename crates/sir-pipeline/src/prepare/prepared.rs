@@ -188,7 +188,7 @@ fn place(
     let (mut all, mut problems) = (BTreeMap::new(), Vec::new());
     for (number, stage) in pipeline.stages.iter().enumerate() {
         let Action::Sensors(sensors) = &stage.action else { continue };
-        match Placed::new(&sensors.at.value, model, up, focus) {
+        match Placed::new(sensors, model, up, focus) {
             Ok(placed) => drop(all.insert(number, placed)),
             Err((message, help)) => {
                 problems.push(Diagnostic { span: sensors.at.span.0.clone(), message, help });

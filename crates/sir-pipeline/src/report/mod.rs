@@ -5,10 +5,13 @@ pub(crate) mod light;
 pub(crate) mod lines;
 pub(crate) mod page;
 pub(crate) mod probes;
+pub(crate) mod requirements;
 pub(crate) mod result;
 pub(crate) mod sensors;
+mod uncertain;
 
 pub use compare::compare;
+pub use requirements::{RequirementReport, Verdict};
 pub use result::{
     BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, OutputReport,
     PipelineReport, Report, SceneReport, StageReport, Time, VERSION,

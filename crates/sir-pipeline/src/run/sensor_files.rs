@@ -78,7 +78,7 @@ fn map_of(cells: &Cells, measured: &[Measurement], report: &SensorsReport, units
     }
     let SensorsReport { name, .. } = report;
     Map {
-        title: format!("{name}: {}", units.irradiance_name()),
+        title: format!("{name}: {}", report.quantity(units)),
         subtitle: report.in_short(units),
         unit: units.irradiance().into(),
         columns: cells.columns,
