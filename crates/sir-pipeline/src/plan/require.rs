@@ -16,6 +16,8 @@ record! {
         pub uniformity: Option<f64> = ratio(0.6).optional("none");
         /// Least diversity U_d, minimum/maximum.
         pub diversity: Option<f64> = ratio(0.4).optional("none");
+        /// Least mean daylight factor.
+        pub daylight_factor: Option<f64> = positive(2.0).optional("none").unit("%");
     }
 }
 
@@ -25,8 +27,8 @@ fn ratio(example: f64) -> Number {
 
 impl Require {
     fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
-        let Self { mean, minimum, uniformity, diversity } = self;
-        if [mean, minimum, uniformity, diversity].into_iter().all(Option::is_none) {
+        let Self { mean, minimum, uniformity, diversity, daylight_factor } = self;
+        if [mean, minimum, uniformity, diversity, daylight_factor].into_iter().all(Option::is_none) {
             let help = "write for instance `require: (mean: 500, uniformity: 0.6)`";
             reader.problem(fields.place, "`require` states no requirement", help);
         }

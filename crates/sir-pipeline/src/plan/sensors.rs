@@ -11,7 +11,7 @@ use crate::plan::points_file::PointsFile;
 use crate::plan::probes::Probes;
 use crate::plan::require::Require;
 use crate::text::field::Format as _;
-use crate::text::formats::{Direction, Text, Vector, count, number, positive};
+use crate::text::formats::{Direction, Flag, Text, Vector, count, number, positive};
 use crate::text::reader::{Fields, Reader, inside};
 use crate::text::record::{Body, choice, list_items, named, nested, record};
 use crate::text::ron_tree::Node;
@@ -36,6 +36,8 @@ record! {
         /// Relative standard error at which a sensor stops early, after at least 2,048 rays; `0.005` is 0.5 %. The
         /// errors of patches are ignored.
         pub error: Option<f64> = positive(0.005).optional("none");
+        /// True to state daylight factors, too, see below.
+        pub daylight_factor: bool = Flag.or(false);
         /// Least values that are required, see below.
         pub require: Option<Require> = nested("(mean: 500, uniformity: 0.6)").optional("none");
     }
@@ -137,13 +139,34 @@ impl Sensors {
 
     fn check<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>) {
         self.claim_outputs(reader, fields);
-        if self.measure != Measure::Planar && matches!(self.at.value, Place::Probes(_)) {
-            let message = "probes measure the irradiance of planes in all directions, and no other kind";
-            reader.problem(
-                fields.place_of("measure"),
-                message,
-                "leave out `measure`, or use `Points` or `Grid`",
-            );
+        if self.require.as_ref().is_some_and(|r| r.daylight_factor.is_some()) && !self.daylight_factor {
+            let message = "a daylight factor is required, but not measured";
+            reader.problem(fields.place_of("require"), message, "add `daylight_factor: true`");
+        }
+        if !matches!(self.at.value, Place::Probes(_)) {
+            return;
+        }
+        for (field, is_given, message) in [
+            (
+                "measure",
+                self.measure != Measure::Planar,
+                "probes measure the irradiance of planes in all directions, and no other kind",
+            ),
+            (
+                "require",
+                self.require.is_some(),
+                "probes have no requirements (standards state them for planes)",
+            ),
+            (
+                "daylight_factor",
+                self.daylight_factor,
+                "probes have no daylight factor (it belongs to planes)",
+            ),
+        ] {
+            if is_given {
+                let help = format!("leave out `{field}`, or use `Points`, `Grid` or `Plane`");
+                reader.problem(fields.place_of(field), message, help);
+            }
         }
     }
 

@@ -1,6 +1,7 @@
 //! Preparation of a run: everything that must succeed before the first line is traced.
 
 pub(crate) mod cameras;
+mod daylight;
 pub(crate) mod layout;
 pub(crate) mod prepared;
 pub(crate) mod probe_grid;

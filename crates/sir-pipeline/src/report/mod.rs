@@ -16,6 +16,6 @@ pub use result::{
     BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, OutputReport,
     PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
 };
-pub use sensors::SensorsReport;
+pub use sensors::{DaylightReport, SensorsReport};
 
 pub use crate::run_files::REPORT as FILE_NAME;

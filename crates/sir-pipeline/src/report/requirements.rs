@@ -13,9 +13,9 @@ const UNDECIDED: f64 = 2.0;
 /// A requirement, with what was measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RequirementReport {
-    /// Name of the quantity: `mean`, `minimum`, `uniformity` or `diversity`.
+    /// Name of the quantity: `mean`, `minimum`, `uniformity`, `diversity` or `daylight factor`.
     pub quantity: String,
-    /// Least value required, in W/m² unless it is a ratio.
+    /// Least value required, in W/m² unless it is a ratio; in per cent for the daylight factor.
     pub required: f64,
     /// Measured value.
     pub measured: f64,
@@ -53,11 +53,17 @@ impl RequirementReport {
         Self { quantity: quantity.into(), required, measured: value, error, margin, verdict }
     }
 
-    /// Compares all quantities with what is required of them. The arguments are mean, minimum, uniformity and diversity.
-    pub(crate) fn all(require: &Require, measured: [Uncertain; 4]) -> Vec<Self> {
-        let Require { mean, minimum, uniformity, diversity } = *require;
-        let required =
-            [("mean", mean), ("minimum", minimum), ("uniformity", uniformity), ("diversity", diversity)];
+    /// Compares all quantities with what is required of them. `measured` are mean, minimum, uniformity,
+    /// diversity and mean daylight factor.
+    pub(crate) fn all(require: &Require, measured: [Uncertain; 5]) -> Vec<Self> {
+        let Require { mean, minimum, uniformity, diversity, daylight_factor } = *require;
+        let required = [
+            ("mean", mean),
+            ("minimum", minimum),
+            ("uniformity", uniformity),
+            ("diversity", diversity),
+            ("daylight factor", daylight_factor),
+        ];
         let pairs = required.into_iter().zip(measured);
         pairs
             .filter_map(|((name, required), measured)| required.map(|least| Self::new(name, least, measured)))
@@ -70,6 +76,7 @@ impl RequirementReport {
     pub fn in_short(&self, units: Units) -> String {
         let unit = match self.quantity.as_str() {
             "mean" | "minimum" => format!(" {}", units.irradiance()),
+            "daylight factor" => " %".into(),
             _ => String::new(),
         };
         let measured = Uncertain { value: self.measured, error: self.error };
@@ -117,9 +124,15 @@ mod tests {
 
     #[test]
     fn ratios_have_no_unit() {
-        let require = Require { mean: None, minimum: None, uniformity: Some(0.6), diversity: None };
+        let require = Require {
+            mean: None,
+            minimum: None,
+            uniformity: Some(0.6),
+            diversity: None,
+            daylight_factor: None,
+        };
         let measured = Uncertain { value: 0.65, error: 0.01 };
-        let [report] = &RequirementReport::all(&require, [measured; 4])[..] else { panic!() };
+        let [report] = &RequirementReport::all(&require, [measured; 5])[..] else { panic!() };
         let words = "uniformity 0.650 ± 0.010, at least 0.6: passes by 5.0 standard errors";
         assert_eq!(report.in_short(Units::Photometric), words);
     }

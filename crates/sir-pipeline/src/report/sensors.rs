@@ -51,17 +51,46 @@ pub struct SensorsReport {
     /// Standard error of `diversity`.
     #[serde(default)]
     pub diversity_error: f64,
+    /// Daylight factors, if the sensors have them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub daylight: Option<DaylightReport>,
     /// Requirements, with what was measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<RequirementReport>,
 }
 
+/// Summary of daylight factors: irradiances in per cent of that of an unobstructed horizontal surface under the same sky.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DaylightReport {
+    /// Irradiance of the unobstructed horizontal surface \[W/m²\], without an error.
+    pub outdoor: f64,
+    /// Mean \[%\].
+    pub mean: f64,
+    /// Standard error of the mean \[%\].
+    pub mean_error: f64,
+    /// Smallest daylight factor \[%\].
+    pub minimum: f64,
+    /// Standard error of the smallest daylight factor \[%\].
+    pub minimum_error: f64,
+    /// Largest daylight factor \[%\].
+    pub maximum: f64,
+    /// Standard error of the largest daylight factor \[%\].
+    pub maximum_error: f64,
+}
+
 impl SensorsReport {
     /// Creates the report of a stage `Sensors`. `spread` has the errors of the mean, if they are known from the spread of
-    /// repeats.
-    pub(crate) fn of(sensors: &Sensors, measured: &[Measurement], spread: Option<&SpreadOfMean>) -> Self {
+    /// repeats, and `outdoor` the irradiance to which daylight factors refer \[W/m²\].
+    pub(crate) fn of(
+        sensors: &Sensors,
+        measured: &[Measurement],
+        spread: Option<&SpreadOfMean>,
+        outdoor: Option<f64>,
+    ) -> Self {
         let kind = sensors.measure.adjective().map(String::from);
         let report = Self { kind, ..Self::new(&sensors.name, measured, spread) };
+        let daylight = outdoor.filter(|_| sensors.daylight_factor).map(|outdoor| report.daylight(outdoor));
+        let report = Self { daylight, ..report };
         let requirements = sensors.require.as_ref().map(|require| report.compare(require));
         Self { requirements: requirements.unwrap_or_default(), ..report }
     }
@@ -108,7 +137,21 @@ impl SensorsReport {
             uniformity_error: uniformity.error,
             diversity: diversity.value,
             diversity_error: diversity.error,
+            daylight: None,
             requirements: Vec::new(),
+        }
+    }
+
+    fn daylight(&self, outdoor: f64) -> DaylightReport {
+        let percent = 100.0 / outdoor;
+        DaylightReport {
+            outdoor,
+            mean: percent * self.mean,
+            mean_error: percent * self.mean_error,
+            minimum: percent * self.minimum,
+            minimum_error: percent * self.minimum_error,
+            maximum: percent * self.maximum,
+            maximum_error: percent * self.maximum_error,
         }
     }
 
@@ -118,6 +161,7 @@ impl SensorsReport {
             (self.minimum, self.minimum_error),
             (self.uniformity, self.uniformity_error),
             (self.diversity, self.diversity_error),
+            self.daylight.map_or((0.0, 0.0), |daylight| (daylight.mean, daylight.mean_error)),
         ];
         RequirementReport::all(require, measured.map(|(value, error)| Uncertain { value, error }))
     }
@@ -149,7 +193,24 @@ impl SensorsReport {
             text += &format!(", U0 = {}", shown(self.uniformity, self.uniformity_error));
             text += &format!(", Ud = {}", shown(self.diversity, self.diversity_error));
         }
+        if let Some(daylight) = self.daylight {
+            text += &format!(", daylight factor: {}", daylight.in_short());
+        }
         text
+    }
+}
+
+impl DaylightReport {
+    /// Returns the numbers in one line.
+    #[must_use]
+    pub fn in_short(&self) -> String {
+        let shown = |value, error| Uncertain { value, error };
+        format!(
+            "mean {} %, minimum {}, maximum {}",
+            shown(self.mean, self.mean_error),
+            shown(self.minimum, self.minimum_error),
+            shown(self.maximum, self.maximum_error),
+        )
     }
 }
 

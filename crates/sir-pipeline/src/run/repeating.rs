@@ -205,7 +205,12 @@ impl Run<'_> {
                         let summary = match &step.measured {
                             Some(Measured::Sensors(measured)) => {
                                 let (means, spread) = (measured.means(), measured.spread_of_mean());
-                                let summary = SensorsReport::of(sensors, &means, spread.as_ref());
+                                let summary = SensorsReport::of(
+                                    sensors,
+                                    &means,
+                                    spread.as_ref(),
+                                    self.prepared.outdoor,
+                                );
                                 self.write_sensors(number, sensors, &means, &summary)?;
                                 summary
                             }

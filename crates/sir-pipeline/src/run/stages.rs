@@ -109,7 +109,7 @@ impl Run<'_> {
     ) -> Result<SensorsReport, Error> {
         let means: Vec<Measurement> = measured.iter().map(ProbeMeasurement::mean).collect();
         let spread = error.map(|error| SpreadOfMean { error, ..SpreadOfMean::default() });
-        let mut summary = SensorsReport::of(sensors, &means, spread.as_ref());
+        let mut summary = SensorsReport::of(sensors, &means, spread.as_ref(), None);
         let Some(Placed::Probes(grid)) = self.prepared.placed.get(&number) else { return Ok(summary) };
         summary.invalid = Some(grid.len() - grid.valid.len());
         if self.pipeline.has_page() {

@@ -31,7 +31,7 @@ function writeSensor(sensor, facts) {
 
 /** Makes a table of what is required and what was measured. */
 function requirementTable(requirements, unitE, name) {
-  const names = { mean: 'Mean', minimum: 'Minimum', uniformity: 'Uniformity U₀', diversity: 'Diversity U_d' };
+  const names = { mean: 'Mean', minimum: 'Minimum', uniformity: 'Uniformity U₀', diversity: 'Diversity U_d', 'daylight factor': 'Mean daylight factor (%)' };
   const hasUnit = (quantity) => quantity === 'mean' || quantity === 'minimum';
   const head = ['Quantity', 'At least', 'Measured', '± σ', 'Verdict'].map((label) => element('th', { scope: 'col' }, label));
   const rows = requirements.map(({ quantity, required, measured, error, margin, verdict }) => {
