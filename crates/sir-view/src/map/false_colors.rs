@@ -71,10 +71,11 @@ fn draw(picture: &Picture, colors: &FalseColors) -> Result<Canvas, ab_glyph::Inv
     Ok(canvas)
 }
 
-/// Returns the luminance of each pixel: the mean over its rays, or over those that met a surface if the sky has no value.
+/// Returns the luminance of each pixel: the mean over its rays. If the sky has no value, it is that over the rays that met a
+/// surface, at least half of them.
 fn values(picture: &Picture, shows_sky: bool) -> Vec<Option<f64>> {
     let pixels = picture.radiance.iter().zip(&picture.surface);
-    let value = |(pixel, &surface): (&[f32; 3], &f32)| match (shows_sky, surface > 0.0) {
+    let value = |(pixel, &surface): (&[f32; 3], &f32)| match (shows_sky, surface >= 0.5) {
         (true, _) => Some(luminance(rgb(pixel))),
         (false, true) => Some(luminance(rgb(pixel)) / f64::from(surface)),
         (false, false) => None,
