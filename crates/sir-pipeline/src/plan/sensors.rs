@@ -39,7 +39,7 @@ record! {
         /// True to state daylight factors, too, see below.
         pub daylight_factor: bool = Flag.or(false);
         /// Least values that are required, see below.
-        pub require: Option<Require> = nested("(mean: 500, uniformity: 0.6)").optional("none");
+        pub require: Option<Box<Require>> = nested("(mean: 500, uniformity: 0.6)").optional("none");
     }
 }
 

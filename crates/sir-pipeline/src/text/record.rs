@@ -299,7 +299,7 @@ impl<T: Choose> Format for Named<T> {
     }
 }
 
-/// Format of a record that is the value of a field.
+/// Format of a record that is the value of a field. It is in a box, because most fields are small.
 #[derive(Clone, Copy)]
 pub(crate) struct Nested<T> {
     example: &'static str,
@@ -312,14 +312,14 @@ pub(crate) fn nested<T: Record + Clone>(example: &'static str) -> Nested<T> {
 }
 
 impl<T: Record + Clone> Format for Nested<T> {
-    type Value = T;
+    type Value = Box<T>;
 
-    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, _: &str) -> Option<T> {
-        T::read(reader, node)
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, _: &str) -> Option<Box<T>> {
+        T::read(reader, node).map(Box::new)
     }
 
-    fn write(&self, value: &T) -> String {
-        Body::write(value, "")
+    fn write(&self, value: &Box<T>) -> String {
+        Body::write(value.as_ref(), "")
     }
 
     fn describe(&self) -> String {

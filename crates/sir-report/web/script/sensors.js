@@ -33,7 +33,7 @@ function writeSensor(sensor, facts) {
 function requirementTable(requirements, unitE, name) {
   const names = { mean: 'Mean', minimum: 'Minimum', uniformity: 'Uniformity U₀', diversity: 'Diversity U_d', 'daylight factor': 'Mean daylight factor (%)' };
   const hasUnit = (quantity) => quantity === 'mean' || quantity === 'minimum';
-  const head = ['Quantity', 'At least', 'Measured', '± σ', 'Verdict'].map((label) => element('th', { scope: 'col' }, label));
+  const head = ['Quantity', 'At least', 'Measured', '± σ', 'Verdict'].map((label, k) => element('th', { scope: 'col', class: k === 0 || k === 4 ? 'text' : '' }, label));
   const rows = requirements.map(({ quantity, required, measured, error, margin, verdict }) => {
     const label = `${names[quantity] ?? cut(quantity, 60)}${hasUnit(quantity) ? ` (${unitE})` : ''}`;
     const by = Number.isFinite(margin) ? `${verdict === 'undecided' ? ', ' : ' by '}${Math.abs(margin).toFixed(1)} standard errors` : '';
