@@ -66,7 +66,10 @@ pub fn summary(result: &RunResult) -> String {
             }
             None => format!("{points} points"),
         };
-        format!("{}: {points}, {}\n", sensors.name, sensors.in_short(report.units))
+        let requirements = sensors.requirements.iter();
+        let requirements = requirements.map(|r| format!("           {}\n", r.in_short(report.units)));
+        let all: String = requirements.collect();
+        format!("{}: {points}, {}\n{all}", sensors.name, sensors.in_short(report.units))
     }));
     text + &error(report)
 }

@@ -40,4 +40,22 @@ impl Units {
             Self::Photometric => "illuminance",
         }
     }
+
+    /// Returns the unit of radiance and luminance: `W/(m² sr)` or `cd/m²`.
+    #[must_use]
+    pub fn radiance(self) -> &'static str {
+        match self {
+            Self::Radiometric => "W/(m² sr)",
+            Self::Photometric => "cd/m²",
+        }
+    }
+
+    /// Returns the name of the light in a direction per area across it and solid angle: `radiance` or `luminance`.
+    #[must_use]
+    pub fn radiance_name(self) -> &'static str {
+        match self {
+            Self::Radiometric => "radiance",
+            Self::Photometric => "luminance",
+        }
+    }
 }

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use sir_pipeline::plan::Pipeline;
+use sir_pipeline::report::Verdict;
 use sir_pipeline::run::{RunOptions, RunResult, run_pipeline as run};
 use sir_pipeline::{Error, ErrorKind};
 
@@ -93,6 +94,54 @@ fn sensors_are_the_same_by_any_number_of_threads() {
     assert!(all[0] == all[1]);
 }
 
+/// The light of the room is the same from everywhere, so cylinders measure the irradiance of planes.
+#[test]
+fn cylinders_are_measured_around_the_up_direction() {
+    let stages = r#"
+        Sensors(name: "faces", at: Plane(height: 1.2, spacing: 1), measure: Cylindrical, rays: 4096),
+        Sensors(name: "half", at: Plane(height: 1.2, direction: (0, 0, 1)), measure: SemiCylindrical, rays: 1024),
+        Sensors(name: "vertical", at: Plane(height: 1.2, spacing: 1, direction: (0, 0, 1)), rays: 4096),
+    "#;
+    let (_folder, result) = measure(stages, 2);
+    let result = result.unwrap_or_else(|error| panic!("{}", error.chain()));
+    let reports: Vec<_> = result.report.stages.iter().filter_map(|s| s.sensors.as_ref()).collect();
+    // Without a spacing there are 6 × 6 cells on 2 m by 2 m.
+    assert_eq!(reports.iter().map(|r| r.points).collect::<Vec<_>>(), [4, 36, 4]);
+    assert_eq!(reports.iter().map(|r| r.rays).collect::<Vec<_>>(), [4 * 4 * 4096, 36 * 4 * 1024, 4 * 4096]);
+    for report in &reports {
+        assert!((report.mean - 4.0 * 0.7152).abs() < 4.0 * report.mean_error, "{report:?}");
+        assert!(report.mean_error < 0.02 && report.minimum_error < 0.05, "{report:?}");
+    }
+    let kinds: Vec<_> = reports.iter().map(|r| r.quantity(result.report.units)).collect();
+    assert_eq!(kinds, ["cylindrical illuminance", "semi-cylindrical illuminance", "illuminance"]);
+    for (file, direction) in [("faces.csv", [0.0, 1.0, 0.0]), ("half.csv", [0.0, 0.0, 1.0])] {
+        let found = ["dx", "dy", "dz"].map(|name| column(&result.directory, file, name)[0]);
+        assert_eq!(found, direction, "{file}");
+    }
+}
+
+#[test]
+fn requirements_are_compared_with_measurements() {
+    // The illuminance is 2.861 everywhere.
+    let stages = r#"
+        Sensors(name: "a", at: Plane(height: 1, spacing: 1), rays: 4096, require: (mean: 2.5, minimum: 4, uniformity: 0.6)),
+        Sensors(name: "b", at: Plane(height: 1, spacing: 1), rays: 4096, require: (mean: 2.861, diversity: 0.5)),
+    "#;
+    let (_folder, result) = measure(stages, 2);
+    let result = result.unwrap_or_else(|error| panic!("{}", error.chain()));
+    let reports = result.report.stages.iter().filter_map(|s| s.sensors.as_ref());
+    let all: Vec<_> = reports.flat_map(|r| &r.requirements).collect();
+    let verdicts: Vec<_> = all.iter().map(|r| (r.quantity.as_str(), r.verdict)).collect();
+    let (passes, fails) = (Verdict::Passes, Verdict::Fails);
+    assert_eq!(verdicts[..3], [("mean", passes), ("minimum", fails), ("uniformity", passes)]);
+    assert_eq!(verdicts[4], ("diversity", passes));
+    // A required value that is the true one is within two standard errors with a probability of 95 %; this seed is.
+    assert_eq!(verdicts[3], ("mean", Verdict::Undecided), "{:?}", all[3]);
+    assert!(all[0].margin.unwrap() > 10.0 && all[1].margin.unwrap() < -10.0, "{all:?}");
+    let text = fs::read_to_string(result.directory.join("result.json")).unwrap();
+    assert!(text.contains("\"verdict\": \"fails\""), "{text}");
+}
+
 #[test]
 fn impossible_sensors_are_refused_with_the_reason() {
     for (at, reason) in [
@@ -111,6 +160,7 @@ fn impossible_sensors_are_refused_with_the_reason() {
         ("Plane(height: 1, spacing: 1e-5)", "is too fine"),
         ("Plane(height: 1, spacing: -1)", "`spacing` must be a number above 0"),
         ("Plane(height: 1, spacing: 1, border: -1)", "`border` must be a number from 0"),
+        ("Plane(height: 1, border: Auto)", "`border` must be `Standard` or a number, but it is `Auto`"),
         ("Plane(height: 1, spacing: 1, up: (0, 0, 0))", "must be a direction, but its length is zero"),
         ("Grid(corner: (0, 0, 0), along: (1, 0, 0), across: (2, 0, 0), spacing: 1)", "this grid has no area"),
         ("Plan(height: 1, spacing: 1)", "did you mean `Plane`?"),
@@ -137,6 +187,28 @@ fn names_and_order_are_checked() {
         ),
         (format!(r#"Sensors(name: "../a", {at})"#), "may lead out of the run directory"),
         (format!("Sensors({at})"), "`Sensors` lacks the field `name`"),
+        (
+            r#"Sensors(name: "a", at: Probes(spacing: 1), measure: Cylindrical)"#.into(),
+            "probes measure the irradiance of planes in all directions, and no other kind",
+        ),
+        (
+            format!(r#"Sensors(name: "a", {at}, measure: SemiCylindrical)"#),
+            "a half cylinder faces along its axis, the up direction of the scene or plane",
+        ),
+        (format!(r#"Sensors(name: "a", {at}, measure: Cylindric)"#), "did you mean `Cylindrical`?"),
+        (format!(r#"Sensors(name: "a", {at}, require: ())"#), "`require` states no requirement"),
+        (
+            format!(r#"Sensors(name: "a", {at}, require: (uniformity: 60))"#),
+            "must be a number above 0 and up to 1",
+        ),
+        (
+            format!(r#"Sensors(name: "a", {at}, require: (average: 60))"#),
+            "unknown field `average` in `Require`",
+        ),
+        (
+            r#"Sensors(name: "a", at: Probes(spacing: 1), require: (mean: 1))"#.into(),
+            "probes have no requirements",
+        ),
         (r#"Sensors(name: "a")"#.into(), "`Sensors` lacks the field `at`"),
         (format!(r#"Sensors(name: "a", {at}, rays: 0)"#), "`rays` must be a whole number from 1"),
         (format!(r#"Sensors(name: "a", {at}, error: 0)"#), "`error` must be a number above 0"),

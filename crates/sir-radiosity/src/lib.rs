@@ -116,7 +116,7 @@ pub use second_shot::SecondShot;
 pub use segments::{End, Segment, Segments};
 pub use sensors::{
     Gatherer, Measurement, REPLICATIONS, RepeatedMeasurements, Sensor, SensorSettings, SensorStage,
-    SensorStart, SensorTask,
+    SensorStart, SensorTask, SpreadOfMean,
 };
 pub use shadow_rays::{ShadowRaySettings, ShadowRays};
 pub use shot::{Points, Shot, ShotSettings};

@@ -31,12 +31,45 @@ pub fn render(
     camera: &Camera,
     settings: PictureSettings,
 ) -> Result<Picture, ViewError> {
+    draw(display, accel, camera, settings, Quantity::Radiance)
+}
+
+/// Renders the irradiance \[W/m²\] of the surfaces that a camera sees, in place of their radiance. A ray that meets nothing
+/// has zero.
+///
+/// # Errors
+///
+/// As [`render`].
+pub fn render_irradiance(
+    display: &DisplayMesh<'_>,
+    accel: &Accel,
+    camera: &Camera,
+    settings: PictureSettings,
+) -> Result<Picture, ViewError> {
+    draw(display, accel, camera, settings, Quantity::Irradiance)
+}
+
+/// Quantity that a picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Quantity {
+    Radiance,
+    Irradiance,
+}
+
+fn draw(
+    display: &DisplayMesh<'_>,
+    accel: &Accel,
+    camera: &Camera,
+    settings: PictureSettings,
+    quantity: Quantity,
+) -> Result<Picture, ViewError> {
     settings.check()?;
     let PictureSettings { width, height, threads, .. } = settings;
     let shader = Shader {
         display,
         rays: CameraRays::new(camera, f64::from(width) / f64::from(height)),
         settings,
+        quantity,
         knee: 1.0 / Exposure::Auto.factor_for_mesh(display),
     };
     let mut pixels = vec![Pixel::default(); width as usize * height as usize];
@@ -75,6 +108,7 @@ struct Shader<'a> {
     display: &'a DisplayMesh<'a>,
     rays: CameraRays,
     settings: PictureSettings,
+    quantity: Quantity,
     /// Luminance above which a ray has less weight in `Pixel::shown` \[W/(m² sr)\].
     knee: f64,
 }
@@ -96,7 +130,8 @@ impl Shader<'_> {
             .collect();
         self.trace(tracer, &rays, |ray, RaySample { radiance, coverage }| {
             covered += coverage;
-            let sky = self.display.scene.sky().filter(|_| self.display.emits);
+            let shows_sky = self.display.emits && self.quantity == Quantity::Radiance;
+            let sky = self.display.scene.sky().filter(|_| shows_sky);
             let sky = || sky.map_or(Rgb::ZERO, |sky| sky.radiance(ray.direction));
             let radiance = if coverage < 1.0 { radiance + (1.0 - coverage) * sky() } else { radiance };
             sum += radiance;
@@ -171,11 +206,15 @@ impl Shader<'_> {
         RaySample { radiance, coverage: 1.0 - transmittance }
     }
 
-    /// Returns the radiance of a side that a ray meets \[W/(m² sr)\]: `B/π`, unless its own light is directional.
+    /// Returns the radiance \[W/(m² sr)\] of a side that a ray meets, `B/π` unless its own light is directional; or its
+    /// irradiance \[W/m²\].
     fn radiance(&self, ray: &Line, hit: &Hit) -> Rgb {
         let Self { display, rays, settings, .. } = self;
         let Hit { t, triangle, point, side } = *hit;
         let Some(e) = display.irradiance_at(triangle, point, side) else { return Rgb::ZERO };
+        if self.quantity == Quantity::Irradiance {
+            return e;
+        }
         let slant = display.scene.normal(triangle).dot(ray.direction).abs().max(1e-3);
         // Square root of the surface area that the ray covers.
         let width = rays.spacing(t) / f64::from(settings.height * settings.grid.max(1)) / slant.sqrt();

@@ -121,7 +121,7 @@ fn try_sensors(
                 try_stage(&ProbeStage::begin(task, (), &OneWorker)?, valid.len() as u64)
             }
         };
-        let lines = settings.shared(repeats.unwrap_or(1)).rays * placed.sensors() as u64;
+        let lines = settings.shared(repeats.unwrap_or(1)).rays * placed.hemispheres();
         estimates.push(StageEstimate { name: stage.action.name(), lines, rate });
     }
     Ok(estimates)

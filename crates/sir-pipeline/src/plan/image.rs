@@ -6,6 +6,7 @@ use glam::DVec3;
 use sir_geom::Projection;
 use sir_view::Exposure;
 
+use crate::plan::show::{ColorScale, Limits, SCALE, SHOW, Show};
 use crate::text::field::Format;
 use crate::text::formats::{Count, Direction, Flag, Vector, count, positive, quoted};
 use crate::text::paths::OutputFile;
@@ -16,7 +17,7 @@ use crate::text::span::{Spanned, WithSpan};
 
 record! {
     /// Image of the solution.
-    pub struct Image {
+    pub struct Image, check Image::check {
         /// `.png`: 8 bits per channel, for viewing. `.exr`: linear radiance in W/(m² sr), 32-bit floats, without
         /// exposure and tone curve, in the channels `R`, `G`, `B`; its standard error is in `error.R`, `error.G`,
         /// `error.B`.
@@ -32,8 +33,52 @@ record! {
         pub exposure: Exposure = ExposureFormat.or(Exposure::Auto);
         /// True to denoise a PNG image, see below. EXR images, tables and lit scenes are never denoised.
         pub denoise: bool = Flag.or(true);
+        /// What a PNG image shows: `Colors`, the scene as it looks; or in false colors with a scale `Luminance`, or
+        /// `Illuminance` of the surfaces; see below.
+        pub show: Show = SHOW.or(Show::Colors);
+        /// Scale of false colors.
+        pub scale: Option<ColorScale> = SCALE.optional("`Logarithmic` for `Luminance`, `Linear` for `Illuminance`");
+        /// Values with the darkest and the lightest of the false colors, in W/(m² sr) or W/m².
+        pub limits: Option<[f64; 2]> = Limits([0.0, 500.0]).optional("from the picture");
         /// Point of view, see below. If the scene has no camera, a point of view that shows much of it is chosen.
         pub camera: Option<Spanned<CameraChoice>> = WithSpan(CameraFormat).optional("the scene's first");
+    }
+}
+
+impl Image {
+    /// Returns the scale of false colors.
+    #[must_use]
+    pub fn color_scale(&self) -> ColorScale {
+        self.scale.unwrap_or(self.show.usual_scale())
+    }
+
+    /// True if the file is an EXR image.
+    pub(crate) fn is_exr(&self) -> bool {
+        self.path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"))
+    }
+
+    fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
+        if self.show == Show::Colors {
+            let help = "add for instance `show: Luminance`, or leave it out";
+            for field in ["scale", "limits"].into_iter().filter(|field| fields.get(field).is_some()) {
+                let message = format!("`{field}` has no effect (it belongs to false colors)");
+                reader.problem(fields.place_of(field), message, help);
+            }
+            return;
+        }
+        if self.is_exr() {
+            let message = "an EXR image has no false colors (it holds the radiance itself)";
+            reader.problem(fields.place_of("show"), message, "choose a `.png` path, or leave out `show`");
+        }
+        if self.exposure != Exposure::Auto {
+            let message = "`exposure` has no effect (false colors have a scale instead)";
+            reader.problem(fields.place_of("exposure"), message, "write `limits: (0, 500)` or leave it out");
+        }
+        if self.color_scale() == ColorScale::Logarithmic && self.limits.is_some_and(|[low, _]| low <= 0.0) {
+            let message = "a logarithmic scale cannot begin at zero";
+            let help = "begin `limits` above zero, or write `scale: Linear`";
+            reader.problem(fields.place_of("limits"), message, help);
+        }
     }
 }
 

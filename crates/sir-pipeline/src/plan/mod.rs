@@ -1,6 +1,7 @@
 //! Contents of a pipeline, with every default filled in. Each file declares the fields of a stage, or of a part of one.
 //! The reader, the writer and the documentation follow from the declaration.
 
+mod border;
 pub(crate) mod focus;
 pub(crate) mod image;
 pub(crate) mod light;
@@ -9,6 +10,7 @@ pub(crate) mod lightmap;
 pub(crate) mod lines;
 pub(crate) mod load;
 pub(crate) mod luminaire;
+mod measure;
 pub(crate) mod multipath;
 mod order;
 pub(crate) mod panel;
@@ -18,13 +20,16 @@ pub(crate) mod point;
 mod points_file;
 pub(crate) mod probes;
 mod reference;
+mod require;
 pub(crate) mod save;
 pub(crate) mod scene_light;
 pub(crate) mod sensors;
+mod show;
 pub(crate) mod sky;
 pub(crate) mod stage;
 pub(crate) mod subdivide;
 
+pub use border::Border;
 pub use focus::Focus;
 pub use image::{Camera, CameraChoice, Image};
 pub use light::{Distant, Lamp, Light};
@@ -32,6 +37,7 @@ pub use lightmap::Lightmap;
 pub use lines::{FirstShot, SecondShot, ShadowRays, Solve};
 pub use load::Load;
 pub use luminaire::{Luminaire, OpeningChoice};
+pub use measure::{Measure, SemiCylindrical};
 pub use multipath::{DomainKind, Multipath, Replicas, Transport};
 pub use panel::{Panel, PanelStrength};
 pub use photometric_file::PhotometricFile;
@@ -40,9 +46,11 @@ pub use point::{Lambertian, Point, PointStrength, Spot, Spread};
 pub use points_file::PointsFile;
 pub use probes::Probes;
 pub use reference::field_tables;
+pub use require::Require;
 pub use save::{Gltf, Output, Report, Save, Table};
 pub use scene_light::SceneLight;
 pub use sensors::{Grid, Place, Plane, Points, SensorPoint, Sensors};
+pub use show::{ColorScale, Show};
 pub use sky::{Cie, Environment, Sky, SkyModel};
 pub use stage::{Action, Repeat, Stage, Until};
 pub use subdivide::{Divided, Division, Subdivide};

@@ -7,11 +7,13 @@ use crate::plan::lightmap::Lightmap;
 use crate::plan::lines::{FirstShot, SecondShot, ShadowRays, Solve};
 use crate::plan::load::Load;
 use crate::plan::luminaire::Luminaire;
+use crate::plan::measure::SemiCylindrical;
 use crate::plan::multipath::{Multipath, Replicas};
 use crate::plan::panel::Panel;
 use crate::plan::pipeline::Content;
 use crate::plan::point::{Lambertian, Point, Spot};
 use crate::plan::probes::Probes;
+use crate::plan::require::Require;
 use crate::plan::save::{Gltf, Report, Table};
 use crate::plan::sensors::{Grid, Plane, SensorPoint, Sensors};
 use crate::plan::sky::{Cie, Environment, Sky};
@@ -48,6 +50,8 @@ pub fn field_tables() -> Vec<(&'static str, String)> {
         table::<SensorPoint>(),
         table::<Grid>(),
         table::<Plane>(),
+        table::<SemiCylindrical>(),
+        table::<Require>(),
         table::<Probes>(),
         table::<Image>(),
         table::<Camera>(),

@@ -5,12 +5,15 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use sir_radiosity::{Sensor, SensorSettings};
 
+use crate::plan::border::{Border, BorderFormat};
+use crate::plan::measure::Measure;
 use crate::plan::points_file::PointsFile;
 use crate::plan::probes::Probes;
+use crate::plan::require::Require;
 use crate::text::field::Format as _;
-use crate::text::formats::{Direction, Text, Vector, count, number, positive};
+use crate::text::formats::{Direction, Flag, Text, Vector, count, number, positive};
 use crate::text::reader::{Fields, Reader, inside};
-use crate::text::record::{Body, choice, list_items, named, record};
+use crate::text::record::{Body, choice, list_items, named, nested, record};
 use crate::text::ron_tree::Node;
 use crate::text::span::{Spanned, WithSpan};
 
@@ -20,17 +23,23 @@ const MAX_RAYS: u64 = 10_000_000;
 
 record! {
     /// Stage that measures irradiance at points.
-    pub struct Sensors, check Sensors::claim_outputs {
+    pub struct Sensors, check Sensors::check {
         /// Name of the sensors, and of their files in the run directory.
         pub name: String = Text("desk").required();
         /// Positions of the sensors.
         pub at: Spanned<Place> = WithSpan(named("Plane(height: 0.75, spacing: 0.25)")).required();
+        /// Kind of irradiance that is measured, see below.
+        pub measure: Measure = named("Cylindrical").or(Measure::Planar);
         /// Number of rays of each sensor over its hemisphere, rounded up to a multiple of 32. The same number is aimed
-        /// at emitting surfaces, if there are any. A probe has six sensors.
+        /// at emitting surfaces, if there are any. A cylinder has four sensors, a probe six.
         pub rays: u64 = count(1, MAX_RAYS, DEFAULT_RAYS).or(DEFAULT_RAYS);
         /// Relative standard error at which a sensor stops early, after at least 2,048 rays; `0.005` is 0.5 %. The
         /// errors of patches are ignored.
         pub error: Option<f64> = positive(0.005).optional("none");
+        /// True to state daylight factors, too, see below.
+        pub daylight_factor: bool = Flag.or(false);
+        /// Least values that are required, see below.
+        pub require: Option<Box<Require>> = nested("(mean: 500, uniformity: 0.6)").optional("none");
     }
 }
 
@@ -73,8 +82,9 @@ record! {
         pub along: DVec3 = Vector([2.0, 0.0, 0.0]).required().unit("m");
         /// Edge from the corner that is shown from bottom to top.
         pub across: DVec3 = Vector([0.0, 0.0, -1.0]).required().unit("m");
-        /// Approximate distance of neighboring sensors: edges are divided into whole cells.
-        pub spacing: f64 = positive(0.25).required().unit("m");
+        /// Approximate distance of neighboring sensors: edges are divided into whole cells. Without it, EN 12464-1 gives
+        /// the number of cells, see below.
+        pub spacing: Option<f64> = positive(0.25).optional("by EN 12464-1").unit("m");
         /// Direction in which the sensors look.
         pub direction: Option<DVec3> = Direction([0.0, 1.0, 0.0]).optional("the normal `along × across`");
     }
@@ -85,11 +95,15 @@ record! {
     pub struct Plane {
         /// Height above the lowest point of the scene.
         pub height: f64 = number(0.75).required().unit("m");
-        /// Approximate distance of neighboring sensors: edges are divided into whole cells.
-        pub spacing: f64 = positive(0.25).required().unit("m");
-        /// Width of the border along the outline of the scene without sensors. EN 12464-1 recommends 0.5.
-        pub border: f64 = number(0.5).with_range(|x| x >= 0.0, "from 0").or(0.0).unit("m");
-        /// Up direction, in which the sensors look.
+        /// Approximate distance of neighboring sensors: edges are divided into whole cells. Without it, EN 12464-1 gives
+        /// the number of cells, see below.
+        pub spacing: Option<f64> = positive(0.25).optional("by EN 12464-1").unit("m");
+        /// Width of the border along the outline of the scene without sensors. `Standard` is that of EN 12464-1: 0.5 m, or
+        /// 15 % of the shorter side of the plane if that is less.
+        pub border: Border = BorderFormat.or(Border::Width(0.0)).unit("m");
+        /// Direction in which the sensors look, for instance a horizontal one for vertical irradiance.
+        pub direction: Option<DVec3> = Direction([1.0, 0.0, 0.0]).optional("`up`");
+        /// Direction that is up, perpendicular to the plane.
         pub up: Option<DVec3> = Direction([0.0, 1.0, 0.0]).optional("the up direction of the scene");
     }
 }
@@ -121,6 +135,39 @@ impl Sensors {
 
     fn output(&self, extension: &str) -> PathBuf {
         inside(Path::new(&format!("{}.{extension}", self.name)))
+    }
+
+    fn check<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>) {
+        self.claim_outputs(reader, fields);
+        if self.require.as_ref().is_some_and(|r| r.daylight_factor.is_some()) && !self.daylight_factor {
+            let message = "a daylight factor is required, but not measured";
+            reader.problem(fields.place_of("require"), message, "add `daylight_factor: true`");
+        }
+        if !matches!(self.at.value, Place::Probes(_)) {
+            return;
+        }
+        for (field, is_given, message) in [
+            (
+                "measure",
+                self.measure != Measure::Planar,
+                "probes measure the irradiance of planes in all directions, and no other kind",
+            ),
+            (
+                "require",
+                self.require.is_some(),
+                "probes have no requirements (standards state them for planes)",
+            ),
+            (
+                "daylight_factor",
+                self.daylight_factor,
+                "probes have no daylight factor (it belongs to planes)",
+            ),
+        ] {
+            if is_given {
+                let help = format!("leave out `{field}`, or use `Points`, `Grid` or `Plane`");
+                reader.problem(fields.place_of(field), message, help);
+            }
+        }
     }
 
     fn claim_outputs<'a>(&self, reader: &mut Reader<'a>, fields: &Fields<'a>) {

@@ -5,8 +5,9 @@ use sir_accel::Tracer;
 use sir_geom::{BoundingBox, Scene, Side};
 use sir_radiosity::{Model, Sensor, SensorStart};
 
-use crate::plan::{Grid, Place, Plane};
+use crate::plan::{Border, Grid, Measure, Place, Plane, Sensors};
 use crate::prepare::probe_grid::ProbeGrid;
+use crate::prepare::standard_grid;
 
 /// Maximum number of cells of a grid.
 const MAX_CELLS: f64 = 1e6;
@@ -45,11 +46,12 @@ pub struct Cells {
 impl Placed {
     /// Places the sensors or probes. The error has a message, which says why there are none, and a suggested fix.
     pub(crate) fn new(
-        place: &Place,
+        sensors: &Sensors,
         model: &Model,
         up: DVec3,
         focus: Option<BoundingBox>,
     ) -> Result<Self, (String, String)> {
+        let place = &sensors.at.value;
         let layout = match place {
             Place::Points(_) | Place::File(_) => {
                 Layout { sensors: place.listed().unwrap_or_default(), cells: None }
@@ -58,16 +60,40 @@ impl Placed {
             Place::Plane(plane) => plane.layout(model, up)?,
             Place::Probes(probes) => return ProbeGrid::new(probes, model, focus).map(Self::Probes),
         };
-        Ok(Self::Sensors(layout))
+        let axis = match place {
+            Place::Plane(plane) => plane.up.unwrap_or(up),
+            _ => up,
+        };
+        layout.measuring(&sensors.measure, axis).map(Self::Sensors)
     }
 
-    /// Returns the number of sensors that are measured; a valid probe has six.
+    /// Returns the number of hemispheres of rays: a sensor has one or four, a valid probe six.
     #[must_use]
-    pub fn sensors(&self) -> usize {
+    pub fn hemispheres(&self) -> u64 {
         match self {
-            Self::Sensors(layout) => layout.sensors.len(),
-            Self::Probes(grid) => 6 * grid.valid.len(),
+            Self::Sensors(layout) => layout.sensors.iter().map(Sensor::hemispheres).sum(),
+            Self::Probes(grid) => 6 * grid.valid.len() as u64,
         }
+    }
+}
+
+impl Layout {
+    /// Returns sensors at the same positions that measure a kind of irradiance, with cylinders around `axis`.
+    fn measuring(self, measure: &Measure, axis: DVec3) -> Result<Self, (String, String)> {
+        let convert = |sensor: &Sensor| match measure {
+            Measure::Planar => Some(*sensor),
+            Measure::Cylindrical => Sensor::cylindrical(sensor.position(), axis),
+            Measure::SemiCylindrical(half) => {
+                let direction = half.direction.unwrap_or(sensor.direction());
+                Sensor::semi_cylindrical(sensor.position(), axis, direction)
+            }
+        };
+        let sensors = self.sensors.iter().map(convert).collect::<Option<Vec<_>>>().ok_or_else(|| {
+            let message = "a half cylinder faces along its axis, the up direction of the scene or plane";
+            let help = "give `SemiCylindrical` a horizontal `direction`, as in `SemiCylindrical(direction: (1, 0, 0))`";
+            (message.to_owned(), help.to_owned())
+        })?;
+        Ok(Self { sensors, ..self })
     }
 }
 
@@ -77,10 +103,17 @@ impl Grid {
         let Self { corner, along, across, spacing, direction } = *self;
         let direction = direction.unwrap_or_else(|| along.cross(across));
         let size = DVec2::new(along.length(), across.length());
-        let counts = (size / spacing).round().max(DVec2::ONE);
+        let counts = match spacing {
+            Some(spacing) => (size / spacing).round().max(DVec2::ONE),
+            None => standard_grid::counts(size),
+        };
         if counts.x * counts.y > MAX_CELLS {
             let message = format!("a grid of {:.0} by {:.0} sensors is too fine", counts.x, counts.y);
-            return Err((message, "choose a larger `spacing`".into()));
+            let help = match spacing {
+                Some(_) => "choose a larger `spacing`",
+                None => "choose a smaller area, or state a `spacing`",
+            };
+            return Err((message, help.into()));
         }
         let (columns, rows) = (counts.x as usize, counts.y as usize);
         let (mut sensors, mut of) = (Vec::new(), Vec::new());
@@ -106,22 +139,25 @@ impl Plane {
         let across = up.cross(along);
         let [[left, right], [bottom, top], [lowest, _]] =
             [along, across, up].map(|axis| extent(&model.scene, axis));
-        let size = DVec2::new(right - left, top - bottom) - 2.0 * self.border;
+        let all = DVec2::new(right - left, top - bottom);
+        let border = match self.border {
+            Border::Standard => standard_grid::border(all),
+            Border::Width(width) => width,
+        };
+        let size = all - 2.0 * border;
         if size.min_element() <= 0.0 {
             let message = format!(
-                "nothing is left of the scene, {:.3} by {:.3} m, inside a border of {} m",
-                right - left,
-                top - bottom,
-                self.border
+                "nothing is left of the scene, {:.3} by {:.3} m, inside a border of {border} m",
+                all.x, all.y
             );
             return Err((message, "choose a smaller `border`".into()));
         }
-        let corner =
-            (left + self.border) * along + (bottom + self.border) * across + (lowest + self.height) * up;
+        let corner = (left + border) * along + (bottom + border) * across + (lowest + self.height) * up;
         let (along, across) = (size.x * along, size.y * across);
-        let grid = Grid { corner, along, across, spacing: self.spacing, direction: Some(up) };
+        let direction = Some(self.direction.unwrap_or(up));
+        let grid = Grid { corner, along, across, spacing: self.spacing, direction };
         let mut tracer = model.accel.tracer();
-        let layout = grid.layout(&mut |sensor| is_inside(sensor, model, &mut tracer))?;
+        let layout = grid.layout(&mut |sensor| is_inside(sensor.position(), up, model, &mut tracer))?;
         if layout.sensors.is_empty() {
             let message =
                 format!("no point of the plane at the height {} m lies inside the room", self.height);
@@ -141,9 +177,9 @@ fn extent(scene: &Scene, axis: DVec3) -> [f64; 2] {
 
 /// Returns true if a point is in the room, and not inside of a piece of furniture. There must be a surface below the
 /// point, and the first surfaces below and above must not show the back of a one-sided surface. (The sky may be above.)
-fn is_inside(sensor: &Sensor, model: &Model, tracer: &mut Tracer<'_>) -> bool {
-    let up = sensor.direction();
-    let start = SensorStart::of(sensor, model, tracer);
+fn is_inside(point: DVec3, up: DVec3, model: &Model, tracer: &mut Tracer<'_>) -> bool {
+    let Some(sensor) = Sensor::new(point, up) else { return false };
+    let start = SensorStart::of(&sensor, model, tracer);
     let is_active = |triangle, side| model.scene.is_active(triangle, side);
     let mut sees =
         |direction| tracer.closest(&start.ray(direction)).map(|hit| is_active(hit.triangle, hit.side));
@@ -158,6 +194,7 @@ fn is_inside(sensor: &Sensor, model: &Model, tracer: &mut Tracer<'_>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::SemiCylindrical;
     use sir_geom::shapes::{self, Facing};
     use sir_geom::{Material, Rgb, SceneBuilder};
     use sir_mesh::Subdivision;
@@ -190,25 +227,59 @@ mod tests {
 
     #[test]
     fn a_plane_stays_in_the_room_and_out_of_the_furniture() {
-        let (model, plane) = (room(), Plane { height: 0.3, spacing: 0.1, border: 0.0, up: None });
+        let (model, plane) = (
+            room(),
+            Plane { height: 0.3, spacing: Some(0.1), border: Border::Width(0.0), direction: None, up: None },
+        );
         let count = |plane: &Plane| plane.layout(&model, DVec3::Y).map(|layout| layout.sensors.len());
         // 8 m² without the square meter of the table; all 8 m² on and above its top.
         assert_eq!(count(&plane), Ok(700));
         assert_eq!(count(&Plane { height: 0.7, ..plane }), Ok(800));
         assert_eq!(count(&Plane { height: 1.0, ..plane }), Ok(800));
         // Half a meter from the outline: 1.5 by 2 m and 1.5 by 0.5 m, without the table.
-        assert_eq!(count(&Plane { border: 0.5, ..plane }), Ok(275));
-        for bad in
-            [Plane { height: 2.5, ..plane }, Plane { border: 1.5, ..plane }, Plane { spacing: 1e-3, ..plane }]
-        {
+        assert_eq!(count(&Plane { border: Border::Width(0.5), ..plane }), Ok(275));
+        for bad in [
+            Plane { height: 2.5, ..plane },
+            Plane { border: Border::Width(1.5), ..plane },
+            Plane { spacing: Some(1e-3), ..plane },
+        ] {
             assert!(count(&bad).is_err(), "{bad:?}");
         }
     }
 
     #[test]
+    fn a_plane_without_a_spacing_has_the_grid_and_the_border_of_the_standard() {
+        let plane = Plane { height: 1.0, spacing: None, border: Border::Standard, direction: None, up: None };
+        let cells = plane.layout(&room(), DVec3::Y).unwrap().cells.unwrap();
+        // 15 % of 3 m.
+        assert!((cells.size - DVec2::new(3.1, 2.1)).length() < 1e-12);
+        // p(3.1 m) = 0.44 m: 7 cells of 0.443 m, and 5 across.
+        assert_eq!((cells.columns, cells.rows), (7, 5));
+    }
+
+    #[test]
+    fn sensors_of_a_plane_may_look_elsewhere() {
+        let plane = Plane {
+            height: 1.0,
+            spacing: Some(1.0),
+            border: Border::Width(0.0),
+            direction: Some(DVec3::X),
+            up: None,
+        };
+        let layout = plane.layout(&room(), DVec3::Y).unwrap();
+        assert!(layout.sensors.len() == 8 && layout.sensors.iter().all(|s| s.direction() == DVec3::X));
+        let half = Measure::SemiCylindrical(SemiCylindrical { direction: None });
+        assert!(layout.clone().measuring(&half, DVec3::X).is_err());
+        let layout = layout.measuring(&half, DVec3::Y).unwrap();
+        assert!(layout.sensors.iter().all(|s| s.direction() == DVec3::X && s.hemispheres() == 4));
+    }
+
+    #[test]
     fn cells_are_numbered_from_the_lower_left_as_seen_from_above() {
         let layout =
-            Plane { height: 1.0, spacing: 1.0, border: 0.0, up: None }.layout(&room(), DVec3::Y).unwrap();
+            Plane { height: 1.0, spacing: Some(1.0), border: Border::Width(0.0), direction: None, up: None }
+                .layout(&room(), DVec3::Y)
+                .unwrap();
         let cells = layout.cells.unwrap();
         assert_eq!((cells.columns, cells.rows, cells.size), (4, 3, DVec2::new(4.0, 3.0)));
         // −z is at the top.

@@ -1,10 +1,12 @@
 //! Preparation of a run: everything that must succeed before the first line is traced.
 
 pub(crate) mod cameras;
+mod daylight;
 pub(crate) mod layout;
 pub(crate) mod prepared;
 pub(crate) mod probe_grid;
 pub(crate) mod sources;
+mod standard_grid;
 pub(crate) mod up;
 
 pub use layout::{Cells, Layout, Placed};

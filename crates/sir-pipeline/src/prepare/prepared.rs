@@ -16,6 +16,7 @@ use crate::prepare::up::{Up, sky_doubt};
 use crate::text::diagnostic::Diagnostic;
 
 use crate::plan::{Action, Lamp, Pipeline, Stage, Transport};
+use crate::prepare::daylight;
 use crate::prepare::layout::Placed;
 use crate::progress::Progress;
 use crate::stopwatch::Stopwatch;
@@ -49,6 +50,9 @@ pub struct Prepared {
     pub inside: FocusSides,
     /// Sensors or probes of each stage `Sensors`, by the number of the stage.
     pub placed: BTreeMap<usize, Placed>,
+    /// Luminance-weighted irradiance of an unobstructed horizontal surface by the sky \[W/m²\], if there are daylight
+    /// factors.
+    pub outdoor: Option<f64>,
     /// Time to read the scene \[s\].
     pub load_seconds: f64,
     /// Time to make the patches and the acceleration structure \[s\].
@@ -125,6 +129,8 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
             let bounds = focus.map(|focus| focus.bounds());
             let placed =
                 place(pipeline, &model, up, bounds).map_err(|problems| pipeline.diagnostics(problems))?;
+            let outdoor =
+                outdoor(pipeline, &sources).map_err(|problem| pipeline.diagnostics(vec![problem]))?;
             let survey = Survey::new(&model.scene, &model.accel, &sources, up, SURVEY_LINES);
             let mut suspicions = survey.suspicions(focus.is_some());
             suspicions.extend(doubt);
@@ -142,6 +148,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 focus,
                 inside,
                 placed,
+                outdoor,
                 load_seconds,
                 build_seconds,
             })
@@ -181,6 +188,15 @@ fn nothing_inside(pipeline: &Pipeline, scene: &Scene) -> Vec<Diagnostic> {
         .collect()
 }
 
+/// Returns the irradiance to which daylight factors refer, if there are any. The error is the problem of the first stage
+/// that cannot have them.
+fn outdoor(pipeline: &Pipeline, sources: &[Source]) -> Result<Option<f64>, Diagnostic> {
+    let wants = |stage: &&Stage| matches!(&stage.action, Action::Sensors(sensors) if sensors.daylight_factor);
+    let Some(stage) = pipeline.stages.iter().find(wants) else { return Ok(None) };
+    let problem = |(message, help)| Diagnostic { span: stage.span.0.clone(), message, help };
+    daylight::outdoor(pipeline, sources).map(Some).map_err(problem)
+}
+
 /// Places all sensors. The error has a problem for each stage whose sensors cannot be placed.
 fn place(
     pipeline: &Pipeline,
@@ -191,7 +207,7 @@ fn place(
     let (mut all, mut problems) = (BTreeMap::new(), Vec::new());
     for (number, stage) in pipeline.stages.iter().enumerate() {
         let Action::Sensors(sensors) = &stage.action else { continue };
-        match Placed::new(&sensors.at.value, model, up, focus) {
+        match Placed::new(sensors, model, up, focus) {
             Ok(placed) => drop(all.insert(number, placed)),
             Err((message, help)) => {
                 problems.push(Diagnostic { span: sensors.at.span.0.clone(), message, help });

@@ -5,14 +5,17 @@ pub(crate) mod light;
 pub(crate) mod lines;
 pub(crate) mod page;
 pub(crate) mod probes;
+pub(crate) mod requirements;
 pub(crate) mod result;
 pub(crate) mod sensors;
+mod uncertain;
 
 pub use compare::compare;
+pub use requirements::{RequirementReport, Verdict};
 pub use result::{
     BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, OutputReport,
     PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
 };
-pub use sensors::SensorsReport;
+pub use sensors::{DaylightReport, SensorsReport};
 
 pub use crate::run_files::REPORT as FILE_NAME;

@@ -152,7 +152,7 @@ impl Run<'_> {
         };
         let settings = sensors.settings().shared(repeating.share_rays);
         let mut executor = self.executor_without_checkpoints();
-        let total = settings.rays * placed.sensors() as u64;
+        let total = settings.rays * placed.hemispheres();
         executor.observer = Box::new(self.observer(repeating, "Sensors", total));
         // Each stage `Sensors` has independent random numbers.
         let seed = seed.wrapping_add((number as u64) << 48);
@@ -204,8 +204,13 @@ impl Run<'_> {
                     for step in &repeating.steps[steps] {
                         let summary = match &step.measured {
                             Some(Measured::Sensors(measured)) => {
-                                let (means, error) = (measured.means(), measured.error_of_mean());
-                                let summary = SensorsReport::new(&sensors.name, &means, error);
+                                let (means, spread) = (measured.means(), measured.spread_of_mean());
+                                let summary = SensorsReport::of(
+                                    sensors,
+                                    &means,
+                                    spread.as_ref(),
+                                    self.prepared.outdoor,
+                                );
                                 self.write_sensors(number, sensors, &means, &summary)?;
                                 summary
                             }

@@ -8,12 +8,13 @@ use std::sync::atomic::Ordering::Relaxed;
 use sir_geom::Camera;
 use sir_radiosity::{Model, Solution};
 use sir_report::{Light, View};
-use sir_view::{DisplayMesh, Exposure, Picture, PictureSettings, Table, ViewError};
-use sir_view::{default_camera, render, write_exr, write_glb, write_png};
+use sir_view::{DisplayMesh, Exposure, FalseColors, Picture, PictureSettings, Table, ViewError};
+use sir_view::{default_camera, render, render_irradiance};
+use sir_view::{write_exr, write_false_colors, write_glb, write_png};
 
 use crate::error::Error;
 use crate::plan;
-use crate::plan::{Image, Output};
+use crate::plan::{ColorScale, Image, Output, Show};
 use crate::prepare::cameras::chosen_camera;
 use crate::prepare::prepared::Prepared;
 use crate::report::page::Shown;
@@ -22,6 +23,7 @@ use crate::run::computed::{Computed, PartErrors};
 use crate::run::lightmap;
 use crate::run::pages::Page;
 use crate::run::saver::Saver;
+use crate::units::Units;
 
 /// Width of the picture from which the exposure of a camera follows.
 const PREVIEW_WIDTH: u32 = 200;
@@ -77,7 +79,8 @@ pub(crate) fn save(
                         let errors = render(errors, accel, camera, *settings)?;
                         write_exr(&path, picture, &[("error", &errors)])?;
                     }
-                    _ => write_png(&path, picture, image.exposure)?,
+                    _ if image.show == Show::Colors => write_png(&path, picture, image.exposure)?,
+                    _ => write_false_colors(&path, picture, &false_colors(image, saver.pipeline.units))?,
                 }
                 "image"
             }
@@ -165,6 +168,8 @@ struct Rendered {
     camera: Camera,
     settings: PictureSettings,
     is_denoised: bool,
+    /// True if the picture has the irradiance in place of the radiance.
+    has_irradiance: bool,
     picture: Picture,
 }
 
@@ -197,20 +202,15 @@ impl<'a> Renderer<'a> {
         let chosen = chosen_camera(image, scene, self.prepared.up);
         let settings = settings(image, chosen.as_ref(), self.threads);
         let camera = chosen.unwrap_or_else(|| self.default_camera());
+        let has_irradiance = image.show == Show::Illuminance;
+        let key = (&camera, settings, is_denoised, has_irradiance);
         let rendered = match self.last.take() {
-            Some(last)
-                if (&last.camera, last.settings, last.is_denoised) == (&camera, settings, is_denoised) =>
-            {
-                last
-            }
+            Some(last) if (&last.camera, last.settings, last.is_denoised, last.has_irradiance) == key => last,
             _ => {
                 let display = self.denoised.filter(|_| is_denoised).unwrap_or_else(self.display);
-                Rendered {
-                    picture: render(display, accel, &camera, settings)?,
-                    camera,
-                    settings,
-                    is_denoised,
-                }
+                let draw = if has_irradiance { render_irradiance } else { render };
+                let picture = draw(display, accel, &camera, settings)?;
+                Rendered { picture, camera, settings, is_denoised, has_irradiance }
             }
         };
         Ok(self.last.insert(rendered))
@@ -263,6 +263,21 @@ impl<'a> Renderer<'a> {
             plan::Camera::of_scene(&camera).and_then(|camera| camera.to_scene(*up)).unwrap_or(camera)
         };
         self.default.get_or_insert_with(find).clone()
+    }
+}
+
+/// Returns how an image is shown in false colors.
+fn false_colors(image: &Image, units: Units) -> FalseColors {
+    let (title, unit) = match image.show {
+        Show::Illuminance => (units.irradiance_name(), units.irradiance()),
+        _ => (units.radiance_name(), units.radiance()),
+    };
+    FalseColors {
+        title: title.into(),
+        unit: unit.into(),
+        limits: image.limits,
+        is_logarithmic: image.color_scale() == ColorScale::Logarithmic,
+        shows_sky: image.show != Show::Illuminance,
     }
 }
 

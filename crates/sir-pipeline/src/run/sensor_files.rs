@@ -28,7 +28,8 @@ pub(crate) fn write(
     directory: &Path,
 ) -> Result<Vec<OutputReport>, Error> {
     let table = place(directory, &sensors.table())?;
-    write_atomically(&table, |file| write_table(file, &layout.sensors, measured))?;
+    let outdoor = summary.daylight.map(|daylight| daylight.outdoor);
+    write_atomically(&table, |file| write_table(file, &layout.sensors, measured, outdoor))?;
     let mut written = vec![output(directory, &sensors.table(), "sensors")?];
     if let (Some(map), Some(cells)) = (sensors.map(), &layout.cells) {
         write_map(&place(directory, &map)?, &map_of(cells, measured, summary, units))?;
@@ -58,14 +59,21 @@ pub(super) fn output(directory: &Path, name: &Path, kind: &str) -> Result<Output
     })
 }
 
-fn write_table(out: &mut impl Write, sensors: &[Sensor], measured: &[Measurement]) -> io::Result<()> {
+/// Writes the table. Daylight factors refer to the irradiance `outdoor` \[W/m²\].
+fn write_table(
+    out: &mut impl Write,
+    sensors: &[Sensor],
+    measured: &[Measurement],
+    outdoor: Option<f64>,
+) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    table.write_record(COLUMNS)?;
+    table.write_record(COLUMNS.iter().chain(outdoor.map(|_| &"DF")))?;
     for (sensor, m) in sensors.iter().zip(measured) {
         let places = [sensor.position(), sensor.direction()].map(|v| v.to_array());
         let light = m.irradiance.to_array().into_iter().chain([m.luminance(), sir_geom::luminance(m.direct)]);
         let errors = m.error().to_array().into_iter().chain([m.luminance_error()]);
-        let numbers = places.into_iter().flatten().chain(light).chain(errors);
+        let daylight = outdoor.map(|outdoor| 100.0 * m.luminance() / outdoor);
+        let numbers = places.into_iter().flatten().chain(light).chain(errors).chain(daylight);
         table.write_record(numbers.map(|x| format!("{x:?}")))?;
     }
     table.flush()
@@ -74,13 +82,17 @@ fn write_table(out: &mut impl Write, sensors: &[Sensor], measured: &[Measurement
 fn map_of(cells: &Cells, measured: &[Measurement], report: &SensorsReport, units: Units) -> Map {
     let mut values = vec![None; cells.columns * cells.rows];
     for (&cell, measurement) in cells.of.iter().zip(measured) {
-        values[cell] = Some(measurement.luminance());
+        let value = measurement.luminance();
+        values[cell] = Some(report.daylight.map_or(value, |daylight| 100.0 * value / daylight.outdoor));
     }
-    let SensorsReport { name, .. } = report;
+    let (quantity, subtitle, unit) = match report.daylight {
+        Some(daylight) => ("daylight factor".into(), daylight.in_short(), "%"),
+        None => (report.quantity(units), report.in_short(units), units.irradiance()),
+    };
     Map {
-        title: format!("{name}: {}", units.irradiance_name()),
-        subtitle: report.in_short(units),
-        unit: units.irradiance().into(),
+        title: format!("{}: {quantity}", report.name),
+        subtitle,
+        unit: unit.into(),
         columns: cells.columns,
         size: cells.size.to_array(),
         values,

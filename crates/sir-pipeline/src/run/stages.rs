@@ -2,7 +2,7 @@
 
 use sir_lightmap::LightmapError;
 use sir_parallel::{Checkpoints, Executor, RunError, Saved, Threads, cores};
-use sir_radiosity::{Measurement, ProbeMeasurement};
+use sir_radiosity::{Measurement, ProbeMeasurement, SpreadOfMean};
 
 use crate::error::Error;
 use crate::plan::{Action, Output, Sensors};
@@ -108,7 +108,8 @@ impl Run<'_> {
         error: Option<f64>,
     ) -> Result<SensorsReport, Error> {
         let means: Vec<Measurement> = measured.iter().map(ProbeMeasurement::mean).collect();
-        let mut summary = SensorsReport::new(&sensors.name, &means, error);
+        let spread = error.map(|error| SpreadOfMean { error, ..SpreadOfMean::default() });
+        let mut summary = SensorsReport::of(sensors, &means, spread.as_ref(), None);
         let Some(Placed::Probes(grid)) = self.prepared.placed.get(&number) else { return Ok(summary) };
         summary.invalid = Some(grid.len() - grid.valid.len());
         if self.pipeline.has_page() {

@@ -298,3 +298,36 @@ impl<T: Choose> Format for Named<T> {
         self.example.into()
     }
 }
+
+/// Format of a record that is the value of a field. It is in a box, because most fields are small.
+#[derive(Clone, Copy)]
+pub(crate) struct Nested<T> {
+    example: &'static str,
+    record: PhantomData<T>,
+}
+
+/// Returns the format of a record that is the value of a field: its fields in parentheses.
+pub(crate) fn nested<T: Record + Clone>(example: &'static str) -> Nested<T> {
+    Nested { example, record: PhantomData }
+}
+
+impl<T: Record + Clone> Format for Nested<T> {
+    type Value = Box<T>;
+
+    fn read<'a>(&self, reader: &mut Reader<'a>, node: &Node<'a>, _: &str) -> Option<Box<T>> {
+        T::read(reader, node).map(Box::new)
+    }
+
+    fn write(&self, value: &Box<T>) -> String {
+        Body::write(value.as_ref(), "")
+    }
+
+    fn describe(&self) -> String {
+        let fields: Vec<&str> = T::rows().iter().map(|row| row.name).collect();
+        format!("fields in parentheses: {}", list(&fields, "and"))
+    }
+
+    fn example(&self) -> String {
+        self.example.into()
+    }
+}

@@ -1,17 +1,18 @@
 //! Final gathering at a sensor.
 
+use glam::DVec3;
 use sir_accel::Tracer;
 use sir_geom::Rgb;
 use sir_lines::{Purpose, Streams};
 
-use crate::aimed::Emitters;
+use crate::aimed::{Choice, Emitters};
 use crate::model::Model;
 use crate::sensors::measurement::Measurement;
 use crate::sensors::ray_set::Gathering;
 use crate::sensors::replication::{PatchHits, Replication};
 use crate::sensors::sensor::{REPLICATIONS, Sensor, SensorSettings};
 use crate::sensors::start::SensorStart;
-use crate::sensors::unmet::Brightness;
+use crate::sensors::unmet::{Brightness, Squares};
 use crate::solution::Solution;
 
 /// Measures the light of a solution at points, by final gathering.
@@ -47,29 +48,40 @@ impl<'s> Gatherer<'s> {
     #[must_use]
     pub fn measure(&self, number: u64, sensor: &Sensor) -> Measurement {
         let mut tracer = self.model.accel.tracer();
-        let start = SensorStart::of(sensor, self.model, &mut tracer);
-        let lights = self.lights(sensor, start, &mut tracer);
-        let choice = self.emitters.from(start.origin, sensor.direction());
+        let (response, facets) = (sensor.response(), sensor.response().facets());
         let Self { model, solution, .. } = *self;
-        let gathering = Gathering { model, solution, start, normal: sensor.direction(), choice: &choice };
+        let mut start = |&normal: &DVec3| SensorStart::at(sensor.position(), normal, model, &mut tracer);
+        let starts: Vec<SensorStart> = facets.iter().map(&mut start).collect();
+        let choice = |(start, normal): (&SensorStart, &DVec3)| self.emitters.from(start.origin, *normal);
+        let choices: Vec<Choice<'_>> = starts.iter().zip(&facets).map(choice).collect();
+        let gathering = |((start, normal), choice)| Gathering { model, solution, start, normal, choice };
+        let parts = starts.iter().copied().zip(facets.iter().copied()).zip(&choices);
+        let gatherings: Vec<Gathering<'_>> = parts.map(gathering).collect();
+        let lights = self.lights(sensor, &gatherings, &mut tracer);
         let stream = |k| self.streams.line(number * REPLICATIONS + k);
         let SensorSettings { rays, error: target, replications: count, first } = self.settings;
-        let mut replications: Vec<_> = (0..count).map(|k| Replication::new(&mut stream(k))).collect();
-        let mut patch_hits = PatchHits::default();
+        let mut replications: Vec<_> =
+            (0..count).map(|k| Replication::new(facets.len(), &mut stream(k))).collect();
+        let mut patch_hits = PatchHits::new(facets.len());
         let most = rays.div_ceil(count).max(1);
         let mut rays = if target > 0.0 { most.min(first.div_ceil(count)) } else { most };
         loop {
             for replication in &mut replications {
-                replication.trace(rays, gathering, &mut tracer, &mut patch_hits);
+                replication.trace(rays, response, &gatherings, &mut tracer, &mut patch_hits);
             }
-            let unmet = self.brightness.unmet(&patch_hits.extremes, rays * count);
+            let largest = response.largest_facet_weight();
+            let mut unmet = Squares::default();
+            for extremes in &patch_hits.extremes {
+                unmet.add(self.brightness.unmet(extremes, rays * count), largest * largest);
+            }
             let mut measurement = Measurement::of(&replications, unmet, lights);
             // Rays may all have missed something small and bright. It makes no part of the error, which would be far too
             // large where there is nothing of this kind in view, but it takes more rays to exclude it.
             let error = libm::hypot(measurement.sampling_error(), unmet.luminance.sqrt());
             let enough = error <= target * measurement.luminance();
             if rays == most || enough {
-                measurement.inherit(&patch_hits.errors(self.model, self.solution), rays * count);
+                measurement.inherit(&patch_hits.errors(model, solution), rays * count);
+                measurement.rays = rays * count * response.facet_count();
                 return measurement;
             }
             rays = most.min(2 * rays);
@@ -77,17 +89,18 @@ impl<'s> Gatherer<'s> {
     }
 
     /// Returns the irradiance by lights without a surface.
-    fn lights(&self, sensor: &Sensor, start: SensorStart, tracer: &mut Tracer<'_>) -> Rgb {
+    fn lights(&self, sensor: &Sensor, facets: &[Gathering<'_>], tracer: &mut Tracer<'_>) -> Rgb {
         let (mut rays, mut brings) = (Vec::new(), Vec::new());
         for light in self.model.scene.lights() {
             // The arrival is computed at the sensor itself. Only the shadow ray starts on the surface.
             let Some(arrival) = light.kind.arrival(sensor.position()) else { continue };
-            let cosine = arrival.towards.dot(sensor.direction());
-            if cosine <= 0.0 {
-                continue;
-            }
+            let weight = sensor.response().value(arrival.towards);
+            // The facet that faces the light most.
+            let cosine = |facet: &&Gathering<'_>| facet.normal.dot(arrival.towards);
+            let facing = facets.iter().max_by(|a, b| cosine(a).total_cmp(&cosine(b)));
+            let Some(Gathering { start, .. }) = facing.filter(|_| weight > 0.0) else { continue };
             rays.push(start.ray_to_light(arrival.towards, arrival.distance, self.model));
-            brings.push(cosine * arrival.irradiance);
+            brings.push(weight * arrival.irradiance);
         }
         let mut seen = vec![false; rays.len()];
         tracer.occluded_each(&rays, |i, is_occluded| seen[i] = !is_occluded);

@@ -21,7 +21,7 @@ pub struct Measurement {
     pub inherited: Rgb,
     /// Sampling and inherited standard error of the luminance-weighted irradiance \[W/m²\].
     pub luminance_errors: [f64; 2],
-    /// Number of rays over the hemisphere.
+    /// Number of rays over the hemispheres.
     pub rays: u64,
 }
 
@@ -55,18 +55,17 @@ impl Measurement {
         }
     }
 
-    /// Adds the errors of patches, gathered by `rays` rays. The errors of all bands of a patch are assumed to have the
+    /// Adds the errors of patches, gathered by `rays` rays of each facet. The errors of all bands of a patch are assumed to have the
     /// same sign, because the same lines have brought their light.
     pub(super) fn inherit(&mut self, gathered: &[Gathered], rays: u64) {
         let (mut squares, mut square) = (Rgb::ZERO, 0.0);
-        for &(count, error) in gathered {
-            let part = error * (count as f64 / rays as f64);
+        for &(weight, error) in gathered {
+            let part = error * (weight / rays as f64);
             squares += part * part;
             square += luminance(part) * luminance(part);
         }
         self.inherited = squares.map(f64::sqrt);
         self.luminance_errors[1] = square.sqrt();
-        self.rays = rays;
     }
 
     /// Returns the standard error of the irradiance per band \[W/m²\].

@@ -10,6 +10,7 @@ mod measurement;
 mod ray_set;
 mod repeated;
 mod replication;
+mod response;
 mod sensor;
 mod stage;
 mod start;
@@ -21,7 +22,7 @@ pub(crate) use unmet::{Brightness, Extremes, Squares};
 
 pub use gatherer::Gatherer;
 pub use measurement::Measurement;
-pub use repeated::RepeatedMeasurements;
+pub use repeated::{RepeatedMeasurements, SpreadOfMean};
 pub use sensor::{REPLICATIONS, Sensor, SensorSettings};
 pub use stage::{SensorStage, SensorTask};
 pub use start::SensorStart;

@@ -36,16 +36,30 @@ impl Spread {
     }
 }
 
+/// Number of words of the sums of a sensor.
+const WORDS: usize = 21;
+
 /// Sums over repeats of one sensor.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     bands: [Spread; 3],
     luminance: Spread,
+    /// Sum over repeats of the products of the deviations of `luminance` and of the mean over all sensors.
+    with_mean: f64,
     direct: Rgb,
     /// Sums of squared sampling and inherited errors, per band and of the luminance.
     sampling: [f64; 4],
     inherited: [f64; 4],
     rays: u64,
+}
+
+/// Errors of the mean luminance-weighted irradiance over all sensors, from the spread of repeats.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SpreadOfMean {
+    /// Standard error of the mean \[W/m²\].
+    pub error: f64,
+    /// Covariance of the irradiance at each sensor with the mean \[W²/m⁴\]; empty if it is not known.
+    pub covariances: Vec<f64>,
 }
 
 impl RepeatedMeasurements {
@@ -61,10 +75,14 @@ impl RepeatedMeasurements {
     /// Adds the measurements of one more repeat, in the order of the sensors.
     pub fn add(&mut self, measured: &[Measurement]) {
         self.count += 1;
-        let mut sum = 0.0;
+        let sum = measured.iter().fold(0.0, |sum, measurement| sum + measurement.luminance());
+        let mean = sum / measured.len().max(1) as f64;
+        self.mean.add(mean, self.count);
         for (sums, measurement) in self.sensors.iter_mut().zip(measured) {
             let bands = measurement.irradiance.to_array();
             sums.bands.iter_mut().zip(bands).for_each(|(band, value)| band.add(value, self.count));
+            // The product of the deviations from the means before and after this repeat, as in a sum of squares.
+            sums.with_mean += (measurement.luminance() - sums.luminance.mean) * (mean - self.mean.mean);
             sums.luminance.add(measurement.luminance(), self.count);
             sums.direct += measurement.direct;
             sums.rays += measurement.rays;
@@ -74,9 +92,7 @@ impl RepeatedMeasurements {
             for (sums, errors) in [&mut sums.sampling, &mut sums.inherited].into_iter().zip(squares) {
                 sums.iter_mut().zip(errors).for_each(|(sum, error)| *sum += error * error);
             }
-            sum += measurement.luminance();
         }
-        self.mean.add(sum / measured.len().max(1) as f64, self.count);
     }
 
     /// Returns the means of all repeats. Their errors come from the spread of the repeats, if there are at least
@@ -110,11 +126,14 @@ impl RepeatedMeasurements {
         self.sensors.iter().map(of).collect()
     }
 
-    /// Returns the standard error of the mean luminance-weighted irradiance over all sensors, from the spread of the
-    /// repeats; `None` if they are too few.
+    /// Returns the errors of the mean over all sensors, from the spread of the repeats; `None` if they are too few.
     #[must_use]
-    pub fn error_of_mean(&self) -> Option<f64> {
-        (self.count >= MIN_REPEATS).then(|| self.mean.error(self.count))
+    pub fn spread_of_mean(&self) -> Option<SpreadOfMean> {
+        let per_pair = 1.0 / (self.count * (self.count.max(1) - 1)).max(1) as f64;
+        (self.count >= MIN_REPEATS).then(|| SpreadOfMean {
+            error: self.mean.error(self.count),
+            covariances: self.sensors.iter().map(|sums| sums.with_mean * per_pair).collect(),
+        })
     }
 
     /// Visits the sums.
@@ -140,18 +159,18 @@ fn float(word: i64) -> f64 {
 }
 
 impl Sums {
-    fn to_words(self) -> [i64; 20] {
-        let Self { bands: [r, g, b], luminance: y, direct, sampling, inherited, rays } = self;
+    fn to_words(self) -> [i64; WORDS] {
+        let Self { bands: [r, g, b], luminance: y, with_mean, direct, sampling, inherited, rays } = self;
         let spreads = [r, g, b, y].map(|s| [s.mean, s.squares]);
-        let floats =
-            spreads.as_flattened().iter().copied().chain(direct.to_array()).chain(sampling).chain(inherited);
-        let mut words = [0; 20];
+        let floats = spreads.as_flattened().iter().copied().chain(direct.to_array());
+        let floats = floats.chain(sampling).chain(inherited).chain([with_mean]);
+        let mut words = [0; WORDS];
         words.iter_mut().zip(floats).for_each(|(place, x)| *place = word(x));
-        words[19] = rays as i64;
+        words[WORDS - 1] = rays as i64;
         words
     }
 
-    fn of_words(words: [i64; 20]) -> Self {
+    fn of_words(words: [i64; WORDS]) -> Self {
         let x = |i: usize| float(words[i]);
         let spread = |i: usize| Spread { mean: x(i), squares: x(i + 1) };
         Self {
@@ -160,7 +179,8 @@ impl Sums {
             direct: Rgb::new(x(8), x(9), x(10)),
             sampling: [11, 12, 13, 14].map(x),
             inherited: [15, 16, 17, 18].map(x),
-            rays: words[19] as u64,
+            with_mean: x(19),
+            rays: words[WORDS - 1] as u64,
         }
     }
 }
@@ -194,7 +214,25 @@ mod tests {
         let [all] = repeated.means()[..] else { panic!() };
         assert!((all.irradiance.y - mean).abs() < 1e-12 && (all.error().y - error).abs() < 1e-12);
         assert!((all.luminance_error() / luminance(Rgb::new(0.0, error, 0.0)) - 1.0).abs() < 1e-9);
-        assert_eq!((all.rays, repeated.error_of_mean()), (80, Some(all.luminance_error())));
+        let spread = repeated.spread_of_mean().unwrap();
+        assert_eq!((all.rays, spread.error), (80, all.luminance_error()));
+        // A single sensor is the mean.
+        assert!((spread.covariances[0].sqrt() / spread.error - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn covariances_are_those_with_the_mean_over_all_sensors() {
+        let all =
+            [[3.0, 1.0], [1.0, 5.0], [4.0, 9.0], [1.0, 2.0], [5.0, 6.0], [9.0, 5.0], [2.0, 3.0], [6.0, 5.0]];
+        let mut repeated = RepeatedMeasurements::new(2);
+        all.iter().for_each(|values| repeated.add(&values.map(|value| measurement(value / 0.7152, 0.5))));
+        let means: Vec<f64> = all.iter().map(|[a, b]| 0.5 * (a + b)).collect();
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / 8.0;
+        for (sensor, covariance) in repeated.spread_of_mean().unwrap().covariances.into_iter().enumerate() {
+            let values: Vec<f64> = all.iter().map(|values| values[sensor]).collect();
+            let products = values.iter().zip(&means).map(|(x, y)| (x - mean(&values)) * (y - mean(&means)));
+            assert!((covariance - products.sum::<f64>() / 56.0).abs() < 1e-12, "{sensor}: {covariance}");
+        }
     }
 
     #[test]
@@ -203,7 +241,7 @@ mod tests {
         (0..4).for_each(|_| repeated.add(&[measurement(2.0, 0.5)]));
         let [all] = repeated.means()[..] else { panic!() };
         assert!((all.sampling.y - 0.25).abs() < 1e-12 && (all.inherited_error() - 0.5).abs() < 1e-12);
-        assert_eq!(repeated.error_of_mean(), None);
+        assert_eq!(repeated.spread_of_mean(), None);
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::sensors::response::Response;
+
 /// Number of independent sets of rays per sensor.
 pub const REPLICATIONS: u64 = 32;
 
@@ -9,13 +11,13 @@ pub const REPLICATIONS: u64 = 32;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     position: DVec3,
-    direction: DVec3,
+    response: Response,
 }
 
 /// Settings of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorSettings {
-    /// Largest number of rays of a sensor over its hemisphere, rounded up to a multiple of the number of replications. The
+    /// Largest number of rays of a sensor over each of its hemispheres, rounded up to a multiple of the number of replications. The
     /// same number is aimed at emitting surfaces, if there are any.
     pub rays: u64,
     /// Relative sampling error of the luminance-weighted irradiance at which a sensor stops early; 0 for never.
@@ -64,8 +66,38 @@ impl Sensor {
     /// Returns `None` if `direction` has no length, or a number is not finite.
     #[must_use]
     pub fn new(position: DVec3, direction: DVec3) -> Option<Self> {
-        let direction = direction.try_normalize()?;
-        position.is_finite().then_some(Self { position, direction })
+        let normal = direction.try_normalize()?;
+        Self::of(position, Response::Planar { normal })
+    }
+
+    /// Returns a sensor at `position` that measures the mean irradiance of the lateral surface of a small cylinder around
+    /// `axis`, of any length: for an upright one the *cylindrical illuminance* of EN 12665, the mean of all vertical
+    /// illuminances, `E_z = (1/π) ∫ L sin ε dω` for the angle `ε` to the axis.
+    ///
+    /// Returns `None` if `axis` has no length, or a number is not finite.
+    #[must_use]
+    pub fn cylindrical(position: DVec3, axis: DVec3) -> Option<Self> {
+        let axis = axis.try_normalize()?;
+        Self::of(position, Response::Cylindrical { axis })
+    }
+
+    /// Returns a sensor at `position` that measures the mean irradiance of the curved surface of a small half cylinder
+    /// around `axis`, which faces `direction`: for an upright one the *semi-cylindrical illuminance* of EN 13201-3, `E_sc =
+    /// (1/π) ∫ L sin ε (1 + cos α) dω` for the angle `α` of the light to `direction` across the axis. Only the part of
+    /// `direction` across the axis counts.
+    ///
+    /// Returns `None` if `axis` and `direction` are parallel or without length, or a number is not finite.
+    #[must_use]
+    pub fn semi_cylindrical(position: DVec3, axis: DVec3, direction: DVec3) -> Option<Self> {
+        let (axis, direction) = (axis.try_normalize()?, direction.try_normalize()?);
+        let across = direction.reject_from_normalized(axis);
+        // Nearly parallel vectors have a difference of rounding errors.
+        let direction = across.try_normalize().filter(|_| across.length() > 1e-6)?;
+        Self::of(position, Response::SemiCylindrical { axis, direction })
+    }
+
+    fn of(position: DVec3, response: Response) -> Option<Self> {
+        position.is_finite().then_some(Self { position, response })
     }
 
     /// Returns the position.
@@ -74,9 +106,20 @@ impl Sensor {
         self.position
     }
 
-    /// Returns the direction in which the sensor looks, a unit vector.
+    /// Returns the direction in which the sensor looks, a unit vector; for a cylinder, its axis.
     #[must_use]
     pub fn direction(&self) -> DVec3 {
-        self.direction
+        self.response.direction()
+    }
+
+    /// Returns the number of hemispheres over which the sensor has rays: four for cylinders, otherwise one.
+    #[must_use]
+    pub fn hemispheres(&self) -> u64 {
+        self.response.facet_count()
+    }
+
+    /// Returns the weight of light by direction.
+    pub(super) fn response(&self) -> Response {
+        self.response
     }
 }

@@ -66,7 +66,8 @@ impl<'s> Stage for SensorStage<'s> {
         let SensorTask { model, solution, sensors, settings, seed } = task;
         let gatherer = Gatherer::new(model, solution, settings, seed);
         let measured = sensors.iter().map(|_| Slot::default()).collect();
-        Ok(Self { sensors, gatherer, rays: settings.rays.max(1), measured })
+        let hemispheres = sensors.iter().map(Sensor::hemispheres).max().unwrap_or(1);
+        Ok(Self { sensors, gatherer, rays: hemispheres * settings.rays.max(1), measured })
     }
 
     fn restore(

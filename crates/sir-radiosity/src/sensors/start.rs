@@ -54,8 +54,13 @@ impl SensorStart {
     /// Returns the start of the rays of a sensor.
     #[must_use]
     pub fn of(sensor: &Sensor, model: &Model, tracer: &mut Tracer<'_>) -> Self {
-        let (accel, normal) = (&model.accel, sensor.direction());
-        let line = Line { origin: sensor.position(), direction: normal };
+        Self::at(sensor.position(), sensor.direction(), model, tracer)
+    }
+
+    /// Returns the start of the rays of a plane sensor with a unit normal.
+    pub(super) fn at(position: DVec3, normal: DVec3, model: &Model, tracer: &mut Tracer<'_>) -> Self {
+        let accel = &model.accel;
+        let line = Line { origin: position, direction: normal };
         let hits = tracer.all_hits(&line);
         let is_close = |t: f64, triangle: TriangleId| {
             accel

@@ -45,7 +45,8 @@ pub(crate) struct Squares {
 }
 
 impl Squares {
-    fn add(&mut self, other: Self, factor: f64) {
+    /// Adds squared errors, multiplied by a factor.
+    pub(super) fn add(&mut self, other: Self, factor: f64) {
         self.bands += other.bands * factor;
         self.luminance += other.luminance * factor;
     }

@@ -19,12 +19,29 @@ function writeSensor(sensor, facts) {
   const part = element('div', { class: 'sensor' },
     element('div', { class: 'heading' }, element('h3', { class: 'name' }, cut(sensor.name)), element('span', { class: 'tools' }, copy)),
     element('p', {}, cut(sensor.summary, 1000)));
+  const requirements = sensor.report?.requirements ?? [];
+  if (requirements.length > 0) part.append(requirementTable(requirements, unitE, sensor.name));
   copy.addEventListener('click', () => copyText(sensorCsv(points), copy, part));
   const pair = element('div', { class: 'pair' });
   if (sensor.map) pair.append(attempt(sensorMap, sensor, unitE, facts.units.name) ?? '');
   if (points.length > 0) pair.append(sensorTable(sensor, unitE));
   part.append(pair);
   byId('sensors').append(part);
+}
+
+/** Makes a table of what is required and what was measured. */
+function requirementTable(requirements, unitE, name) {
+  const names = { mean: 'Mean', minimum: 'Minimum', uniformity: 'Uniformity U₀', diversity: 'Diversity U_d', 'daylight factor': 'Mean daylight factor (%)' };
+  const hasUnit = (quantity) => quantity === 'mean' || quantity === 'minimum';
+  const head = ['Quantity', 'At least', 'Measured', '± σ', 'Verdict'].map((label, k) => element('th', { scope: 'col', class: k === 0 || k === 4 ? 'text' : '' }, label));
+  const rows = requirements.map(({ quantity, required, measured, error, margin, verdict }) => {
+    const label = `${names[quantity] ?? cut(quantity, 60)}${hasUnit(quantity) ? ` (${unitE})` : ''}`;
+    const by = Number.isFinite(margin) ? `${verdict === 'undecided' ? ', ' : ' by '}${Math.abs(margin).toFixed(1)} standard errors` : '';
+    const side = verdict !== 'undecided' ? '' : margin < 0 ? ' below' : ' above';
+    return element('tr', {}, element('td', { class: 'text' }, label), ...[digits(required, 4), digits(measured, 4), digits(error, 2)].map((text) => element('td', {}, text)), element('td', { class: verdict === 'passes' ? 'text' : 'text doubtful' }, `${cut(verdict, 20)}${by}${side}`));
+  });
+  return element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': `Requirements on ${cut(name)}` },
+    element('table', {}, element('caption', { class: 'aside' }, `Requirements on ${cut(name)}`), element('thead', {}, element('tr', {}, ...head)), element('tbody', {}, ...rows)));
 }
 
 const sensorCsv = (points) => toCsv([['x', 'y', 'z', 'dx', 'dy', 'dz', 'E', 'E_direct', 'se'], ...points]);

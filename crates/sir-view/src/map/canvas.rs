@@ -1,10 +1,22 @@
 //! Drawing of rectangles and text.
 
+use std::io;
+use std::path::Path;
+
 use ab_glyph::{Font, FontRef, InvalidFont, PxScale, ScaleFont, point};
-use image::{Rgb, RgbImage};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder, Rgb, RgbImage};
+
+use crate::atomic_file::write_atomically;
+use crate::error::ViewError;
 
 pub(super) const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
 pub(super) const INK: Rgb<u8> = Rgb([40, 40, 40]);
+
+/// Color where there is no value.
+pub(super) const NO_VALUE: Rgb<u8> = Rgb([225, 225, 225]);
+/// Size of a title \[pixels\].
+pub(super) const TITLE_SIZE: f32 = 25.0;
 
 /// Reference point of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +39,16 @@ impl Canvas {
     pub(super) fn new(width: u32, height: u32) -> Result<Self, InvalidFont> {
         let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)?;
         Ok(Self { image: RgbImage::from_pixel(width, height, WHITE), font })
+    }
+
+    /// Writes the image as PNG.
+    pub(super) fn save(&self, path: &Path) -> Result<(), ViewError> {
+        let image = &self.image;
+        write_atomically(path, |file| {
+            PngEncoder::new(file)
+                .write_image(image, image.width(), image.height(), ExtendedColorType::Rgb8)
+                .map_err(io::Error::other)
+        })
     }
 
     /// Fills the pixels from `x.start` to before `x.end`, and likewise in `y`.
@@ -55,8 +77,20 @@ impl Canvas {
         text.chars().map(|c| font.h_advance(font.glyph_id(c))).sum()
     }
 
-    /// Draws a line of text, vertically centered at `y`.
-    pub(super) fn write(&mut self, text: &str, (x, y): (f32, f32), anchor: Anchor, size: f32) {
+    /// Draws a line of text in ink, vertically centered at `y`.
+    pub(super) fn write(&mut self, text: &str, place: (f32, f32), anchor: Anchor, size: f32) {
+        self.write_in(text, place, anchor, size, INK);
+    }
+
+    /// Draws a line of text in a color.
+    pub(super) fn write_in(
+        &mut self,
+        text: &str,
+        (x, y): (f32, f32),
+        anchor: Anchor,
+        size: f32,
+        color: Rgb<u8>,
+    ) {
         let mut x = match anchor {
             Anchor::Start => x,
             Anchor::Middle => x - 0.5 * self.width(text, size),
@@ -76,18 +110,18 @@ impl Canvas {
                 let (x, y) = (corner.x as i64 + i64::from(dx), corner.y as i64 + i64::from(dy));
                 let place = u32::try_from(x).ok().zip(u32::try_from(y).ok());
                 if let Some(pixel) = place.and_then(|(x, y)| image.get_pixel_mut_checked(x, y)) {
-                    blend(pixel, coverage);
+                    // Thin strokes look pale, so their coverage is increased.
+                    blend(pixel, 1.3 * coverage, color);
                 }
             });
         }
     }
 }
 
-/// Covers part of a pixel with ink.
-fn blend(pixel: &mut Rgb<u8>, coverage: f32) {
-    // Thin strokes look pale on white, so their coverage is increased.
-    let share = (1.3 * coverage).clamp(0.0, 1.0);
-    for (band, ink) in pixel.0.iter_mut().zip(INK.0) {
+/// Covers a share of a pixel with a color.
+pub(super) fn blend(pixel: &mut Rgb<u8>, coverage: f32, color: Rgb<u8>) {
+    let share = coverage.clamp(0.0, 1.0);
+    for (band, ink) in pixel.0.iter_mut().zip(color.0) {
         *band = (f32::from(*band) + share * (f32::from(ink) - f32::from(*band))).round() as u8;
     }
 }

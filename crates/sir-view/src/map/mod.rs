@@ -1,18 +1,26 @@
-//! Maps: grids of values in false colors, with a scale.
+//! Maps: grids of values in false colors, with contour lines and a scale.
 
 mod canvas;
 mod colors;
+mod contours;
+mod false_colors;
+mod scale;
+mod strokes;
+mod ticks;
 
 use std::io;
 use std::path::Path;
 
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, Rgb};
+use glam::DVec2;
 
-use crate::atomic_file::write_atomically;
 use crate::error::ViewError;
-use canvas::{Anchor, Canvas};
-use colors::viridis;
+pub use false_colors::{FalseColors, write_false_colors};
+
+use canvas::{Anchor, Canvas, NO_VALUE, TITLE_SIZE};
+use contours::{contours, levels};
+use scale::{MIN_HEIGHT, Scale, TEXT_SIZE};
+use strokes::{Stroke, draw_strokes};
+use ticks::{multiples, number, step};
 
 /// Values on a grid of equal cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,12 +47,8 @@ const MIN_SIZE: f64 = 40.0;
 const MARGIN: [u32; 4] = [64, 104, 140, 60];
 /// Smallest width of the whole picture, for its title \[pixels\].
 const MIN_WIDTH: u32 = 620;
-/// Width of the scale \[pixels\].
-const SCALE_WIDTH: u32 = 22;
-/// Size of small text \[pixels\].
-const TEXT_SIZE: f32 = 17.0;
-/// Color of a cell without a value.
-const NO_VALUE: Rgb<u8> = Rgb([225, 225, 225]);
+/// Space on both sides of a title that is wider than the map \[pixels\].
+const TEXT_MARGIN: u32 = 20;
 
 /// Writes a map as PNG. Cells without a value are gray.
 ///
@@ -53,12 +57,7 @@ const NO_VALUE: Rgb<u8> = Rgb([225, 225, 225]);
 /// If the file cannot be written.
 pub fn write_map(path: &Path, map: &Map) -> Result<(), ViewError> {
     let canvas = draw(map).map_err(|error| ViewError::writing(path)(io::Error::other(error)))?;
-    let image = canvas.image;
-    write_atomically(path, |file| {
-        PngEncoder::new(file)
-            .write_image(&image, image.width(), image.height(), ExtendedColorType::Rgb8)
-            .map_err(io::Error::other)
-    })
+    canvas.save(path)
 }
 
 fn draw(map: &Map) -> Result<Canvas, ab_glyph::InvalidFont> {
@@ -66,39 +65,51 @@ fn draw(map: &Map) -> Result<Canvas, ab_glyph::InvalidFont> {
     let columns = map.columns.max(1);
     let [width, height] = extent(map.size);
     let [left, above, right, below] = MARGIN;
-    let left = left + MIN_WIDTH.saturating_sub(left + width + right) / 2;
-    let mut canvas = Canvas::new((left + width + right).max(MIN_WIDTH), above + height + below)?;
+    // Text may be wider than the map.
+    let measure = Canvas::new(1, 1)?;
+    let widest = measure.width(&map.title, TITLE_SIZE).max(measure.width(&map.subtitle, TEXT_SIZE));
+    let least_width = MIN_WIDTH.max(widest.ceil() as u32 + 2 * TEXT_MARGIN);
+    let left = left + least_width.saturating_sub(left + width + right) / 2;
+    let mut canvas = Canvas::new((left + width + right).max(least_width), above + height + below)?;
     let middle = canvas.image.width() as f32 / 2.0;
-    canvas.write(&map.title, (middle, 28.0), Anchor::Middle, 25.0);
+    canvas.write(&map.title, (middle, 28.0), Anchor::Middle, TITLE_SIZE);
     canvas.write(&map.subtitle, (middle, 56.0), Anchor::Middle, TEXT_SIZE);
 
-    let (least, most) = range(&map.values);
-    let color = |value: f64| viridis((value - least) / (most - least));
+    let (low, high) = range(&map.values);
+    let scale = Scale { low, high, is_logarithmic: false };
     let place = |i: usize, n: usize, length: u32| (i as f64 / n as f64 * f64::from(length)).round() as u32;
     for (cell, value) in map.values.iter().enumerate() {
         let (column, row) = (cell % columns, rows - 1 - cell / columns);
         let x = left + place(column, columns, width)..left + place(column + 1, columns, width);
         let y = above + place(row, rows, height)..above + place(row + 1, rows, height);
-        canvas.fill(x, y, value.map_or(NO_VALUE, color));
+        canvas.fill(x, y, value.map_or(NO_VALUE, |value| scale.color(value)));
     }
+    draw_contours(&mut canvas, map, [left, above], [width, height]);
     canvas.frame(left..left + width, above..above + height);
     draw_axes(&mut canvas, map.size, [left, above], [width, height]);
 
-    let bar = left + width + 28;
-    let height = height.max(120);
-    for y in 0..height {
-        let t = 1.0 - (f64::from(y) + 0.5) / f64::from(height);
-        canvas.fill(bar..bar + SCALE_WIDTH, above + y..above + y + 1, viridis(t));
-    }
-    canvas.frame(bar..bar + SCALE_WIDTH, above..above + height);
-    let step = step((most - least) / (f64::from(height) / 50.0).clamp(2.0, 10.0));
-    for value in multiples(step, least, most) {
-        let y = above as f32 + ((most - value) / (most - least) * f64::from(height)) as f32;
-        canvas.fill(bar + SCALE_WIDTH..bar + SCALE_WIDTH + 6, y as u32..y as u32 + 1, canvas::INK);
-        canvas.write(&number(value, step), ((bar + SCALE_WIDTH + 11) as f32, y), Anchor::Start, TEXT_SIZE);
-    }
-    canvas.write(&map.unit, (bar as f32, above as f32 - 18.0), Anchor::Start, TEXT_SIZE);
+    scale.draw(&mut canvas, [left + width + 28, above], height.max(MIN_HEIGHT), &map.unit);
     Ok(canvas)
+}
+
+/// Draws contour lines at round values.
+fn draw_contours(canvas: &mut Canvas, map: &Map, [left, above]: [u32; 2], [width, height]: [u32; 2]) {
+    let columns = map.columns.max(1);
+    let rows = map.values.len().div_ceil(columns);
+    let known = || map.values.iter().flatten().copied().filter(|value| value.is_finite());
+    let (least, most) = (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
+    let [corner, size] =
+        [[left, above + height], [width, height]].map(|[x, y]| DVec2::new(f64::from(x), f64::from(y)));
+    let step = size / DVec2::new(columns as f64, rows as f64) * DVec2::new(1.0, -1.0);
+    let mut strokes = Vec::new();
+    for (level, label) in levels(least, most) {
+        let lines = contours(&map.values, columns, level).into_iter();
+        strokes.extend(lines.map(|line| Stroke {
+            points: line.into_iter().map(|point| corner + point * step).collect(),
+            label: label.clone(),
+        }));
+    }
+    draw_strokes(canvas, left..left + width, above..above + height, &strokes);
 }
 
 /// Returns the width and height of the grid in pixels: to scale, unless it is very narrow.
@@ -142,31 +153,10 @@ fn range(values: &[Option<f64>]) -> (f64, f64) {
     }
 }
 
-/// Returns the smallest of 1, 2 and 5 times a power of ten that is at least `least`.
-fn step(least: f64) -> f64 {
-    let power = 10f64.powf(least.max(f64::MIN_POSITIVE).log10().floor());
-    [1.0, 2.0, 5.0]
-        .map(|factor| factor * power)
-        .into_iter()
-        .find(|step| *step >= least)
-        .unwrap_or(10.0 * power)
-}
-
-/// Returns the multiples of `step` from `first` to `last`.
-fn multiples(step: f64, first: f64, last: f64) -> impl Iterator<Item = f64> {
-    let start = (first / step - 1e-9).ceil();
-    (0..100).map(move |i| (start + f64::from(i)) * step).take_while(move |x| *x <= last + 1e-9 * step)
-}
-
-/// Formats a multiple of `step` with the number of decimals that it needs.
-fn number(x: f64, step: f64) -> String {
-    let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
-    if x.abs() >= 1e7 || decimals > 6 { format!("{x:.1e}") } else { format!("{x:.decimals$}") }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use colors::viridis;
 
     fn map(columns: usize, size: [f64; 2], values: Vec<Option<f64>>) -> Map {
         let text = |text: &str| text.to_owned();
@@ -175,7 +165,7 @@ mod tests {
 
     #[test]
     fn cells_have_the_colors_of_their_values_with_the_first_row_below() {
-        let drawn = draw(&map(2, [2.0, 2.0], vec![Some(0.0), None, Some(50.0), Some(100.0)])).unwrap();
+        let drawn = draw(&map(2, [2.0, 2.0], vec![Some(0.0), None, Some(45.0), Some(100.0)])).unwrap();
         let [width, height] = extent([2.0, 2.0]);
         let at = |x: f64, y: f64| {
             let (x, y) = ((x * f64::from(width)) as u32, ((1.0 - y) * f64::from(height)) as u32);
@@ -183,7 +173,7 @@ mod tests {
         };
         assert_eq!(at(0.25, 0.25), viridis(0.0));
         assert_eq!(at(0.75, 0.25), NO_VALUE);
-        assert_eq!(at(0.25, 0.75), viridis(0.5));
+        assert_eq!(at(0.25, 0.75), viridis(0.45));
         assert_eq!(at(0.75, 0.75), viridis(1.0));
     }
 
@@ -202,13 +192,5 @@ mod tests {
                 drawn.image.width()
             );
         }
-    }
-
-    #[test]
-    fn labels_are_round_numbers() {
-        assert_eq!([0.3, 1.0, 1.1, 47.0, 60.0].map(step), [0.5, 1.0, 2.0, 50.0, 100.0]);
-        let labels: Vec<String> = multiples(0.5, 0.7, 2.0).map(|x| number(x, 0.5)).collect();
-        assert_eq!(labels, ["1.0", "1.5", "2.0"]);
-        assert_eq!(number(1500.0, 500.0), "1500");
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use crate::index::MaterialId;
+use crate::light::Tabulated;
 use crate::load::texture::Placement;
 
 /// Location of the encoded bytes of an image, the key of the image cache: images may share bytes, and large ones take
@@ -43,4 +44,12 @@ pub(super) enum Alpha {
     Mask,
     /// Multiplies the opacity.
     Blend,
+}
+
+/// Light of a photometric file, without an orientation.
+pub(super) struct KnownProfile {
+    pub(super) name: String,
+    pub(super) shape: Tabulated,
+    /// Largest intensity \[cd\].
+    pub(super) largest: f64,
 }

@@ -11,16 +11,10 @@ use crate::color::Rgb;
 use crate::light::{Light, LightKind, Spread, Tabulated};
 use crate::load::error::LoadError;
 use crate::load::files;
+use crate::load::gltf::data::Data;
+use crate::load::gltf::known::KnownProfile;
 use crate::load::gltf::reader::{Reader, label};
 use crate::load::gltf::uri::{self, Reference};
-
-/// Light of a photometric file, without an orientation.
-pub(super) struct KnownProfile {
-    name: String,
-    shape: Tabulated,
-    /// Largest intensity \[cd\].
-    largest: f64,
-}
 
 impl Reader<'_> {
     /// Adds the light of a node with a photometric file, if it has one. The file aims at −z and has its horizontal angle 0 at +x.
@@ -76,7 +70,7 @@ impl Reader<'_> {
 }
 
 /// Returns the contents of a photometric file.
-fn profile_bytes(data: &crate::load::gltf::data::Data<'_>, index: usize) -> Result<Vec<u8>, String> {
+fn profile_bytes(data: &Data<'_>, index: usize) -> Result<Vec<u8>, String> {
     let profile = data.document.profiles.get(index).ok_or("it does not exist")?;
     match (&profile.uri, profile.view) {
         (Some(uri), _) => match uri::resolve(data.path, uri)? {

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::builder::SceneBuilder;
 use crate::load::gltf::data::Data;
-use crate::load::gltf::known::{Known, Pixels};
-use crate::load::gltf::luminaire::KnownProfile;
+use crate::load::gltf::known::{Known, KnownProfile, Pixels};
 use crate::load::notes::{Notes, quoted};
 use crate::load::options::LoadOptions;
 use crate::load::texture::{Image, Images};
