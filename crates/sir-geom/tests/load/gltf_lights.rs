@@ -106,3 +106,75 @@ fn impossible_lights_are_errors() {
     let message = error(point(json!("much")), 0);
     assert!(message.contains("lights[0].intensity: found the text \"much\", expected a number"), "{message}");
 }
+
+/// A photometric file of a lamp with 100 cd at the polar angle 0, 50 cd at 90° in the half plane of the horizontal angle 0, and
+/// none at 90° in that of 90°, between which and the other half planes it is symmetric.
+const IES: &str =
+    "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 3 1 2 0 0 0\n1 1 0\n0 90\n0 90 180\n100 50\n100 0\n100 25\n";
+
+/// Returns the error, or the warnings and lights, of a file with a photometric file and a node that has it.
+fn load_profile(profile: Value, node: Value, rotation: Value) -> Result<Built, LoadError> {
+    let mut gltf = Gltf::triangle();
+    gltf.json["extensionsUsed"] = json!(["EXT_lights_ies"]);
+    gltf.json["extensionsRequired"] = json!(["EXT_lights_ies"]);
+    gltf.json["extensions"] = json!({"EXT_lights_ies": {"lights": [profile]}});
+    let all = gltf.json["nodes"].as_array_mut().unwrap();
+    let extensions = json!({"EXT_lights_ies": node});
+    all.push(json!({
+        "name": "lamp", "translation": [1, 2, 3], "rotation": rotation, "scale": [2, 2, 2], "extensions": extensions,
+    }));
+    let index = all.len() - 1;
+    gltf.json["scenes"][0]["nodes"].as_array_mut().unwrap().push(json!(index));
+    gltf.load()
+}
+
+fn data_uri(text: &str) -> String {
+    let encoded: String = text.bytes().map(|byte| format!("%{byte:02x}")).collect();
+    format!("data:application/x-ies-lm-63,{encoded}")
+}
+
+#[test]
+fn photometric_files_shine_along_minus_z() {
+    let profile = json!({"uri": data_uri(IES)});
+    let node = json!({"light": 0, "multiplier": 2, "color": [1, 0.5, 7]});
+    let upright = load_profile(profile.clone(), node.clone(), json!([0, 0, 0, 1])).unwrap();
+    // About y by a quarter turn: −z goes to −x, and +x to −z.
+    let turned = load_profile(profile, node, json!([0, R, 0, R])).unwrap();
+    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z];
+    for (built, [aim, zero, quarter]) in [(upright, [-z, x, y]), (turned, [-x, -z, y])] {
+        let [light] = built.scene.lights() else { panic!("{:?}", built.scene.lights()) };
+        assert_eq!(light.name, "lamp");
+        let LightKind::Point { position, intensity, ref spread } = light.kind else { panic!("{light:?}") };
+        assert_eq!((position, intensity), (DVec3::new(1.0, 2.0, 3.0), Rgb::new(200.0, 100.0, 200.0)));
+        for (direction, share) in
+            [(aim, 1.0), (zero, 0.5), (quarter, 0.0), (-quarter, 0.0), (-zero, 0.25), (-aim, 0.0)]
+        {
+            assert!(
+                (spread.share(direction) - share).abs() < 1e-6,
+                "{direction} {}",
+                spread.share(direction)
+            );
+        }
+    }
+}
+
+#[test]
+fn photometric_files_that_cannot_be_read_are_errors() {
+    let node = json!({"light": 0});
+    let good = json!({"uri": data_uri(IES)});
+    let upright = json!([0, 0, 0, 1]);
+    for (profile, node, why) in [
+        (json!({}), node.clone(), "neither a `uri` nor a `bufferView`"),
+        (json!({"uri": "absent.ies"}), node.clone(), "absent.ies"),
+        (json!({"uri": "../absent.ies"}), node.clone(), "outside the scene's folder"),
+        (json!({"bufferView": 99}), node.clone(), "99"),
+        (json!({"uri": data_uri("nonsense")}), node.clone(), "light profile 0"),
+        (good.clone(), json!({"light": 1}), "it does not exist"),
+        (good.clone(), json!({}), "needs the index of a `light`"),
+        (good.clone(), json!({"light": 0, "multiplier": -1}), "`multiplier` that is not negative"),
+        (good, json!({"light": 0, "color": [1, 1]}), "three numbers"),
+    ] {
+        let error = load_profile(profile, node, upright.clone()).unwrap_err().to_string();
+        assert!(error.contains(why), "{why}: {error}");
+    }
+}
