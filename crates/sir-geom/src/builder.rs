@@ -71,9 +71,10 @@ impl SceneBuilder {
         self.cameras.push(camera);
     }
 
-    /// Adds a light without a surface.
-    pub fn add_light(&mut self, light: Light) {
+    /// Adds a light without a surface, and returns its index in [`Scene::lights`].
+    pub fn add_light(&mut self, light: Light) -> usize {
         self.lights.push(light);
+        self.lights.len() - 1
     }
 
     /// Sets the sky, which is seen by lines that leave the scene.
@@ -258,15 +259,16 @@ impl SceneBuilder {
         let named = groups.into_iter().map(|(_, name)| name);
         let scene = Scene {
             groups: std::iter::once(String::new()).chain(named).collect(),
-            instances: self.instances,
+            instances: self.instances.into(),
             loaded: self.loaded,
-            vertices: self.vertices,
-            triangles: self.triangles,
+            vertices: self.vertices.into(),
+            triangles: self.triangles.into(),
             materials: self.materials,
             cameras: self.cameras,
             lights: self.lights,
             sky: self.sky,
             appearance: self.appearance.into(),
+            dimming: Vec::new(),
             bounding_box,
             bounding_sphere,
         };

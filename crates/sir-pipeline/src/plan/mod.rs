@@ -4,6 +4,7 @@
 pub(crate) mod focus;
 pub(crate) mod image;
 pub(crate) mod light;
+pub(crate) mod light_group;
 pub(crate) mod lightmap;
 pub(crate) mod lines;
 pub(crate) mod load;
@@ -25,6 +26,7 @@ pub(crate) mod subdivide;
 pub use focus::Focus;
 pub use image::{Camera, CameraChoice, Image};
 pub use light::{Distant, Lamp, Light};
+pub use light_group::{FileLights, OTHER};
 pub use lightmap::Lightmap;
 pub use lines::{FirstShot, SecondShot, ShadowRays, Solve};
 pub use load::Load;

@@ -1,7 +1,7 @@
 //! Lights of a pipeline, converted for a scene.
 
 use glam::DVec3;
-use sir_geom::{Light, Material, Rgb, SceneBuilder, Sky, shapes};
+use sir_geom::{Light, Material, MaterialId, Rgb, SceneBuilder, Sky, shapes};
 
 /// Light to be added to a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,17 +21,32 @@ pub enum SceneLight {
     Sky(Sky),
 }
 
+/// What emits in a scene after a light has been added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Added {
+    /// A light with this index.
+    Light(usize),
+    /// A material.
+    Material(MaterialId),
+    /// The sky.
+    Sky,
+}
+
 impl SceneLight {
-    /// Adds the light to a scene. A sky replaces an existing one.
-    pub(crate) fn add_to(&self, builder: &mut SceneBuilder) {
+    /// Adds the light to a scene, and returns what has been added. A sky replaces an existing one.
+    pub(crate) fn add_to(&self, builder: &mut SceneBuilder) -> Added {
         match self {
-            Self::Light(light) => builder.add_light(light.clone()),
-            Self::Sky(sky) => builder.set_sky(sky.clone()),
+            Self::Light(light) => Added::Light(builder.add_light(light.clone())),
+            Self::Sky(sky) => {
+                builder.set_sky(sky.clone());
+                Added::Sky
+            }
             Self::Panel { corner, edges: [a, b], exitance } => {
                 let black = Material::diffuse("panel", Rgb::ZERO).emitting(*exitance);
                 let black = builder.add_material(black);
                 builder.begin_group("panel");
                 shapes::quad(builder, [*corner, corner + a, corner + a + b, corner + b], black);
+                Added::Material(black)
             }
         }
     }

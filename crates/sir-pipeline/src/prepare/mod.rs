@@ -2,12 +2,14 @@
 
 pub(crate) mod cameras;
 pub(crate) mod layout;
+pub(crate) mod light_groups;
 pub(crate) mod prepared;
 pub(crate) mod probe_grid;
 pub(crate) mod sources;
 pub(crate) mod up;
 
 pub use layout::{Cells, Layout, Placed};
+pub use light_groups::LightGroup;
 pub use prepared::{Prepared, prepare};
 pub use probe_grid::ProbeGrid;
 pub use sources::kinds;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use sir_geom::{BoundingBox, LoadOptions, Scene};
+use sir_geom::{BoundingBox, LoadOptions, Rgb, Scene};
 use sir_lines::Focus;
 use sir_mesh::Subdivision;
 use sir_radiosity::{FocusSides, Model, ModelError, SolveError, Source, emits, sources, total_power};
@@ -15,8 +15,9 @@ use crate::prepare::cameras::camera_problems;
 use crate::prepare::up::{Up, sky_doubt};
 use crate::text::diagnostic::Diagnostic;
 
-use crate::plan::{Action, Pipeline, SceneLight, Stage, Transport};
+use crate::plan::{Action, Lamp, Pipeline, SceneLight, Stage, Transport};
 use crate::prepare::layout::Placed;
+use crate::prepare::light_groups::{LightGroup, dimming, light_groups};
 use crate::progress::Progress;
 use crate::stopwatch::Stopwatch;
 
@@ -43,6 +44,8 @@ pub struct Prepared {
     pub lamps_are_covered: bool,
     /// Light sources, at least one.
     pub sources: Vec<Source>,
+    /// Light groups, if the pipeline names any; together they emit all light.
+    pub groups: Vec<LightGroup>,
     /// Focus, if there is one.
     pub focus: Option<Focus>,
     /// Sides in the focus.
@@ -55,6 +58,15 @@ pub struct Prepared {
     pub build_seconds: f64,
 }
 
+impl Prepared {
+    /// Returns the same with the light of each light group multiplied by a factor per band.
+    pub(crate) fn dimmed(&self, factors: &[Rgb]) -> Self {
+        let model = self.model.dimmed(&dimming(&self.model.scene, &self.groups, factors));
+        let sources = sources(&model.scene, &model.mesh);
+        Self { model, sources, ..self.clone() }
+    }
+}
+
 /// Reads the scene of a pipeline, makes its patches, and checks the references of the pipeline to the scene.
 ///
 /// # Errors
@@ -63,7 +75,7 @@ pub struct Prepared {
 /// cannot be divided into patches as specified. The latter three are shown with their position in the pipeline.
 pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared, Error> {
     let (mut options, mut stated_up) = (LoadOptions::default(), None);
-    let mut lights: Vec<SceneLight> = Vec::new();
+    let (mut lights, mut added): (Vec<SceneLight>, _) = (Vec::new(), Vec::new());
     let mut subdivision = (Subdivision::PerTriangle, 0..0);
     let mut requested_focus = None;
     for stage in &pipeline.stages {
@@ -73,7 +85,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 stated_up = load.up;
             }
             Action::Light(light) => {
-                for lamp in &light.lamps {
+                for lamp in light.lamps.iter().filter(|lamp| !matches!(lamp, Lamp::Group(_))) {
                     lights.push(
                         lamp.to_scene().ok_or_else(|| pipeline.diagnostics(vec![impossible_light(stage)]))?,
                     );
@@ -86,7 +98,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     }
     let watch = Stopwatch::start();
     let built = sir_geom::load_with(pipeline.scene_path(), &options, |builder| {
-        lights.iter().for_each(|light| light.add_to(builder));
+        added = lights.iter().map(|light| light.add_to(builder)).collect();
         requested_focus.iter().for_each(|(bounds, _)| builder.split_at(bounds));
     })?;
     let load_seconds = watch.seconds();
@@ -122,6 +134,8 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
             let bounds = focus.map(|focus| focus.bounds());
             let placed =
                 place(pipeline, &model, up, bounds).map_err(|problems| pipeline.diagnostics(problems))?;
+            let groups = light_groups(pipeline, &model, &added)
+                .map_err(|problems| pipeline.diagnostics(problems))?;
             let survey = Survey::new(&model.scene, &model.accel, &sources, up, SURVEY_LINES);
             let mut suspicions = survey.suspicions(focus.is_some());
             suspicions.extend(doubt);
@@ -136,6 +150,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 suspicions,
                 lamps_are_covered: survey.are_lamps_covered(),
                 sources,
+                groups,
                 focus,
                 inside,
                 placed,
