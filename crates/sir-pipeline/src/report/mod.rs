@@ -1,6 +1,7 @@
 //! `result.json`: report of a run, for people and programs.
 
 pub(crate) mod compare;
+pub(crate) mod groups;
 pub(crate) mod light;
 pub(crate) mod lines;
 pub(crate) mod page;
@@ -10,7 +11,7 @@ pub(crate) mod sensors;
 
 pub use compare::compare;
 pub use result::{
-    BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, OutputReport,
+    BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, GroupReport, LightReport, LinesReport, OutputReport,
     PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
 };
 pub use sensors::SensorsReport;
