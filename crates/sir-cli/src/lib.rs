@@ -113,6 +113,8 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
         Command::Resume { directory, how } => resume_together(&directory, &options(&how, stop, comm)?, comm)
             .map(|result| result_text(&result, &how, comm))
             .map_err(CliError::from),
+        // The work of one rank.
+        Command::Mix(_) if !comm.is_first() => Ok(String::new()),
         Command::Mix(MixArgs { directory, set, out, force, threads, quiet, json }) => {
             let progress = Arc::new(Stderr::unless(quiet));
             let options = MixOptions { factors: set, out, force, threads, stop, progress };

@@ -21,7 +21,8 @@ fn number(text: &str, most: usize) -> Option<NonZeroUsize> {
 
 /// Parses the factor of a light group, such as `desk=0.5` or `sky=(1, 0.9, 0.8)`.
 pub(crate) fn factor(text: &str) -> Result<(String, Rgb), String> {
-    let help = || "write the name of a light group and a factor, such as `desk=0.5` or `sky=1,0.9,0.8`".to_owned();
+    let help =
+        || "write the name of a light group and a factor, such as `desk=0.5` or `sky=1,0.9,0.8`".to_owned();
     // A name may contain an equals sign, a factor does not.
     let (name, factor) = text.rsplit_once('=').filter(|(name, _)| !name.is_empty()).ok_or_else(help)?;
     let factor = factor.trim();
@@ -74,7 +75,17 @@ mod tests {
         for color in ["(1,0.9,0)", "1, 0.9, 0", "( 1,0.9 , 0 )"] {
             assert_eq!(factor(&format!("sky={color}")), Ok(("sky".into(), Rgb::new(1.0, 0.9, 0.0))));
         }
-        for bad in ["desk", "=1", "desk=", "desk=bright", "desk=1,2", "desk=(1,2,3", "desk=-1", "desk=inf", "desk=NaN"] {
+        for bad in [
+            "desk",
+            "=1",
+            "desk=",
+            "desk=bright",
+            "desk=1,2",
+            "desk=(1,2,3",
+            "desk=-1",
+            "desk=inf",
+            "desk=NaN",
+        ] {
             assert!(factor(bad).is_err(), "{bad}");
         }
     }

@@ -54,6 +54,7 @@ pub fn summary(result: &RunResult) -> String {
             }
         }
     }
+    text += &light_groups(report);
     let sensors = report.stages.iter().filter_map(|stage| stage.sensors.as_ref());
     text.extend(sensors.map(|sensors| {
         let points = grouped(sensors.points as u64);
@@ -93,6 +94,21 @@ fn balance(lines: &LinesReport, units: Units) -> String {
         share(b.escaped),
         share(b.unshot),
     )
+}
+
+/// Returns the light groups with their power and, unless it is one, their factor.
+fn light_groups(report: &Report) -> String {
+    let groups = report.groups.iter().map(|group| {
+        let number = |x: f64| format!("{x}");
+        let factor = match group.factor {
+            [1.0, 1.0, 1.0] => String::new(),
+            [r, g, b] if r == g && g == b => format!(" × {}", number(r)),
+            factor => format!(" × ({})", factor.map(number).join(", ")),
+        };
+        let [r, g, b] = group.power;
+        format!("light group {}: {r:.6} + {g:.6} + {b:.6} {}{factor}\n", group.name, report.units.power())
+    });
+    groups.collect()
 }
 
 /// Returns the relative error of all light.

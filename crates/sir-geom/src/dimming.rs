@@ -49,7 +49,8 @@ impl Scene {
             .collect();
         let sky = self.sky.as_ref().filter(|_| dimming.sky != Rgb::ZERO);
         scene.sky = sky.map(|sky| sky.dimmed(dimming.sky));
-        let factors = (0..self.materials.len()).map(|i| factor(&self.dimming, i) * factor(&dimming.materials, i));
+        let factors =
+            (0..self.materials.len()).map(|i| factor(&self.dimming, i) * factor(&dimming.materials, i));
         scene.dimming = factors.collect();
         scene
     }

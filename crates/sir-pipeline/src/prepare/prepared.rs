@@ -134,8 +134,8 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
             let bounds = focus.map(|focus| focus.bounds());
             let placed =
                 place(pipeline, &model, up, bounds).map_err(|problems| pipeline.diagnostics(problems))?;
-            let groups = light_groups(pipeline, &model, &added)
-                .map_err(|problems| pipeline.diagnostics(problems))?;
+            let groups =
+                light_groups(pipeline, &model, &added).map_err(|problems| pipeline.diagnostics(problems))?;
             let survey = Survey::new(&model.scene, &model.accel, &sources, up, SURVEY_LINES);
             let mut suspicions = survey.suspicions(focus.is_some());
             suspicions.extend(doubt);

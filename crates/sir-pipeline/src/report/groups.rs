@@ -29,7 +29,8 @@ fn parts_of_sum(stages: &[(&StageReport, Rgb)]) -> Vec<StageReport> {
     if stages.iter().any(|(stage, _)| names(stage) != all) {
         return Vec::new();
     }
-    let part = |i: usize| stages.iter().filter_map(move |(stage, factor)| Some((stage.stages.get(i)?, *factor)));
+    let part =
+        |i: usize| stages.iter().filter_map(move |(stage, factor)| Some((stage.stages.get(i)?, *factor)));
     all.iter().enumerate().map(|(i, name)| sum(name, &part(i).collect::<Vec<_>>())).collect()
 }
 

@@ -11,8 +11,8 @@ pub(crate) mod sensors;
 
 pub use compare::compare;
 pub use result::{
-    BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, GroupReport, LightReport, LinesReport, OutputReport,
-    PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
+    BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, GroupReport, LightReport, LinesReport,
+    OutputReport, PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
 };
 pub use sensors::SensorsReport;
 

@@ -96,7 +96,11 @@ impl<'w> GroupWriter<'w> {
     }
 
     /// Writes the measurements of probes.
-    pub(super) fn probes(&mut self, stage: usize, measured: &Measurements<ProbeMeasurement>) -> io::Result<()> {
+    pub(super) fn probes(
+        &mut self,
+        stage: usize,
+        measured: &Measurements<ProbeMeasurement>,
+    ) -> io::Result<()> {
         self.measurements(Kind::Probes, stage, measured, |m| m.to_words())
     }
 
@@ -120,7 +124,10 @@ impl<'w> GroupWriter<'w> {
 
     fn colors(&mut self, colors: Option<&[Rgb]>) -> io::Result<()> {
         self.words(&[colors.map_or(UNKNOWN, |colors| colors.len() as u64)])?;
-        colors.unwrap_or_default().iter().try_for_each(|color| self.words(&color.to_array().map(f64::to_bits)))
+        colors
+            .unwrap_or_default()
+            .iter()
+            .try_for_each(|color| self.words(&color.to_array().map(f64::to_bits)))
     }
 
     fn words(&mut self, words: &[u64]) -> io::Result<()> {
@@ -160,7 +167,9 @@ impl GroupReader {
             return Err(refuse("it has another version".into()));
         }
         if lines[1].trim_end() != fingerprint {
-            return Err(refuse("it belongs to another run, or the pipeline or the scene has changed since".into()));
+            return Err(refuse(
+                "it belongs to another run, or the pipeline or the scene has changed since".into(),
+            ));
         }
         let mut reader = Self { path, file, next: None };
         reader.advance().map_err(|error| reader.damaged(&error))?;

@@ -83,10 +83,9 @@ impl Run<'_> {
         let kept = match self.comm.is_first() {
             true => write_atomically(&path, |file| self.keep_in(file, first, repeating)).map_err(Error::from),
             // The other ranks have the same light, and need the reports.
-            false => self.keep_in(&mut io::sink(), first, repeating).map_err(|_| Error::Elsewhere {
-                rank: 0,
-                kind: ErrorKind::Failed,
-            }),
+            false => self
+                .keep_in(&mut io::sink(), first, repeating)
+                .map_err(|_| Error::Elsewhere { rank: 0, kind: ErrorKind::Failed }),
         };
         agree(self.comm, kept)?;
         self.close_report(repeating);

@@ -65,6 +65,9 @@ impl Run<'_> {
             }
             self.head.report.stages.push(report);
         }
+        if let (Some(watcher), Some(light), false) = (self.watcher(), &computed, pipeline.has_page()) {
+            self.show(watcher, light, "all light groups")?;
+        }
         let last = self.head.report.stages.iter().rev().find_map(|stage| stage.light.as_ref());
         let warning = last.and_then(large_error_warning);
         self.warn(warning.into_iter().collect());
@@ -105,11 +108,7 @@ impl Sum {
 
     /// Returns the measurements of the sensors of a stage, if the files have them.
     fn sensors(&mut self, stage: usize) -> Result<Option<Measurements<Measurement>>, Error> {
-        self.measurements(
-            |reader| reader.sensors(stage),
-            Measurement::add_dimmed,
-            |one| one.irradiance,
-        )
+        self.measurements(|reader| reader.sensors(stage), Measurement::add_dimmed, |one| one.irradiance)
     }
 
     /// Returns the measurements of the probes of a stage, if the files have them.

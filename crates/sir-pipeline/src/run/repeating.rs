@@ -31,8 +31,9 @@ use crate::run::save::view_of;
 use crate::run::sharing::SHARED;
 use crate::run::stages::{large_error_warning, unshot_warning};
 use crate::stopwatch::Stopwatch;
+use crate::watcher::Watcher;
 
-impl Run<'_> {
+impl<'a> Run<'a> {
     /// Runs the stages from number `first`, the first with light, to the end of the pipeline in repeats; or goes on from
     /// `saved`, the state of one of them.
     pub(crate) fn light(
@@ -116,14 +117,28 @@ impl Run<'_> {
 
     /// Shows the light of all repeats so far to the watcher, if it wants it.
     fn show_light(&mut self, repeating: &RepeatSums<'_>, threads: &Threads) -> Result<(), Error> {
-        let watcher = self.options.watcher.as_deref().filter(|_| self.comm.is_first());
-        let Some(watcher) = watcher.filter(|watcher| watcher.wants_light()) else { return Ok(()) };
+        let Some(watcher) = self.watcher().filter(|watcher| watcher.wants_light()) else { return Ok(()) };
         let Some(light) = repeating.light_so_far(threads) else { return Ok(()) };
+        self.show(watcher, &light, &repeating.title())
+    }
+
+    /// Returns the watcher, on rank 0.
+    pub(super) fn watcher(&self) -> Option<&'a dyn Watcher> {
+        self.options.watcher.as_deref().filter(|_| self.comm.is_first())
+    }
+
+    /// Shows light to the watcher. `status` says how far the run is.
+    pub(super) fn show(
+        &mut self,
+        watcher: &dyn Watcher,
+        light: &Computed,
+        status: &str,
+    ) -> Result<(), Error> {
         let known = self.pages.watched.take().map(|shown| shown.cameras);
-        let (view, shown) = view_of(self.saver(), &light, known)?;
+        let (view, shown) = view_of(self.saver(), light, known)?;
         let Self { prepared, head, pages, .. } = self;
         let facts = facts(&head.report, &prepared.model.scene, &shown, &pages.sensors);
-        watcher.show(title(&head.report), view, facts, &repeating.title());
+        watcher.show(title(&head.report), view, facts, status);
         pages.watched = Some(shown);
         Ok(())
     }

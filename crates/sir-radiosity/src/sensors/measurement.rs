@@ -78,7 +78,8 @@ impl Measurement {
             _ => luminance(factor) / luminance(Rgb::ONE),
         };
         let errors = [other.sampling, other.inherited];
-        for ((sum, more), errors) in self.luminance_errors.iter_mut().zip(other.luminance_errors).zip(errors) {
+        for ((sum, more), errors) in self.luminance_errors.iter_mut().zip(other.luminance_errors).zip(errors)
+        {
             let more = more * of_luminance(errors);
             *sum = (*sum * *sum + more * more).sqrt();
         }
