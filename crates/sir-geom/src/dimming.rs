@@ -1,7 +1,6 @@
 //! Dimmed copies of a scene: the same surfaces with lights of other strengths.
 
 use crate::color::Rgb;
-use crate::light::Light;
 use crate::scene::Scene;
 use sir_types::TriangleId;
 
@@ -42,11 +41,11 @@ impl Scene {
                 map.factor *= factor;
             }
         }
-        let lights = self.lights.iter().enumerate().map(|(i, light)| (factor(&dimming.lights, i), light));
-        let lights = lights.filter(|(factor, _)| *factor != Rgb::ZERO);
-        scene.lights = lights
-            .map(|(factor, Light { name, kind })| Light { name: name.clone(), kind: kind.dimmed(factor) })
-            .collect();
+        for (i, light) in scene.lights.iter_mut().enumerate() {
+            light.kind.dim(factor(&dimming.lights, i));
+        }
+        let mut factors = (0..).map(|i| factor(&dimming.lights, i));
+        scene.lights.retain(|_| factors.next() != Some(Rgb::ZERO));
         let sky = self.sky.as_ref().filter(|_| dimming.sky != Rgb::ZERO);
         scene.sky = sky.map(|sky| sky.dimmed(dimming.sky));
         let factors =
@@ -66,7 +65,7 @@ impl Scene {
 mod tests {
     use super::*;
     use crate::builder::SceneBuilder;
-    use crate::light::LightKind;
+    use crate::light::{Light, LightKind};
     use crate::material::Material;
     use crate::sky::Sky;
     use glam::DVec3;

@@ -145,16 +145,13 @@ impl LightKind {
         }
     }
 
-    /// Returns the light with its intensity or irradiance times a factor per band.
-    #[must_use]
-    pub(crate) fn dimmed(&self, factor: Rgb) -> Self {
-        let mut dimmed = self.clone();
-        match &mut dimmed {
+    /// Multiplies the intensity or irradiance by a factor per band.
+    pub(crate) fn dim(&mut self, factor: Rgb) {
+        match self {
             Self::Point { intensity: strength, .. } | Self::Distant { irradiance: strength, .. } => {
                 *strength *= factor;
             }
         }
-        dimmed
     }
 
     /// Returns the unoccluded light that arrives at a point; `None` at the position of the light, and where it sends

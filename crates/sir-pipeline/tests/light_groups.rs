@@ -431,6 +431,7 @@ fn what_cannot_be_mixed_is_refused() {
     fs::write(&scene, ROOM.replace("v 4 3 4", "v 4 3 5")).unwrap();
     assert!(matches!(mix(&run.directory, &case.mix_options("c", &[])), Err(Error::GroupFile { .. })));
     fs::write(&scene, ROOM).unwrap();
+    assert!(!case.place("c").exists());
     fs::write(run.directory.join("group-2.light"), "").unwrap();
     assert!(matches!(mix(&run.directory, &case.mix_options("e", &[])), Err(Error::GroupFile { .. })));
 }

@@ -16,8 +16,10 @@ use crate::run::computed::Computed;
 use crate::run::execute::Run;
 use crate::run::group_file::{GroupLight, GroupReader, GroupWriter, Measurements, path_of};
 use crate::run::measured::Measured;
+use crate::run::mix::Sum;
 use crate::run::pages::Pages;
 use crate::run::repeat_sums::RepeatSums;
+use crate::run::resume::Head;
 
 impl Run<'_> {
     /// Computes the light of each light group that is not finished, with the stages from number `first` on, and writes the
@@ -137,10 +139,11 @@ impl Run<'_> {
     fn write_sum(&mut self, first: usize) -> Result<(), Error> {
         let comm = self.comm;
         let written = if comm.is_first() {
+            let Head { report, fingerprint, .. } = &self.head;
+            let sum = Sum::open(&self.directory, &report.groups, fingerprint);
             // The other ranks have no part in it.
             self.comm = &SingleProcess;
-            let directory = self.directory.clone();
-            let written = self.mix(first, &directory);
+            let written = sum.and_then(|sum| self.mix(first, sum));
             self.comm = comm;
             written
         } else {

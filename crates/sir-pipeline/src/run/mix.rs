@@ -11,7 +11,7 @@ use sir_radiosity::{Measurement, ProbeMeasurement, Solution, in_quadrature};
 use crate::error::Error;
 use crate::plan::Action;
 use crate::report::groups::{errors_of_sum, sum_of_stages};
-use crate::report::result::{LightReport, Time};
+use crate::report::result::{GroupReport, LightReport, Time};
 use crate::report::sensors::SensorsReport;
 use crate::run::computed::{Computed, PartErrors};
 use crate::run::execute::Run;
@@ -23,10 +23,9 @@ use crate::stopwatch::Stopwatch;
 
 impl Run<'_> {
     /// Reports all stages from number `first` on, and writes their files, for the sum of the light groups in the report, each
-    /// times its factor. Their files are in the directory `groups`. The lights of the scene must be dimmed accordingly.
-    pub(super) fn mix(&mut self, first: usize, groups: &Path) -> Result<(), Error> {
+    /// times its factor. The lights of the scene must be dimmed accordingly.
+    pub(super) fn mix(&mut self, first: usize, mut sum: Sum) -> Result<(), Error> {
         let (pipeline, prepared) = (self.pipeline, self.prepared);
-        let mut sum = Sum::open(self, groups)?;
         let parts = parts_of_tables(pipeline, prepared);
         let mut computed: Option<Computed> = None;
         for (number, stage) in pipeline.stages.iter().enumerate().skip(first) {
@@ -75,21 +74,22 @@ impl Run<'_> {
     }
 }
 
-/// Files of all groups, with their factors.
-struct Sum {
+/// Files of all light groups of a run, with their factors.
+pub(super) struct Sum {
     groups: Vec<(GroupReader, Rgb)>,
-    /// Number of sides of a solution.
-    sides: usize,
 }
 
 impl Sum {
-    fn open(run: &Run<'_>, directory: &Path) -> Result<Self, Error> {
-        let mut groups = Vec::new();
-        for (number, group) in run.head.report.groups.iter().enumerate() {
-            let reader = GroupReader::open(directory, number, &run.head.fingerprint)?;
-            groups.push((reader, group.dimming()));
-        }
-        Ok(Self { groups, sides: run.prepared.model.mesh.side_count() })
+    /// Opens the files in a run directory and verifies them.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be read, is damaged, or belongs to a run with another fingerprint.
+    pub(super) fn open(directory: &Path, groups: &[GroupReport], fingerprint: &str) -> Result<Self, Error> {
+        let open = |(number, group): (usize, &GroupReport)| {
+            Ok((GroupReader::open(directory, number, fingerprint)?, group.dimming()))
+        };
+        Ok(Self { groups: groups.iter().enumerate().map(open).collect::<Result<_, Error>>()? })
     }
 
     /// Returns the light after a stage, if the files have it.
@@ -98,9 +98,9 @@ impl Sum {
         for (reader, factor) in &mut self.groups {
             let Some(light) = reader.light(stage)? else { return Ok(None) };
             if *factor == Rgb::ZERO {
-                none.get_or_insert_with(|| light.dark(self.sides));
+                none.get_or_insert_with(|| light.dark());
             } else {
-                sum.get_or_insert_with(|| light.dark(self.sides)).add(&light, *factor);
+                sum.get_or_insert_with(|| light.dark()).add(&light, *factor);
             }
         }
         Ok(sum.or(none))
@@ -153,7 +153,8 @@ impl Sum {
 
 impl GroupLight {
     /// Returns no light, with everything that this light has.
-    fn dark(&self, sides: usize) -> Self {
+    fn dark(&self) -> Self {
+        let sides = self.solution.irradiance.len();
         let none = |errors: &Option<Vec<[Rgb; 2]>>| errors.as_ref().map(|e| vec![[Rgb::ZERO; 2]; e.len()]);
         Self {
             solution: Solution::dark(sides),

@@ -20,6 +20,7 @@ use crate::report::result::{Report, Time};
 use crate::run::directory::{absolute, check_given, make_given, make_new};
 use crate::run::execute::{Run, RunOptions, RunResult, read_report, scene_report, write_report};
 use crate::run::lock::DirectoryLock;
+use crate::run::mix::Sum;
 use crate::run::pages::Pages;
 use crate::run::resume::Head;
 use crate::stopwatch::Stopwatch;
@@ -78,6 +79,10 @@ pub fn mix(directory: &Path, options: &MixOptions) -> Result<RunResult, Error> {
     // The warnings were shown by the run.
     let whole = prepare(&pipeline, &NoProgress)?;
     let prepared = whole.dimmed(&factors);
+    let mut groups = of_run.groups.clone();
+    groups.iter_mut().zip(&factors).for_each(|(group, factor)| group.factor = factor.to_array());
+    let fingerprint = fingerprint::hex(fingerprint::of_run(&pipeline, of_run.seed, &whole));
+    let sum = Sum::open(directory, &groups, &fingerprint)?;
     let (out, lock) = match &options.out {
         Some(out) => (out.clone(), make_given(out, options.force, progress)?),
         None => {
@@ -88,9 +93,6 @@ pub fn mix(directory: &Path, options: &MixOptions) -> Result<RunResult, Error> {
             (out, lock)
         }
     };
-    let mut groups = of_run.groups.clone();
-    groups.iter_mut().zip(&factors).for_each(|(group, factor)| group.factor = factor.to_array());
-    let fingerprint = fingerprint::hex(fingerprint::of_run(&pipeline, of_run.seed, &whole));
     let report = Report {
         scene: scene_report(&prepared, pipeline.scene_path()),
         stages: of_run.stages.iter().take(first_with_lines(&pipeline)).cloned().collect(),
@@ -120,7 +122,7 @@ pub fn mix(directory: &Path, options: &MixOptions) -> Result<RunResult, Error> {
         head: Head::start(fingerprint, pipeline.path.clone(), report),
         pages: Pages::default(),
     };
-    run.mix(first_with_lines(&pipeline), directory).map_err(|error| match error {
+    run.mix(first_with_lines(&pipeline), sum).map_err(|error| match error {
         Error::InterruptedSaving { directory } => Error::InterruptedMix { directory },
         other => other,
     })?;
