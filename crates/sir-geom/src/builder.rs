@@ -71,10 +71,15 @@ impl SceneBuilder {
         self.cameras.push(camera);
     }
 
-    /// Adds a light without a surface, and returns its index in [`Scene::lights`].
-    pub fn add_light(&mut self, light: Light) -> usize {
+    /// Adds a light without a surface.
+    pub fn add_light(&mut self, light: Light) {
         self.lights.push(light);
-        self.lights.len() - 1
+    }
+
+    /// Returns the number of lights so far, which is the index of the next one in [`Scene::lights`].
+    #[must_use]
+    pub fn light_count(&self) -> usize {
+        self.lights.len()
     }
 
     /// Sets the sky, which is seen by lines that leave the scene.

@@ -77,7 +77,7 @@ mod tests {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|corner| b.add_vertex(corner));
         b.add_polygon(&corners, lamp);
         let kind = LightKind::Distant { direction: DVec3::Z, irradiance: Rgb::splat(5.0) };
-        assert_eq!(b.add_light(Light { name: "sun".into(), kind }), 0);
+        b.add_light(Light { name: "sun".into(), kind });
         b.set_sky(Sky::everywhere(Rgb::splat(7.0)).unwrap());
         b.build().unwrap().scene
     }

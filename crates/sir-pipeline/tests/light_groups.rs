@@ -1,6 +1,6 @@
 //! Light groups: their sum is the light of all, factors dim it, and nothing depends on workers or interruptions.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a test fails by panicking")]
 
 #[path = "../../sir-parallel/tests/parallel/ranks.rs"]
 #[allow(dead_code, reason = "its tests use all of it")]

@@ -36,7 +36,11 @@ impl SceneLight {
     /// Adds the light to a scene, and returns what has been added. A sky replaces an existing one.
     pub(crate) fn add_to(&self, builder: &mut SceneBuilder) -> Added {
         match self {
-            Self::Light(light) => Added::Light(builder.add_light(light.clone())),
+            Self::Light(light) => {
+                let index = builder.light_count();
+                builder.add_light(light.clone());
+                Added::Light(index)
+            }
             Self::Sky(sky) => {
                 builder.set_sky(sky.clone());
                 Added::Sky
