@@ -177,6 +177,10 @@ impl<'s> Sorting<'s> {
 
     /// Returns the groups. `span` is the place of the stage `Light`.
     fn groups(mut self, model: &Model, span: &Span) -> Result<Vec<LightGroup>, Vec<Diagnostic>> {
+        // A group may be empty only because of these problems.
+        if !self.problems.is_empty() {
+            return Err(self.problems);
+        }
         let other = self.number(OTHER);
         let scene = self.scene;
         let materials = scene.materials().iter().enumerate().filter(|(_, material)| emits(material));
