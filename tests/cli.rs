@@ -70,6 +70,45 @@ fn quiet_and_json_are_for_programs() {
 }
 
 #[test]
+fn light_groups_are_dimmed_after_the_run() {
+    let folder = folder();
+    let light = r#"Light([Point(position: (1, 1, 1), power: 5, group: "desk")]), FirstShot("#;
+    fs::write(folder.path().join("room.ron"), PIPELINE.replace("FirstShot(", light)).unwrap();
+    let sir = |args: &[&str]| sir(folder.path(), args);
+    let (code, stdout, stderr) = sir(&["check", "room.ron"]);
+    assert!(code == 0 && stdout.contains("2 light groups, each with all lines"), "{stdout}{stderr}");
+    let (code, stdout, stderr) = sir(&["run", "room.ron"]);
+    assert!(
+        code == 0 && stdout.contains("light group desk: 5.000000 + 5.000000 + 5.000000 W\n"),
+        "{stdout}{stderr}"
+    );
+    let (code, stdout, stderr) =
+        sir(&["mix", "results/room", "--set", "desk=0.5", "--set", "other=(1, 0, 2)"]);
+    assert_eq!(code, 0, "{stderr}");
+    assert!(stdout.lines().next().unwrap().ends_with("results/room-mix/view.png"), "{stdout}");
+    assert!(stdout.contains("W × 0.5\n") && stdout.contains("W × (1, 0, 2)\n"), "{stdout}");
+    let same = ["mix", "results/room", "--quiet", "--json", "--out", "same", "--set", "desk=1"];
+    let (code, stdout, _) = sir(&same);
+    let report: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!((code, &report["mixed_from"]), (0, &"results/room".into()));
+    let table = |directory: &str| fs::read(folder.path().join(directory).join("patches.csv")).unwrap();
+    assert!(table("same") == table("results/room") && table("same") != table("results/room-mix"));
+    for (args, part) in [
+        (
+            &["mix", "results/room", "--set", "sky=1"][..],
+            "the light groups of the run are `desk` and `other`",
+        ),
+        (&["mix", "results/room", "--set", "desk=-1"], "a finite number, 0 or more"),
+        (&["mix", "results/room", "--set", "desk"], "write the name of a light group and a factor"),
+        (&["mix", "same"], "`sir mix results/room` mixes it"),
+        (&same, "--force"),
+    ] {
+        let (code, _, stderr) = sir(args);
+        assert!(code == 2 && stderr.contains(part), "{args:?}: {stderr}");
+    }
+}
+
+#[test]
 fn wrong_usage_and_wrong_pipelines_exit_with_2() {
     let folder = folder();
     fs::write(folder.path().join("bad.ron"), "(stages: [FirstShot(line: 3)])").unwrap();

@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
+use sir_geom::Rgb;
 use sir_pipeline::fingerprint::PROGRAM_VERSION;
 
 use crate::experiment::ExperimentArgs;
 use crate::info::InfoArgs;
-use crate::numbers::{seconds, threads};
+use crate::numbers::{factor, seconds, threads};
 use crate::scaling::ScalingArgs;
 use crate::validate::options::ValidateArgs;
 use crate::viewfactors::options::ViewFactorsArgs;
@@ -23,6 +24,7 @@ Examples:
   sir resume results/cornell-box                 continue a run stopped by Ctrl-C or a power cut
   mpirun -n 4 sir run room.ron                   run on several machines, if built with --features mpi
   sir run room.ron --watch                       show the light in the browser while it is computed
+  sir mix results/office --set desk=0.5           dim a light group of a finished run
   sir scaling room.ron --threads 1,2,4           measure the speed-up by more threads
   sir viewfactors room.obj --by group            compute the view factors between named parts
   sir experiment --scale 0.01                    check the claims of the paper of 2009, with 1 % of the lines
@@ -102,6 +104,12 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Write the files of a run again with its light groups dimmed or colored.
+    ///
+    /// The pipeline must name light groups (docs/pipeline.md). Each group has kept its light, so no lines are traced for
+    /// it: tables, images, sensors and all other outputs are sums over the groups, each times its factor. A new directory
+    /// holds them.
+    Mix(MixArgs),
     /// Measure the speed-up of a pipeline on more threads and ranks.
     ///
     /// Runs it several times with every number of ranks and every number of threads, and prints times, speed-ups S(p) =
@@ -152,6 +160,33 @@ pub struct RunArgs {
     /// Options of the execution.
     #[command(flatten)]
     pub how: HowArgs,
+}
+
+/// Arguments of `sir mix`.
+#[derive(Debug, clap::Args)]
+pub struct MixArgs {
+    /// The run directory.
+    pub directory: PathBuf,
+    /// Factor of a light group: a number, or three for red, green and blue. Groups without one keep their light.
+    ///
+    /// For example `--set desk=0.5 --set sky=1,0.9,0.8`.
+    #[arg(long, value_name = "GROUP=FACTOR", value_parser = factor)]
+    pub set: Vec<(String, Rgb)>,
+    /// Directory for the files; default: a new directory beside that of the run, with `-mix` after its name.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the result in the directory given with --out.
+    #[arg(long)]
+    pub force: bool,
+    /// Threads, 1 to 4096; default: one per processor core. The result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<NonZeroUsize>,
+    /// Show no progress; warnings and errors are still shown.
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Print the content of result.json instead of a summary.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Options of the execution of a run. None of them changes the result.

@@ -64,6 +64,9 @@ fn pipeline_hint(error: &Error) -> Option<String> {
         | Error::NotWritten { directory, .. } => {
             format!("`sir resume {}` continues the run", directory.display())
         }
+        Error::NoLightGroups { .. } => "`sir run PIPELINE` runs a pipeline".into(),
+        Error::MixOfItself { .. } => "`--out DIR` chooses another directory".into(),
+        Error::MixOfMix { run, .. } => format!("`sir mix {run}` mixes it"),
         Error::CannotResume { .. } => "`sir run PIPELINE` starts a new run".into(),
         Error::ViewFactors(ViewFactorsError::NoGroups { .. }) => "use `--by material`".into(),
         Error::ViewFactors(ViewFactorsError::Closure(_)) => "leave out `--closure`".into(),

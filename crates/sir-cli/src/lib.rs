@@ -42,9 +42,9 @@ use sir_parallel::{Communicator, SingleProcess, connect};
 use sir_pipeline::check::estimate;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::run::{resume_together, run_together};
-use sir_pipeline::{ErrorKind, RunOptions, RunResult, Watcher, report};
+use sir_pipeline::{ErrorKind, MixOptions, RunOptions, RunResult, Watcher, mix, report};
 
-use args::{Args, Command, HowArgs, RunArgs};
+use args::{Args, Command, HowArgs, MixArgs, RunArgs};
 pub use error::CliError;
 use progress::Stderr;
 
@@ -82,7 +82,7 @@ pub fn main_from(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) ->
 /// code.
 fn execute(command: Command) -> Result<String, ExitCode> {
     match command {
-        Command::Run(_) | Command::Resume { .. } | Command::ViewFactors(_) => {
+        Command::Run(_) | Command::Resume { .. } | Command::Mix(_) | Command::ViewFactors(_) => {
             // Before anything that takes time: the handlers must be installed when a signal arrives.
             let stop = interrupt::flag();
             let comm = connect().map_err(|error| show(&error.into()))?;
@@ -113,6 +113,14 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
         Command::Resume { directory, how } => resume_together(&directory, &options(&how, stop, comm)?, comm)
             .map(|result| result_text(&result, &how, comm))
             .map_err(CliError::from),
+        // The work of one rank.
+        Command::Mix(_) if !comm.is_first() => Ok(String::new()),
+        Command::Mix(MixArgs { directory, set, out, force, threads, quiet, json }) => {
+            let progress = Arc::new(Stderr::unless(quiet));
+            let options = MixOptions { factors: set, out, force, threads, stop, progress };
+            let result = mix(&directory, &options)?;
+            Ok(if json { result.report.to_json() } else { summary::summary(&result) })
+        }
         Command::Check { pipeline } => {
             let pipeline = Pipeline::read(&pipeline)?;
             Ok(estimate(&pipeline, &Stderr::Quiet)?.to_string())

@@ -3,6 +3,8 @@
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
+use sir_geom::Rgb;
+
 pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let number = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     number.ok_or_else(|| "write a number of seconds, 0 or more".into())
@@ -15,6 +17,26 @@ pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
 
 fn number(text: &str, most: usize) -> Option<NonZeroUsize> {
     text.trim().parse().ok().filter(|&n| n <= most).and_then(NonZeroUsize::new)
+}
+
+/// Parses the factor of a light group, such as `desk=0.5` or `sky=(1, 0.9, 0.8)`.
+pub(crate) fn factor(text: &str) -> Result<(String, Rgb), String> {
+    let help =
+        || "write the name of a light group and a factor, such as `desk=0.5` or `sky=1,0.9,0.8`".to_owned();
+    // A name may contain an equals sign, a factor does not.
+    let (name, factor) = text.rsplit_once('=').filter(|(name, _)| !name.is_empty()).ok_or_else(help)?;
+    let factor = factor.trim();
+    let inner = factor.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).unwrap_or(factor);
+    let numbers: Vec<f64> =
+        inner.split(',').map(|number| number.trim().parse()).collect::<Result<_, _>>().map_err(|_| help())?;
+    if !numbers.iter().all(|number| number.is_finite() && *number >= 0.0) {
+        return Err("a factor must be a finite number, 0 or more".into());
+    }
+    match numbers[..] {
+        [gray] => Ok((name.into(), Rgb::splat(gray))),
+        [r, g, b] => Ok((name.into(), Rgb::new(r, g, b))),
+        _ => Err(help()),
+    }
 }
 
 pub(crate) fn workers(text: &str) -> Result<NonZeroUsize, String> {
@@ -40,4 +62,31 @@ pub(crate) fn scale(text: &str) -> Result<f64, String> {
 pub(crate) fn reference(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|f| (1.0..=10_000.0).contains(f));
     number.ok_or_else(|| "write a number from 1 to 10000, such as 20".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_are_numbers_or_colors() {
+        assert_eq!(factor("desk=0.5"), Ok(("desk".into(), Rgb::splat(0.5))));
+        assert_eq!(factor("a=b = 2"), Ok(("a=b ".into(), Rgb::splat(2.0))));
+        for color in ["(1,0.9,0)", "1, 0.9, 0", "( 1,0.9 , 0 )"] {
+            assert_eq!(factor(&format!("sky={color}")), Ok(("sky".into(), Rgb::new(1.0, 0.9, 0.0))));
+        }
+        for bad in [
+            "desk",
+            "=1",
+            "desk=",
+            "desk=bright",
+            "desk=1,2",
+            "desk=(1,2,3",
+            "desk=-1",
+            "desk=inf",
+            "desk=NaN",
+        ] {
+            assert!(factor(bad).is_err(), "{bad}");
+        }
+    }
 }

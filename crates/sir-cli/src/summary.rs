@@ -1,7 +1,7 @@
 //! The summary that `sir run` prints at the end.
 
 use sir_pipeline::format::{duration, grouped};
-use sir_pipeline::report::{FILE_NAME, LinesReport, Report};
+use sir_pipeline::report::{FILE_NAME, GroupReport, LinesReport, Report, StageReport};
 use sir_pipeline::run::absolute;
 use sir_pipeline::{RunResult, Units};
 
@@ -24,33 +24,15 @@ pub fn summary(result: &RunResult) -> String {
         grouped(report.scene.patches as u64),
         duration(report.time.seconds)
     );
-    for stage in report.stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.stages)) {
-        if let (Some(repeats), false) = (stage.repeats, stage.stages.is_empty()) {
-            text += &format!(
-                "{:<10} {} times in {}; lines of its stages are totals, balances are means\n",
-                stage.name,
-                grouped(repeats),
-                duration(stage.time.seconds),
-            );
-        }
-        if let Some(lines) = &stage.lines {
-            let rate = stage.time.lines_per_second.unwrap_or_default();
-            let through = lines.domain.as_ref().map_or(String::new(), |domain| {
-                format!(" through the {} ({:.6} m²)", domain.kind.to_lowercase(), domain.surface)
-            });
-            let shared = stage.repeats.map_or(String::new(), |repeats| format!(", {repeats} repeats"));
-            text += &format!(
-                "{:<10} {} lines{through} in {}, {} lines/s{shared}, {:.1} % empty, {:.1} % odd\n",
-                stage.name,
-                grouped(lines.lines),
-                duration(stage.time.seconds),
-                grouped(rate as u64),
-                100.0 * lines.empty_share,
-                100.0 * lines.odd_lines as f64 / lines.lines.max(1) as f64,
-            );
-            // Shadow rays carry no power.
-            if lines.balance.emitted != [0.0; 3] {
-                text += &balance(lines, report.units);
+    match (&report.groups[..], &report.mixed_from) {
+        ([], _) => text += &stages(&report.stages, report.units),
+        (groups, mixed_from) => {
+            for group in groups {
+                text += &light_group(group, report.units);
+                // A mix has traced no lines.
+                if mixed_from.is_none() {
+                    text += &stages(&group.stages, report.units);
+                }
             }
         }
     }
@@ -96,6 +78,53 @@ fn balance(lines: &LinesReport, units: Units) -> String {
         share(b.escaped),
         share(b.unshot),
     )
+}
+
+/// Returns a line about a light group: its power and, unless it is one, its factor.
+fn light_group(group: &GroupReport, units: Units) -> String {
+    let factor = match group.factor {
+        [1.0, 1.0, 1.0] => String::new(),
+        [r, g, b] if r == g && g == b => format!(" × {r}"),
+        [r, g, b] => format!(" × ({r}, {g}, {b})"),
+    };
+    let [r, g, b] = group.power;
+    format!("light group {}: {r:.6} + {g:.6} + {b:.6} {}{factor}\n", group.name, units.power())
+}
+
+/// Returns a summary of each stage that traces lines.
+fn stages(all: &[StageReport], units: Units) -> String {
+    let mut text = String::new();
+    for stage in all.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.stages)) {
+        if let (Some(repeats), false) = (stage.repeats, stage.stages.is_empty()) {
+            text += &format!(
+                "{:<10} {} times in {}; lines of its stages are totals, balances are means\n",
+                stage.name,
+                grouped(repeats),
+                duration(stage.time.seconds),
+            );
+        }
+        if let Some(lines) = &stage.lines {
+            let rate = stage.time.lines_per_second.unwrap_or_default();
+            let through = lines.domain.as_ref().map_or(String::new(), |domain| {
+                format!(" through the {} ({:.6} m²)", domain.kind.to_lowercase(), domain.surface)
+            });
+            let shared = stage.repeats.map_or(String::new(), |repeats| format!(", {repeats} repeats"));
+            text += &format!(
+                "{:<10} {} lines{through} in {}, {} lines/s{shared}, {:.1} % empty, {:.1} % odd\n",
+                stage.name,
+                grouped(lines.lines),
+                duration(stage.time.seconds),
+                grouped(rate as u64),
+                100.0 * lines.empty_share,
+                100.0 * lines.odd_lines as f64 / lines.lines.max(1) as f64,
+            );
+            // Shadow rays carry no power.
+            if lines.balance.emitted != [0.0; 3] {
+                text += &balance(lines, units);
+            }
+        }
+    }
+    text
 }
 
 /// Returns the relative error of all light.

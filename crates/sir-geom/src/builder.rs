@@ -76,6 +76,12 @@ impl SceneBuilder {
         self.lights.push(light);
     }
 
+    /// Returns the number of lights so far, which is the index of the next one in [`Scene::lights`].
+    #[must_use]
+    pub fn light_count(&self) -> usize {
+        self.lights.len()
+    }
+
     /// Sets the sky, which is seen by lines that leave the scene.
     pub fn set_sky(&mut self, sky: Sky) {
         self.sky = Some(sky);
@@ -258,15 +264,16 @@ impl SceneBuilder {
         let named = groups.into_iter().map(|(_, name)| name);
         let scene = Scene {
             groups: std::iter::once(String::new()).chain(named).collect(),
-            instances: self.instances,
+            instances: self.instances.into(),
             loaded: self.loaded,
-            vertices: self.vertices,
-            triangles: self.triangles,
+            vertices: self.vertices.into(),
+            triangles: self.triangles.into(),
             materials: self.materials,
             cameras: self.cameras,
             lights: self.lights,
             sky: self.sky,
             appearance: self.appearance.into(),
+            dimming: Vec::new(),
             bounding_box,
             bounding_sphere,
         };

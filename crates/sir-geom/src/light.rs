@@ -197,6 +197,15 @@ impl LightKind {
         }
     }
 
+    /// Multiplies the intensity or irradiance by a factor per band.
+    pub(crate) fn dim(&mut self, factor: Rgb) {
+        match self {
+            Self::Point { intensity: strength, .. } | Self::Distant { irradiance: strength, .. } => {
+                *strength *= factor;
+            }
+        }
+    }
+
     /// Returns the unoccluded light that arrives at a point; `None` at the position of the light, and where it sends
     /// nothing.
     #[must_use]

@@ -8,6 +8,7 @@ use crate::appearance::{Appearance, Corners};
 use sir_types::Side;
 
 use crate::camera::Camera;
+use crate::color::Rgb;
 use crate::index::{FaceId, GroupId, MaterialId, VertexId};
 use crate::light::Light;
 use crate::material::{Material, Sides};
@@ -51,21 +52,23 @@ pub struct MeshInstance {
 
 /// Triangles, materials, lights and cameras in world space.
 ///
-/// Built by a [`SceneBuilder`](crate::SceneBuilder), which guarantees: at least one triangle, finite coordinates,
+/// Copies share the geometry. Built by a [`SceneBuilder`](crate::SceneBuilder), which guarantees: at least one triangle, finite coordinates,
 /// indices in range, areas above zero, reflectances in `[0, MAX_REFLECTANCE]`, finite non-negative exitances, lights
 /// with finite numbers and vectors of unit length.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    pub(crate) vertices: Vec<DVec3>,
-    pub(crate) triangles: Vec<Triangle>,
+    pub(crate) vertices: Arc<Vec<DVec3>>,
+    pub(crate) triangles: Arc<Vec<Triangle>>,
     pub(crate) materials: Vec<Material>,
     pub(crate) cameras: Vec<Camera>,
     pub(crate) lights: Vec<Light>,
     pub(crate) sky: Option<Sky>,
     pub(crate) groups: Vec<String>,
-    pub(crate) instances: Vec<MeshInstance>,
+    pub(crate) instances: Arc<Vec<MeshInstance>>,
     pub(crate) loaded: u32,
     pub(crate) appearance: Arc<Appearance>,
+    /// Factors of the exitance of each material since the scene was built; empty if all are one.
+    pub(crate) dimming: Vec<Rgb>,
     pub(crate) bounding_box: BoundingBox,
     pub(crate) bounding_sphere: BoundingSphere,
 }
@@ -183,12 +186,12 @@ impl Scene {
 
     /// Returns the emitted exitance `M` \[W/m²\] of a side of a triangle; with a texture, its mean over the image.
     #[must_use]
-    pub fn exitance(&self, id: TriangleId, side: Side) -> crate::color::Rgb {
+    pub fn exitance(&self, id: TriangleId, side: Side) -> Rgb {
         let material = self.material(id);
         match side {
             Side::Front => material.exitance,
             Side::Back if material.sides == Sides::Both && material.back_emits => material.exitance,
-            Side::Back => crate::color::Rgb::ZERO,
+            Side::Back => Rgb::ZERO,
         }
     }
 
@@ -202,7 +205,7 @@ impl Scene {
     /// Returns true if a side of a triangle emits.
     #[must_use]
     pub fn emits(&self, id: TriangleId) -> bool {
-        [Side::Front, Side::Back].iter().any(|&side| self.exitance(id, side) != crate::color::Rgb::ZERO)
+        [Side::Front, Side::Back].iter().any(|&side| self.exitance(id, side) != Rgb::ZERO)
     }
 
     /// Returns the sum of the areas of all triangles (one side each).

@@ -150,6 +150,12 @@ impl Sky {
         Self::new(DVec3::Y, SkyModel::Uniform, radiance * PI, radiance)
     }
 
+    /// Returns the sky with its radiance times a factor per band.
+    #[must_use]
+    pub(crate) fn dimmed(&self, factor: Rgb) -> Self {
+        Self { scale: self.scale * factor, ground: self.ground * factor, ..self.clone() }
+    }
+
     /// Returns the unit vector to the zenith.
     #[must_use]
     pub fn up(&self) -> DVec3 {

@@ -189,7 +189,8 @@ impl PatchMesh {
     /// Returns the diffuse reflectance of a patch per band, in `[0, 1)`; with a texture, the mean over the covered
     /// area.
     ///
-    /// `scene` must be the scene that was divided into these patches, here and in the functions below.
+    /// `scene` must be the scene that was divided into these patches, or a dimmed copy of it, here and in the functions
+    /// below.
     #[inline]
     #[must_use]
     pub fn reflectance(&self, scene: &Scene, triangle: TriangleId, patch: PatchId) -> Rgb {
@@ -206,7 +207,8 @@ impl PatchMesh {
             .properties
             .exitance(triangle, self.number_in_surface(triangle, patch))
             .filter(|_| of_triangle != Rgb::ZERO);
-        own.unwrap_or(of_triangle)
+        // The patches were made before the scene was dimmed.
+        own.map_or(of_triangle, |own| own * scene.dimming(triangle))
     }
 
     /// Returns the largest reflectance of a patch in any band.

@@ -179,6 +179,64 @@ pub enum Error {
     /// A lightmap cannot be made.
     #[error(transparent)]
     Lightmap(Box<LightmapError>),
+    /// The light of a run is not divided into light groups.
+    #[error(
+        "the run in {} has no light groups; give lights of its pipeline a `group`, and run it again",
+        directory.display()
+    )]
+    NoLightGroups {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// A result was mixed from that of a run, and has no light groups of its own.
+    #[error("the result in {} was mixed from that in {run}; mix that one", directory.display())]
+    MixOfMix {
+        /// The directory.
+        directory: PathBuf,
+        /// Directory of the run.
+        run: String,
+    },
+    /// The files of a mix would replace those of its run.
+    #[error("{} is the directory of the run itself; choose another directory", directory.display())]
+    MixOfItself {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// The work on a mix was interrupted.
+    #[error("interrupted while writing files to {}; mix the result again", directory.display())]
+    InterruptedMix {
+        /// The directory of the files.
+        directory: PathBuf,
+    },
+    /// The factor of a light group is impossible.
+    #[error("light group `{name}`: {why}")]
+    Factor {
+        /// Name of the group.
+        name: String,
+        /// The reason, and what to do.
+        why: String,
+    },
+    /// Another program has computed the light of a run.
+    #[error(
+        "{program} has computed the light in {}, but this is {this}; use that version, or run the pipeline again",
+        directory.display()
+    )]
+    OtherProgram {
+        /// The directory.
+        directory: PathBuf,
+        /// Name and version of the program.
+        program: String,
+        /// Name and version of this program.
+        this: &'static str,
+    },
+    /// The file of a light group cannot be used.
+    #[error("the light group in {} cannot be used: {why}; run its pipeline again", path.display())]
+    GroupFile {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        why: String,
+    },
     /// A directory to be compared holds no result.
     #[error("{} is not a run directory: it has no readable result.json ({why})", directory.display())]
     NoResult {
@@ -234,10 +292,15 @@ impl Error {
             | Self::OutputExists { .. }
             | Self::OutputIsInput { .. }
             | Self::InUse { .. }
-            | Self::CannotResume { .. } => ErrorKind::Usage,
+            | Self::CannotResume { .. }
+            | Self::NoLightGroups { .. }
+            | Self::MixOfMix { .. }
+            | Self::MixOfItself { .. }
+            | Self::Factor { .. } => ErrorKind::Usage,
             Self::Interrupted { .. }
             | Self::InterruptedSaving { .. }
             | Self::InterruptedMeasuring { .. }
+            | Self::InterruptedMix { .. }
             | Self::Run(RunError::Interrupted { .. }) => ErrorKind::Interrupted,
             Self::Elsewhere { kind, .. } => *kind,
             Self::ViewFactors(error) => error.kind(),

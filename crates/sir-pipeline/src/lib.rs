@@ -63,6 +63,7 @@
 //! | [`prepare`] | a plan | scene, patches, acceleration structure, sensor positions |
 //! | [`mod@check`] | a plan | its memory and time |
 //! | [`mod@run`] | a plan | light, files and a [`report`]; also resumes runs |
+//! | [`mix`] | a run directory | the same files, with dimmed light groups |
 //! | [`info`] | a scene file | its contents, and recommended pipeline settings |
 //! | [`view_factors`] | a scene file | view factors of its parts |
 
@@ -91,6 +92,6 @@ pub use check::check;
 pub use error::{Error, chain};
 pub use error_kind::ErrorKind;
 pub use progress::{NoProgress, Progress};
-pub use run::{RunOptions, RunResult, resume, run};
+pub use run::{MixOptions, RunOptions, RunResult, mix, resume, run};
 pub use units::Units;
 pub use watcher::Watcher;

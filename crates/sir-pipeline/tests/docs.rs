@@ -133,7 +133,8 @@ fn what_is_written_is_what_was_read() {
                 Light([
                     Point(position: (1, 2, 3), power: 60, spread: Spot(axis: (0, -2, 0.1), inner: 0.1, outer: 33.3)),
                     Point(position: (1, 2, 3), intensity: (0.1, 0.2, 0.3), spread: Lambertian(axis: (1, 1, 1))),
-                    Distant(direction: (0.3, -2, 0.1), irradiance: 1),
+                    Distant(direction: (0.3, -2, 0.1), irradiance: 1, group: "sun \"1\""),
+                    Group(name: "ceiling", materials: ["a", "b"], lights: ["c"]), Group(name: "none"),
                     Panel(corner: (0.1, 1, 2), edges: ((1, 0, 0), (0, 0.3, 1)), exitance: 5),
                     Panel(corner: (0.1, 1, 2), edges: ((1, 0, 0), (0, 0.3, 1)), power: 7e-9),
                     {},

@@ -22,7 +22,9 @@ fn with<T>(text: &str, f: impl FnOnce(Result<Pipeline, String>) -> T) -> T {
 
 fn lamps(lamps: &str) -> Vec<SceneLight> {
     with(&text(lamps), |pipeline| match &pipeline.unwrap().stages[1].action {
-        Action::Light(light) => light.lamps.iter().map(|lamp| lamp.to_scene().unwrap()).collect(),
+        Action::Light(light) => {
+            light.lamps.iter().flat_map(|lamp| lamp.to_scene(DVec3::Y).unwrap()).collect()
+        }
         other => unreachable!("{other:?}"),
     })
 }
@@ -114,4 +116,88 @@ fn a_dark_scene_is_lit_by_a_pipeline() {
         let error = estimate(&pipeline.unwrap(), &NoProgress).unwrap_err();
         assert!(error.chain().contains("nothing in the scene emits light"), "{}", error.chain());
     });
+}
+
+/// Returns the light groups of a pipeline with these lights on a scene with a lamp and a glTF light, or the errors.
+fn groups_of(lamps: &str) -> String {
+    const SCENE: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "name": "Spot.001"}]}},
+        "nodes": [{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0, 1, 0]}],
+        "materials": [{"name": "Lamp", "emissiveFactor": [1, 1, 1]}, {"name": "Wall"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0},
+            {"attributes": {"POSITION": 0}, "material": 1}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, 0], "max": [1, 0, 1]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36,
+            "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAIA/AACAPwAAAAAAAAAA"}]}"#;
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("room.gltf"), SCENE).unwrap();
+    let text = text(lamps).replace("room.obj", "room.gltf");
+    let pipeline = Pipeline::parse(&text, &folder.path().join("x.ron")).unwrap();
+    match estimate(&pipeline, &NoProgress) {
+        Ok(estimate) => {
+            let groups = estimate.prepared.groups.iter();
+            groups.map(|group| format!("{} {:.3}", group.name, group.power.x)).collect::<Vec<_>>().join(", ")
+        }
+        Err(error) => {
+            let lines = error.to_string();
+            let lines = lines.lines().filter(|line| line.contains("error:") || line.contains("help:"));
+            lines.map(str::trim).collect::<Vec<_>>().join("; ")
+        }
+    }
+}
+
+#[test]
+fn groups_have_lights_of_the_scene_and_of_the_pipeline() {
+    for (lamps, groups) in [
+        (r#"Group(name: "a", materials: ["Lamp"])"#, "a 1.571, other 12.566"),
+        (r#"Group(name: "a", materials: ["Lamp"], lights: ["Spot.001"])"#, "a 14.137"),
+        (
+            r#"Panel(corner: (0, 2, 0), edges: ((1, 0, 0), (0, 0, 1)), power: 5, group: "b"),
+                Group(name: "a", lights: ["Spot.001"]), Point(position: (0, 3, 0), power: 7, group: "a")"#,
+            "b 5.000, a 19.566, other 1.571",
+        ),
+        (r#"Point(position: (0, 3, 0), power: 7, group: "other")"#, "other 21.137"),
+    ] {
+        assert_eq!(groups_of(lamps), groups);
+    }
+}
+
+#[test]
+fn groups_of_what_is_not_there_are_refused() {
+    for (lamps, problem) in [
+        (
+            r#"Group(name: "a", materials: ["Lmp"])"#,
+            "error: the scene file has no material with the name \"Lmp\"; = help: did you mean `Lamp`?",
+        ),
+        (
+            r#"Group(name: "a", lights: ["Ceiling"])"#,
+            "error: the scene file has no light with the name \"Ceiling\"; = help: its lights are `Spot.001`",
+        ),
+        (
+            r#"Group(name: "a", materials: ["Wall"])"#,
+            "error: the material \"Wall\" emits nothing; = help: its emitting materials are `Lamp`",
+        ),
+        (
+            r#"Group(name: "a", materials: ["Lamp"]), Group(name: "b", materials: ["Lamp"])"#,
+            "error: the material \"Lamp\" is in the groups \"a\" and \"b\"; = help: keep it in one of them",
+        ),
+        (
+            r#"Point(position: (0, 3, 0), power: 0, group: "dark")"#,
+            "error: the light group \"dark\" emits nothing; = help: give one of its lights a power above zero, or leave the group out",
+        ),
+    ] {
+        let shown = groups_of(lamps);
+        assert!(shown.starts_with(problem), "{lamps}: {shown}");
+    }
+    let shown = problems(r#"Group(materials: "Lamp"), Point(position: (0, 1, 0), power: 1, group: 3)"#);
+    for problem in [
+        "`Group` lacks the field `name`",
+        "`materials` must be a list of names, but it is a string",
+        "`group` must be a string in quotes, but it is the number 3",
+    ] {
+        assert!(shown.contains(problem), "{shown}");
+    }
 }

@@ -122,7 +122,7 @@ pub use sensors::{
 };
 pub use shadow_rays::{ShadowRaySettings, ShadowRays};
 pub use shot::{Points, Shot, ShotSettings};
-pub use solution::Solution;
+pub use solution::{Solution, in_quadrature};
 pub use sources::{Source, emits, sources, total_power};
 pub use stage::{AnyOrder, Chain, Stage, chain_units, run_stage, share};
 pub use totals::{Balance, Counts, StageTotals};

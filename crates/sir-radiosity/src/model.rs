@@ -1,7 +1,9 @@
 //! The input of all stages: a scene, its patches, and an acceleration structure.
 
+use std::sync::Arc;
+
 use sir_accel::{Accel, AccelError};
-use sir_geom::{BoundingBox, Rgb, Scene, Side, TriangleId};
+use sir_geom::{BoundingBox, Dimming, Rgb, Scene, Side, TriangleId};
 use sir_mesh::{MeshError, PatchId, PatchMesh, SideId, Subdivision};
 use thiserror::Error;
 
@@ -18,15 +20,16 @@ pub enum ModelError {
     Accel(#[from] AccelError),
 }
 
-/// A scene with its patches and its acceleration structure. Immutable, and shared by all workers.
+/// A scene with its patches and its acceleration structure. Immutable, and shared by all workers. Copies share all but
+/// materials, lights and sky.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// The scene: surfaces, lights and sky.
     pub scene: Scene,
     /// Patches of the surfaces.
-    pub mesh: PatchMesh,
+    pub mesh: Arc<PatchMesh>,
     /// Acceleration structure over the same triangles.
-    pub accel: Accel,
+    pub accel: Arc<Accel>,
 }
 
 impl Model {
@@ -50,9 +53,15 @@ impl Model {
         subdivision: Subdivision,
         bounds: Option<BoundingBox>,
     ) -> Result<Self, ModelError> {
-        let mesh = PatchMesh::within(&scene, subdivision, bounds)?;
-        let accel = build_accel(&scene)?;
+        let mesh = PatchMesh::within(&scene, subdivision, bounds)?.into();
+        let accel = build_accel(&scene)?.into();
         Ok(Self { scene, mesh, accel })
+    }
+
+    /// Returns a copy with dimmed lights.
+    #[must_use]
+    pub fn dimmed(&self, dimming: &Dimming) -> Self {
+        Self { scene: self.scene.dimmed(dimming), ..self.clone() }
     }
 
     /// Returns the reflectance of the patch to which a side belongs.

@@ -7,6 +7,13 @@ use crate::model::Model;
 use crate::power::PowerUnit;
 use crate::received::Received;
 
+/// Returns the standard error of a sum of two independent numbers, per band. An error of zero leaves the bits of the
+/// other one.
+#[must_use]
+pub fn in_quadrature(a: Rgb, b: Rgb) -> Rgb {
+    (a * a + b * b).map(f64::sqrt)
+}
+
 /// Irradiance of every side of every patch, with standard errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
@@ -37,6 +44,16 @@ impl Solution {
             solution.error.push(Rgb::from_array(deviation) * per_area);
         });
         solution
+    }
+
+    /// Adds an independent solution of the same sides, with its light times a factor per band. Variances add.
+    pub fn add_dimmed(&mut self, other: &Self, factor: Rgb) {
+        for (sum, more) in self.irradiance.iter_mut().zip(&other.irradiance) {
+            *sum += factor * more;
+        }
+        for (sum, more) in self.error.iter_mut().zip(&other.error) {
+            *sum = in_quadrature(*sum, factor * more);
+        }
     }
 
     /// Returns the radiosity `B = M + ρ E` \[W/m²\]. `side` must be the side of `triangle` to which `id` belongs.

@@ -70,12 +70,14 @@ fn report(workers: Workers) -> Report {
     Report {
         version: VERSION,
         program: "sir".into(),
-        pipeline: PipelineReport { path: "room.ron".into(), text: "()".into() },
+        pipeline: PipelineReport { path: "room.ron".into(), text: "()".into(), absolute: None },
         units: sir_pipeline::Units::default(),
         seed: 1,
         scene,
         time: Time::of(stages.iter().map(|s| s.time.seconds).sum()),
         stages,
+        groups: Vec::new(),
+        mixed_from: None,
         warnings: Vec::new(),
         outputs: Vec::new(),
     }

@@ -176,10 +176,10 @@ fn compressed_geometry_without_a_copy_is_named() {
 #[test]
 fn extensions_are_noticed_wherever_they_are() {
     let mut gltf = Gltf::triangle();
-    gltf.json["nodes"][0]["extensions"] = json!({"EXT_lights_ies": {"light": 0}});
+    gltf.json["nodes"][0]["extensions"] = json!({"EXT_lights_area": {"light": 0}});
     let built = gltf.load().unwrap();
     let expected = "1 glTF extensions describe light sources and are not supported: their light is missing; add it \
-                    with `Light`: EXT_lights_ies";
+                    with `Light`: EXT_lights_area";
     assert_eq!(warnings(&built)[0], expected);
 }
 

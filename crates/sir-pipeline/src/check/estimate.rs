@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::check::needs::{memory, needed_besides_model};
+use crate::check::needs::{group_file_bytes, memory, needed_besides_model};
 use crate::check::probe::{StageEstimate, probe};
 use crate::error::Error;
 use crate::memory;
@@ -22,6 +22,8 @@ pub struct Estimate {
     pub memory: Vec<(&'static str, usize)>,
     /// Peak memory use \[bytes\].
     pub peak_memory: usize,
+    /// Size of the file of a light group \[bytes\]; zero without light groups.
+    pub group_file: usize,
     /// Lines and lines per second of each stage with lines: the rate of one thread in a short trial on this machine,
     /// times the number of its processor cores.
     pub stages: Vec<StageEstimate>,
@@ -56,6 +58,7 @@ pub fn check(path: &Path) -> Result<Estimate, Error> {
 pub fn estimate(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Estimate, Error> {
     let prepared = prepare(pipeline, progress)?;
     let (memory, peak_memory) = memory(&prepared, pipeline);
+    let group_file = group_file_bytes(&prepared, pipeline);
     // The trial below needs as much memory as the run.
     memory::refuse_more_than_available(needed_besides_model(&memory))?;
     let repeat = pipeline.stages.iter().find_map(|stage| match &stage.action {
@@ -64,5 +67,5 @@ pub fn estimate(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Estimate
     });
     let stages = probe(pipeline, &prepared)?;
     let repeat = repeat.map(|&Repeat { until, at_most, .. }| Repeated { until, at_most });
-    Ok(Estimate { units: pipeline.units, prepared, memory, peak_memory, stages, repeat })
+    Ok(Estimate { units: pipeline.units, prepared, memory, peak_memory, group_file, stages, repeat })
 }

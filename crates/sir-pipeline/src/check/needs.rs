@@ -3,7 +3,9 @@
 use glam::DVec3;
 use sir_geom::Rgb;
 use sir_mesh::{Per, SideSums, Subdivision};
-use sir_radiosity::{Model, Quanta, RepeatedMeasurements, RepeatedProbes, Repeats};
+use sir_radiosity::{
+    Measurement, Model, ProbeMeasurement, Quanta, RepeatedMeasurements, RepeatedProbes, Repeats,
+};
 
 use crate::error::Error;
 use crate::format::bytes;
@@ -79,6 +81,31 @@ pub(super) fn needed_besides_model(memory: &[(&'static str, usize)]) -> usize {
     memory.iter().skip(3).map(|part| part.1).max().unwrap_or(0)
 }
 
+/// Returns the size of the file of a light group \[bytes\]; zero without light groups.
+pub(super) fn group_file_bytes(prepared: &Prepared, pipeline: &Pipeline) -> usize {
+    if prepared.groups.is_empty() {
+        return 0;
+    }
+    let Model { scene, mesh, .. } = &prepared.model;
+    let colors = 2 + usize::from(pipeline.shows_direct());
+    // At most two sides of each triangle have a row in a table; few materials and groups do.
+    let of_triangles = pipeline.parts_of_tables().into_iter().filter(|per| *per < Per::Material).count();
+    let rows = 2 * scene.triangles().len() * of_triangles;
+    let light = mesh.side_count() * colors * size_of::<Rgb>() + rows * size_of::<[Rgb; 2]>();
+    let measured = prepared.placed.values().map(|placed| match placed {
+        Placed::Sensors(layout) => layout.sensors.len() * size_of::<Measurement>(),
+        Placed::Probes(grid) => grid.valid.len() * size_of::<ProbeMeasurement>(),
+    });
+    results(pipeline) * light + measured.sum::<usize>()
+}
+
+/// Returns the number of stages after which the light is shown or measured.
+fn results(pipeline: &Pipeline) -> usize {
+    let has_lines = |stage: &Stage| stage.action.lines() > 0;
+    let stages = pipeline.stages.iter().zip(pipeline.stages.iter().skip(1).map(Some).chain([None]));
+    stages.filter(|(stage, next)| has_lines(stage) && !next.is_some_and(has_lines)).count()
+}
+
 /// Returns the memory of a run per part, and its peak \[bytes\].
 pub(super) fn memory(prepared: &Prepared, pipeline: &Pipeline) -> (Vec<(&'static str, usize)>, usize) {
     let Model { scene, mesh, accel } = &prepared.model;
@@ -90,10 +117,8 @@ pub(super) fn memory(prepared: &Prepared, pipeline: &Pipeline) -> (Vec<(&'static
     };
     let surfaces = usize::from(pipeline.stages.iter().any(has_surfaces));
     // The light is summed over repeats wherever it is shown or measured.
-    let has_lines = |stage: &Stage| stage.action.lines() > 0;
-    let stages = pipeline.stages.iter().zip(pipeline.stages.iter().skip(1).map(Some).chain([None]));
-    let used = stages.filter(|(stage, next)| has_lines(stage) && !next.is_some_and(has_lines)).count();
-    let used = used + usize::from(pipeline.shows_direct());
+    let results = results(pipeline);
+    let used = results + usize::from(pipeline.shows_direct());
     let page = usize::from(pipeline.has_page());
     // The pilot of a `Solve` keeps its first shot, before anything is summed.
     let pilot = usize::from(pipeline.flat_stages().any(|stage| matches!(stage.action, Action::Solve(_))));
@@ -132,6 +157,8 @@ pub(super) fn memory(prepared: &Prepared, pipeline: &Pipeline) -> (Vec<(&'static
         Output::Lightmap(lightmap) => Some(lightmap_bytes(lightmap, &prepared.model)),
         _ => None,
     });
+    // The light of a group, read from its file, is added to that of the others.
+    let mixing = 2 * group_file_bytes(prepared, pipeline) / results.max(1);
     let memory = vec![
         ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles()) + scene.appearance_bytes()),
         ("patches", mesh.bytes() + mesh.paint_bytes() + surfaces * SURFACE_BYTES * scene.triangles().len()),
@@ -140,6 +167,7 @@ pub(super) fn memory(prepared: &Prepared, pipeline: &Pipeline) -> (Vec<(&'static
         (
             "pictures, lit meshes, lightmaps and pages",
             sides * displays.min(1) * solution
+                + mixing
                 + sides * displays * DISPLAY_BYTES[surfaces]
                 + sides * page * PAGE_BYTES
                 + (pixels.max().unwrap_or(0) * PIXEL_BYTES).max(lightmaps.max().unwrap_or(0)),

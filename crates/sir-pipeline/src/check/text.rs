@@ -9,6 +9,7 @@ use crate::check::probe::StageEstimate;
 use crate::format::{bytes, duration, grouped};
 use crate::plan::Until;
 use crate::prepare::layout::Placed;
+use crate::prepare::light_groups::LightGroup;
 use crate::prepare::prepared::Prepared;
 use crate::prepare::sources::kinds;
 use crate::prepare::up::name;
@@ -69,6 +70,11 @@ impl fmt::Display for Estimate {
             power.z,
             self.units.power()
         )?;
+        let groups = &self.prepared.groups;
+        for LightGroup { name, power, .. } in groups {
+            let unit = self.units.power();
+            writeln!(f, "group      {name}: {:.6} + {:.6} + {:.6} {unit}", power.x, power.y, power.z)?;
+        }
         for placed in self.prepared.placed.values() {
             if let Placed::Probes(grid) = placed {
                 writeln!(f, "probes     {}, {} of them valid", count(grid.len()), count(grid.valid.len()))?;
@@ -78,9 +84,18 @@ impl fmt::Display for Estimate {
         for (part, size) in &self.memory {
             writeln!(f, "           {:>9}  {part}", bytes(*size))?;
         }
+        if self.group_file > 0 {
+            writeln!(
+                f,
+                "disk       {} for the light groups, of {} each",
+                bytes(groups.len() * self.group_file),
+                bytes(self.group_file)
+            )?;
+        }
         let once: f64 = self.stages.iter().map(|s| s.lines as f64 / s.rate).sum();
-        let (bound, tracing, repeats) =
+        let (bound, of_group, repeats) =
             self.repeat.map_or((" in total", once, None), |repeat| repeat.cost(once));
+        let tracing = of_group * groups.len().max(1) as f64;
         writeln!(
             f,
             "time       {}{bound}, without outputs:",
@@ -88,8 +103,16 @@ impl fmt::Display for Estimate {
         )?;
         writeln!(f, "           {:>9}  Load", duration(*load_seconds))?;
         writeln!(f, "           {:>9}  patches and acceleration structure", duration(*build_seconds))?;
+        if !groups.is_empty() {
+            let count = groups.len();
+            writeln!(
+                f,
+                "           {:>9}  {count} light groups, each with all lines; for each",
+                duration(tracing)
+            )?;
+        }
         if let Some(repeats) = repeats {
-            writeln!(f, "           {:>9}  Repeat: {repeats}; each time", duration(tracing))?;
+            writeln!(f, "           {:>9}  Repeat: {repeats}; each time", duration(of_group))?;
         }
         for StageEstimate { name, lines, rate } in &self.stages {
             let time = duration(*lines as f64 / rate);

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sir_geom::{LightKind, Rgb};
 
+use crate::plan::light_group::{FileLights, group};
 use crate::plan::luminaire::Luminaire;
 use crate::plan::panel::Panel;
 use crate::plan::point::Point;
@@ -17,12 +18,12 @@ use crate::text::ron_tree::Node;
 /// Stage that adds lights to the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// Lights: at least one, of which at most one is a sky.
+    /// Lights and light groups: at least one, of which at most one is a sky.
     pub lamps: Vec<Lamp>,
 }
 
 choice! {
-    /// Light that a pipeline adds to its scene.
+    /// Light that a pipeline adds to its scene, or a light group of those that the scene has.
     pub enum Lamp as "light" {
         /// Point light.
         Point(Point),
@@ -36,6 +37,8 @@ choice! {
         Sky(Sky),
         /// Uniform light from all directions.
         Environment(Environment),
+        /// Lights of the scene file that are in a light group.
+        Group(FileLights),
     }
 }
 
@@ -46,27 +49,44 @@ record! {
         pub direction: DVec3 = Direction([0.0, -1.0, 0.0]).required();
         /// Irradiance of a surface that faces the light.
         pub irradiance: Rgb = Color(1000.0).required().unit("W/m²");
+        /// Light group, which `sir mix` can dim after the run.
+        pub group: Option<String> = group();
     }
 }
 
 impl Lamp {
-    /// Converts the light for a scene with this up direction, of unit length. Returns `None` if its numbers contradict each
-    /// other; those read from a file do not.
+    /// Returns the light group that the light names.
+    #[must_use]
+    pub fn group(&self) -> Option<&str> {
+        match self {
+            Self::Point(Point { group, .. })
+            | Self::Distant(Distant { group, .. })
+            | Self::Panel(Panel { group, .. })
+            | Self::Luminaire(Luminaire { group, .. })
+            | Self::Sky(Sky { group, .. })
+            | Self::Environment(Environment { group, .. }) => group.as_deref(),
+            Self::Group(group) => Some(&group.name),
+        }
+    }
+
+    /// Converts the light for a scene with this up direction, of unit length. Returns nothing for a group, whose lights are in
+    /// the scene file, and `None` if its numbers contradict each other; those read from a file do not.
     #[must_use]
     pub fn to_scene(&self, up: DVec3) -> Option<Vec<SceneLight>> {
         let light = match self {
             Self::Luminaire(luminaire) => return luminaire.to_scene(up),
             Self::Point(point) => point.to_scene(),
-            Self::Distant(Distant { direction, irradiance }) => {
+            Self::Distant(Distant { direction, irradiance, .. }) => {
                 let direction = direction.try_normalize()?;
                 let kind = LightKind::Distant { direction, irradiance: *irradiance };
                 Some(SceneLight::Light(sir_geom::Light { name: String::new(), kind }))
             }
             Self::Panel(panel) => Some(panel.to_scene()),
             Self::Sky(sky) => sky.to_scene().map(SceneLight::Sky),
-            Self::Environment(Environment { radiance }) => {
+            Self::Environment(Environment { radiance, .. }) => {
                 sir_geom::Sky::everywhere(*radiance).map(SceneLight::Sky)
             }
+            Self::Group(_) => return Some(Vec::new()),
         };
         light.map(|light| vec![light])
     }

@@ -7,6 +7,7 @@ use sir_geom::{Light, LightKind, Rgb, Spread, Tabulated};
 use sir_photometry::OpeningLight;
 
 use crate::plan::light_color::{TEMPERATURES, of_black_body, of_unit_luminance};
+use crate::plan::light_group::group;
 use crate::plan::photometric_file::{Photometric, PhotometricFile};
 use crate::plan::scene_light::{PlacedLuminaire, SceneLight};
 use crate::text::field::Format as _;
@@ -60,6 +61,8 @@ record! {
         pub opening: OpeningChoice = OPENINGS.or(OpeningChoice::Point);
         /// Electric power of one luminaire.
         pub watts: Option<f64> = positive(32.0).optional("that of the file").unit("W");
+        /// Light group, which `sir mix` can dim after the run.
+        pub group: Option<String> = group();
     }
 }
 

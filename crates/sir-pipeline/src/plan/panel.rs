@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sir_geom::Rgb;
 
+use crate::plan::light_group::group;
 use crate::plan::scene_light::SceneLight;
 use crate::text::field::{Format, OneOf};
 use crate::text::formats::{Color, Vector};
@@ -19,6 +20,8 @@ record! {
         pub edges: [DVec3; 2] = Edges.required().unit("m");
         /// Emitted exitance or power.
         pub strength: PanelStrength = strength();
+        /// Light group, which `sir mix` can dim after the run.
+        pub group: Option<String> = group();
     }
 }
 
@@ -51,7 +54,7 @@ fn strength() -> OneOf<PanelStrength> {
 impl Panel {
     /// Converts the panel for a scene.
     pub(crate) fn to_scene(&self) -> SceneLight {
-        let Self { corner, edges, strength } = *self;
+        let Self { corner, edges, strength, .. } = *self;
         let exitance = match strength {
             PanelStrength::Exitance(exitance) => exitance,
             PanelStrength::Power(power) => power / edges[0].cross(edges[1]).length(),

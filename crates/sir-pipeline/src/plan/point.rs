@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sir_geom::{LightKind, Rgb};
 
+use crate::plan::light_group::group;
 use crate::plan::scene_light::SceneLight;
 use crate::text::field::{Format as _, OneOf};
 use crate::text::formats::{Color, Direction, Vector, number};
@@ -18,6 +19,8 @@ record! {
         pub strength: PointStrength = strength();
         /// Angular distribution of the light, see below.
         pub spread: Spread = named("Isotropic").or(Spread::Isotropic);
+        /// Light group, which `sir mix` can dim after the run.
+        pub group: Option<String> = group();
     }
 }
 

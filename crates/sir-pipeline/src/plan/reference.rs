@@ -3,6 +3,7 @@
 use crate::plan::focus::Focus;
 use crate::plan::image::{Camera, Image};
 use crate::plan::light::Distant;
+use crate::plan::light_group::FileLights;
 use crate::plan::lightmap::Lightmap;
 use crate::plan::lines::{FirstShot, SecondShot, ShadowRays, Solve};
 use crate::plan::load::Load;
@@ -37,6 +38,7 @@ pub fn field_tables() -> Vec<(&'static str, String)> {
         table::<Sky>(),
         table::<Cie>(),
         table::<Environment>(),
+        table::<FileLights>(),
         table::<Subdivide>(),
         table::<Focus>(),
         table::<Solve>(),

@@ -44,28 +44,49 @@ pub struct PlacedLuminaire {
     pub factor: Rgb,
 }
 
+/// What emits in a scene after a light has been added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Added {
+    /// A light with this index.
+    Light(usize),
+    /// A material.
+    Material(MaterialId),
+    /// The sky.
+    Sky,
+}
+
 impl SceneLight {
-    /// Adds the light to a scene. A sky replaces an existing one.
-    pub(crate) fn add_to(&self, builder: &mut SceneBuilder) {
+    /// Adds the light to a scene, and returns what has been added. A sky replaces an existing one.
+    pub(crate) fn add_to(&self, builder: &mut SceneBuilder) -> Vec<Added> {
         match self {
-            Self::Light(light) => builder.add_light(light.clone()),
-            Self::Sky(sky) => builder.set_sky(sky.clone()),
+            Self::Light(light) => {
+                let index = builder.light_count();
+                builder.add_light(light.clone());
+                vec![Added::Light(index)]
+            }
+            Self::Sky(sky) => {
+                builder.set_sky(sky.clone());
+                vec![Added::Sky]
+            }
             Self::Panel { corner, edges: [a, b], exitance } => {
                 let black = Material::diffuse("panel", Rgb::ZERO).emitting(*exitance);
                 let black = builder.add_material(black);
                 builder.begin_group("panel");
                 shapes::quad(builder, [*corner, corner + a, corner + a + b, corner + b], black);
+                vec![Added::Material(black)]
             }
             Self::Openings { name, light, placed } => {
                 builder.begin_group(name);
                 // Luminaires with the same light share the materials of their faces.
                 let mut last: Option<(PlacedLuminaire, Vec<MaterialId>)> = None;
+                let mut added = Vec::new();
                 for &luminaire in placed {
                     let PlacedLuminaire { position, frame, factor } = luminaire;
                     let materials = match last.take() {
                         Some((of, materials)) if (of.frame, of.factor) == (frame, factor) => materials,
                         _ => materials(builder, name, light, factor, frame),
                     };
+                    added.extend(materials.iter().map(|&material| Added::Material(material)));
                     for (face, &material) in light.faces().iter().zip(&materials) {
                         let corners = face.corners.iter().map(|corner| position + frame * *corner);
                         let vertices: Vec<_> = corners.map(|corner| builder.add_vertex(corner)).collect();
@@ -73,6 +94,7 @@ impl SceneLight {
                     }
                     last = Some((luminaire, materials));
                 }
+                added
             }
         }
     }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sir_geom::Rgb;
 
+use crate::plan::light_group::group;
 use crate::text::field::Format as _;
 use crate::text::formats::{Color, Direction, count};
 use crate::text::reader::{Fields, Reader};
@@ -19,6 +20,8 @@ record! {
         pub horizontal: Rgb = Color(10_000.0).required().unit("W/m²");
         /// Radiance of the ground: of all directions below the horizon.
         pub ground: Rgb = Color(1000.0).or(Rgb::ZERO).unit("W/(m² sr)");
+        /// Light group, which `sir mix` can dim after the run.
+        pub group: Option<String> = group();
     }
 }
 
@@ -49,6 +52,8 @@ record! {
     pub struct Environment {
         /// Radiance from all directions, below the horizon as above.
         pub radiance: Rgb = Color(100.0).required().unit("W/(m² sr)");
+        /// Light group, which `sir mix` can dim after the run.
+        pub group: Option<String> = group();
     }
 }
 

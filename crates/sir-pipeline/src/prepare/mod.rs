@@ -3,6 +3,7 @@
 pub(crate) mod cameras;
 mod daylight;
 pub(crate) mod layout;
+pub(crate) mod light_groups;
 pub(crate) mod prepared;
 pub(crate) mod probe_grid;
 pub(crate) mod sources;
@@ -10,6 +11,7 @@ mod standard_grid;
 pub(crate) mod up;
 
 pub use layout::{Cells, Layout, Placed};
+pub use light_groups::LightGroup;
 pub use prepared::{Prepared, prepare};
 pub use probe_grid::ProbeGrid;
 pub use sources::kinds;

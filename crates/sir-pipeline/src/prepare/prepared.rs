@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use sir_geom::{BoundingBox, LoadOptions, Scene};
+use sir_geom::{BoundingBox, LoadOptions, Rgb, Scene};
 use sir_lines::Focus;
 use sir_mesh::Subdivision;
 use sir_radiosity::{FocusSides, Model, ModelError, SolveError, Source, emits, sources, total_power};
@@ -18,6 +18,7 @@ use crate::text::diagnostic::Diagnostic;
 use crate::plan::{Action, Lamp, Pipeline, Stage, Transport};
 use crate::prepare::daylight;
 use crate::prepare::layout::Placed;
+use crate::prepare::light_groups::{LightGroup, dimming, light_groups};
 use crate::progress::Progress;
 use crate::stopwatch::Stopwatch;
 
@@ -44,6 +45,8 @@ pub struct Prepared {
     pub lamps_are_covered: bool,
     /// Light sources, at least one.
     pub sources: Vec<Source>,
+    /// Light groups, if the pipeline names any; together they emit all light.
+    pub groups: Vec<LightGroup>,
     /// Focus, if there is one.
     pub focus: Option<Focus>,
     /// Sides in the focus.
@@ -59,6 +62,15 @@ pub struct Prepared {
     pub build_seconds: f64,
 }
 
+impl Prepared {
+    /// Returns the same with the light of each light group multiplied by a factor per band.
+    pub(crate) fn dimmed(&self, factors: &[Rgb]) -> Self {
+        let model = self.model.dimmed(&dimming(&self.model.scene, &self.groups, factors));
+        let sources = sources(&model.scene, &model.mesh);
+        Self { model, sources, ..self.clone() }
+    }
+}
+
 /// Reads the scene of a pipeline, makes its patches, and checks the references of the pipeline to the scene.
 ///
 /// # Errors
@@ -67,7 +79,7 @@ pub struct Prepared {
 /// cannot be divided into patches as specified. The latter three are shown with their position in the pipeline.
 pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared, Error> {
     let (mut options, mut stated_up) = (LoadOptions::default(), None);
-    let mut lamps: Vec<&Lamp> = Vec::new();
+    let (mut lamps, mut added): (Vec<&Lamp>, _) = (Vec::new(), Vec::new());
     let mut subdivision = (Subdivision::PerTriangle, 0..0);
     let mut requested_focus = None;
     for stage in &pipeline.stages {
@@ -92,8 +104,11 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
         let needs_up = lamps.iter().any(|lamp| lamp.needs_up());
         let up =
             if needs_up { Up::before_lamps(pipeline.scene_path(), builder, stated_up) } else { DVec3::Y };
-        let lights = lamps.iter().filter_map(|lamp| lamp.to_scene(up)).flatten();
-        lights.for_each(|light| light.add_to(builder));
+        let add = |lamp: &&Lamp| {
+            let lights = lamp.to_scene(up).unwrap_or_default();
+            lights.iter().flat_map(|light| light.add_to(builder)).collect::<Vec<_>>()
+        };
+        added = lamps.iter().map(add).collect();
         requested_focus.iter().for_each(|(bounds, _)| builder.split_at(bounds));
     })?;
     let load_seconds = watch.seconds();
@@ -131,6 +146,8 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 place(pipeline, &model, up, bounds).map_err(|problems| pipeline.diagnostics(problems))?;
             let outdoor =
                 outdoor(pipeline, &sources).map_err(|problem| pipeline.diagnostics(vec![problem]))?;
+            let groups =
+                light_groups(pipeline, &model, &added).map_err(|problems| pipeline.diagnostics(problems))?;
             let survey = Survey::new(&model.scene, &model.accel, &sources, up, SURVEY_LINES);
             let mut suspicions = survey.suspicions(focus.is_some());
             suspicions.extend(doubt);
@@ -145,6 +162,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 suspicions,
                 lamps_are_covered: survey.are_lamps_covered(),
                 sources,
+                groups,
                 focus,
                 inside,
                 placed,

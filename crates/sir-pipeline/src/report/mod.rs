@@ -1,6 +1,7 @@
 //! `result.json`: report of a run, for people and programs.
 
 pub(crate) mod compare;
+pub(crate) mod groups;
 pub(crate) mod light;
 pub(crate) mod lines;
 pub(crate) mod page;
@@ -13,8 +14,8 @@ mod uncertain;
 pub use compare::compare;
 pub use requirements::{RequirementReport, Verdict};
 pub use result::{
-    BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, LightReport, LinesReport, OutputReport,
-    PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
+    BalanceReport, DomainReport, ErrorsFrom, ErrorsReport, GroupReport, LightReport, LinesReport,
+    OutputReport, PipelineReport, Report, SceneReport, StageReport, Time, VERSION,
 };
 pub use sensors::{DaylightReport, SensorsReport};
 

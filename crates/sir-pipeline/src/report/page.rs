@@ -26,8 +26,6 @@ pub(crate) struct Shown {
 /// Returns the facts of a finished run.
 pub(crate) fn facts(report: &Report, scene: &Scene, shown: &Shown, sensors: &[Value]) -> Value {
     let units = report.units;
-    let path = &report.pipeline.path;
-    let quoted = if path.contains([' ', '\'', '"', '$']) { format!("{path:?}") } else { path.clone() };
     json!({
         "title": title(report),
         "program": report.program,
@@ -38,8 +36,26 @@ pub(crate) fn facts(report: &Report, scene: &Scene, shown: &Shown, sensors: &[Va
         "cameras": shown.cameras.iter().map(camera).collect::<Vec<_>>(),
         "sensors": sensors,
         "notes": notes(scene, shown),
-        "repeat": [format!("sir run {quoted} --seed {}", report.seed)],
+        "repeat": commands(report),
     })
+}
+
+/// Returns the commands that give the same result again.
+fn commands(report: &Report) -> Vec<String> {
+    let quoted = |text: &str| match text.contains([' ', '\'', '"', '$']) {
+        true => format!("{text:?}"),
+        false => text.to_owned(),
+    };
+    let mut commands = vec![format!("sir run {} --seed {}", quoted(&report.pipeline.path), report.seed)];
+    commands.extend(report.mixed_from.as_ref().map(|run| {
+        let dimmed = report.groups.iter().filter(|group| group.factor != [1.0; 3]);
+        let factors = dimmed.map(|group| {
+            let [r, g, b] = group.factor;
+            format!(" --set {}", quoted(&format!("{}={r},{g},{b}", group.name)))
+        });
+        format!("sir mix {}{}", quoted(run), factors.collect::<String>())
+    }));
+    commands
 }
 
 /// Returns the title of a page: the name of the scene's file.

@@ -28,8 +28,14 @@ pub struct Report {
     pub units: Units,
     /// Scene of the run.
     pub scene: SceneReport,
-    /// Stages, in order.
+    /// Stages, in order. With light groups, those of the sum of all groups times their factors.
     pub stages: Vec<StageReport>,
+    /// Light groups, if the pipeline names any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub groups: Vec<GroupReport>,
+    /// Run directory from whose light groups this result was mixed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mixed_from: Option<String>,
     /// Warnings of the run: what is suspicious about the scene, and about the result.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -46,6 +52,9 @@ pub struct PipelineReport {
     pub path: String,
     /// Text of the file.
     pub text: String,
+    /// Absolute path of the file, if the run has light groups, which `sir mix` reads later.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub absolute: Option<String>,
 }
 
 /// Scene of a run.
@@ -71,6 +80,19 @@ pub struct SceneReport {
     pub up_from: String,
     /// Warnings of the reader about what it changed or left out.
     pub warnings: Vec<String>,
+}
+
+/// Light group of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroupReport {
+    /// Name of the group.
+    pub name: String,
+    /// Power that it emits per band \[W\], before it is multiplied by `factor`.
+    pub power: [f64; 3],
+    /// Factor of its light in the results, per band: 1 in those of a run.
+    pub factor: [f64; 3],
+    /// Stages from the first one with lines on, without the factor. Sensors and files are only those of the sum.
+    pub stages: Vec<StageReport>,
 }
 
 /// One stage of a run.

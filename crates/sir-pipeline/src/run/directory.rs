@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::error::Error;
 use crate::plan::Pipeline;
 use crate::progress::Progress;
+use crate::run::group_file;
 use crate::run::lock::{DirectoryLock, check_unused};
 use crate::run_files::{CHECKPOINT, REPORT};
 
@@ -29,7 +30,8 @@ pub fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Creates and locks the requested run directory, and removes the report and the checkpoint of an older run in it.
+/// Creates and locks the requested run directory, and removes the report, the checkpoint and the light groups of an older
+/// run in it.
 pub(crate) fn make_given(
     directory: &Path,
     force: bool,
@@ -46,6 +48,7 @@ pub(crate) fn make_given(
             _ => {}
         }
     }
+    group_file::remove_all(directory).map_err(Error::not_writable(directory))?;
     Ok(lock)
 }
 

@@ -19,6 +19,7 @@ use crate::fingerprint;
 use crate::fingerprint::PROGRAM;
 use crate::memory::largest_peak;
 use crate::plan::Pipeline;
+use crate::prepare::light_groups::LightGroup;
 use crate::prepare::prepared::{Prepared, prepare};
 use crate::progress::{NoProgress, Progress, of_rank};
 use crate::ranks::{agree, same_everywhere};
@@ -140,31 +141,43 @@ pub fn run_together(
             }),
         },
     )?;
+    let has_groups = !prepared.groups.is_empty();
     let report = Report {
         version: VERSION,
         program: PROGRAM.into(),
-        pipeline: PipelineReport { path: pipeline.path.display().to_string(), text: pipeline.text.clone() },
+        pipeline: PipelineReport {
+            path: pipeline.path.display().to_string(),
+            text: pipeline.text.clone(),
+            absolute: has_groups.then(|| absolute(&pipeline.path).display().to_string()),
+        },
         seed,
         units: pipeline.units,
         scene: scene_report(&prepared, pipeline.scene_path()),
         stages: Vec::new(),
+        groups: Vec::new(),
+        mixed_from: None,
         warnings: prepared.suspicions.clone(),
         outputs: Vec::new(),
         time: Time::of(0.0),
     };
-    let head = Head {
-        fingerprint: fingerprint::hex(fingerprint),
-        pipeline: absolute(&pipeline.path),
-        stage: 0,
-        repeat: 0,
-        part: 0,
-        split: None,
-        report,
-    };
+    let head = Head::start(fingerprint::hex(fingerprint), absolute(&pipeline.path), report);
     let (pipeline, prepared) = (&pipeline, &prepared);
-    let (seconds_before, pages) = (0.0, Pages::default());
-    Run { pipeline, prepared, directory, lock, options, comm, progress, watch, seconds_before, head, pages }
-        .finish(None)
+    let (group, seconds_before, pages) = (None, 0.0, Pages::default());
+    let run = Run {
+        pipeline,
+        prepared,
+        group,
+        directory,
+        lock,
+        options,
+        comm,
+        progress,
+        watch,
+        seconds_before,
+        head,
+        pages,
+    };
+    run.finish(None)
 }
 
 /// Resumes the interrupted run in `directory`.
@@ -205,15 +218,30 @@ pub fn resume_together(
     // A run that had not begun a stage with lines starts with the first stage.
     let saved = (head.stage > 0).then_some(saved);
     let (pipeline, prepared, seconds_before) = (&pipeline, &prepared, head.report.time.seconds);
-    let pages = Pages::default();
-    Run { pipeline, prepared, directory, lock, options, comm, progress, watch, seconds_before, head, pages }
-        .finish(saved)
+    let (group, pages) = (None, Pages::default());
+    let run = Run {
+        pipeline,
+        prepared,
+        group,
+        directory,
+        lock,
+        options,
+        comm,
+        progress,
+        watch,
+        seconds_before,
+        head,
+        pages,
+    };
+    run.finish(saved)
 }
 
 /// A run in progress.
 pub(crate) struct Run<'a> {
     pub(crate) pipeline: &'a Pipeline,
     pub(crate) prepared: &'a Prepared,
+    /// Light group to which the lights of `prepared` are limited.
+    pub(crate) group: Option<&'a LightGroup>,
     pub(crate) directory: PathBuf,
     /// Lock of the directory; only on the first rank.
     pub(crate) lock: Option<DirectoryLock>,
@@ -262,9 +290,18 @@ impl Run<'_> {
     }
 
     /// Passes on warnings about the result, and records them.
-    pub(crate) fn warn(&mut self, warnings: Vec<String>) {
+    pub(crate) fn warn(&mut self, mut warnings: Vec<String>) {
+        if let Some(LightGroup { name, .. }) = self.group {
+            warnings.iter_mut().for_each(|warning| *warning = format!("light group {name}: {warning}"));
+        }
         self.progress.warn(&warnings);
         self.head.report.warnings.extend(warnings);
+    }
+
+    /// Returns the seed of all random numbers.
+    pub(crate) fn seed(&self) -> u64 {
+        let seed = self.head.report.seed;
+        self.group.map_or(seed, |group| group.seed(seed))
     }
 
     /// Returns the time so far \[s\].
@@ -283,7 +320,7 @@ fn name_directory(error: Error, directory: &Path) -> Error {
     }
 }
 
-fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {
+pub(super) fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {
     let Model { scene, mesh, .. } = &prepared.model;
     SceneReport {
         path: path.display().to_string(),
@@ -298,7 +335,7 @@ fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {
     }
 }
 
-fn write_report(directory: &Path, report: &Report) -> Result<(), Error> {
+pub(super) fn write_report(directory: &Path, report: &Report) -> Result<(), Error> {
     sir_view::write_atomically(&directory.join(REPORT), |file| file.write_all(report.to_json().as_bytes()))?;
     Ok(())
 }

@@ -109,7 +109,7 @@ impl Run<'_> {
             global: (PILOT_CROSSINGS * per_crossing).ceil().min(shot) as u64,
             rays: if has_many_lamps { 0 } else { PILOT_POINTS * per_point * sides as u64 },
             every: (sides as f64 / some_sides).ceil().max(1.0) as u32,
-            seed: seed_of_repeat(self.head.report.seed, PILOT_REPEAT),
+            seed: seed_of_repeat(self.seed(), PILOT_REPEAT),
         };
         let traced = self.trials(&pilot);
         let (trials, crossings) = agree(self.comm, traced)?;

@@ -319,7 +319,7 @@ impl<'a> RepeatSums<'a> {
 }
 
 /// Returns the parts of the scene for which a pipeline has tables.
-fn parts_of_tables(pipeline: &Pipeline, prepared: &Prepared) -> Vec<Arc<SideSums>> {
+pub(super) fn parts_of_tables(pipeline: &Pipeline, prepared: &Prepared) -> Vec<Arc<SideSums>> {
     let Model { scene, mesh, .. } = &prepared.model;
     let kinds = pipeline.parts_of_tables();
     kinds.into_iter().map(|per| Arc::new(SideSums::new(scene, mesh, per))).collect()

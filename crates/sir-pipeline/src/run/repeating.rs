@@ -31,8 +31,9 @@ use crate::run::save::view_of;
 use crate::run::sharing::SHARED;
 use crate::run::stages::{large_error_warning, unshot_warning};
 use crate::stopwatch::Stopwatch;
+use crate::watcher::Watcher;
 
-impl Run<'_> {
+impl<'a> Run<'a> {
     /// Runs the stages from number `first`, the first with light, to the end of the pipeline in repeats; or goes on from
     /// `saved`, the state of one of them.
     pub(crate) fn light(
@@ -66,7 +67,7 @@ impl Run<'_> {
         }
         let (threads, mut last_message) = (self.threads(), Instant::now());
         loop {
-            let seed = seed_of_repeat(self.head.report.seed, repeat);
+            let seed = seed_of_repeat(self.seed(), repeat);
             for number in begun..repeating.steps.len() {
                 let (place, action) = (repeating.steps[number].place, repeating.steps[number].action);
                 if let Action::Sensors(sensors) = action {
@@ -108,19 +109,36 @@ impl Run<'_> {
             )]);
         }
         self.warn(repeating.sharing.and_then(|sharing| sharing.warning(solve)).into_iter().collect());
-        self.report(first, &mut repeating)
+        match self.group {
+            Some(_) => self.keep(first, &mut repeating),
+            None => self.report(first, &mut repeating),
+        }
     }
 
     /// Shows the light of all repeats so far to the watcher, if it wants it.
     fn show_light(&mut self, repeating: &RepeatSums<'_>, threads: &Threads) -> Result<(), Error> {
-        let watcher = self.options.watcher.as_deref().filter(|_| self.comm.is_first());
-        let Some(watcher) = watcher.filter(|watcher| watcher.wants_light()) else { return Ok(()) };
+        let Some(watcher) = self.watcher().filter(|watcher| watcher.wants_light()) else { return Ok(()) };
         let Some(light) = repeating.light_so_far(threads) else { return Ok(()) };
+        self.show(watcher, &light, &repeating.title())
+    }
+
+    /// Returns the watcher, on rank 0.
+    pub(super) fn watcher(&self) -> Option<&'a dyn Watcher> {
+        self.options.watcher.as_deref().filter(|_| self.comm.is_first())
+    }
+
+    /// Shows light to the watcher. `status` says how far the run is.
+    pub(super) fn show(
+        &mut self,
+        watcher: &dyn Watcher,
+        light: &Computed,
+        status: &str,
+    ) -> Result<(), Error> {
         let known = self.pages.watched.take().map(|shown| shown.cameras);
-        let (view, shown) = view_of(self.saver(), &light, known)?;
+        let (view, shown) = view_of(self.saver(), light, known)?;
         let Self { prepared, head, pages, .. } = self;
         let facts = facts(&head.report, &prepared.model.scene, &shown, &pages.sensors);
-        watcher.show(title(&head.report), view, facts, &repeating.title());
+        watcher.show(title(&head.report), view, facts, status);
         pages.watched = Some(shown);
         Ok(())
     }
@@ -183,11 +201,10 @@ impl Run<'_> {
 
     /// Reports all stages from number `first` on, and writes their files.
     fn report(&mut self, first: usize, repeating: &mut RepeatSums<'_>) -> Result<(), Error> {
-        let (threads, mut computed) = (self.threads(), None);
+        let mut computed = None;
         for (number, stage) in self.pipeline.stages.iter().enumerate().skip(first) {
             let watch = Stopwatch::start();
             let mut report = StageReport::of(stage.action.name(), Time::of(0.0));
-            let steps = repeating.steps_of(number);
             match &stage.action {
                 Action::Save(save) => {
                     self.save(computed.as_ref(), &save.outputs)?;
@@ -201,7 +218,7 @@ impl Run<'_> {
                     report.time = Time::of(watch.seconds());
                 }
                 Action::Sensors(sensors) => {
-                    for step in &repeating.steps[steps] {
+                    for step in &repeating.steps[repeating.steps_of(number)] {
                         let summary = match &step.measured {
                             Some(Measured::Sensors(measured)) => {
                                 let (means, spread) = (measured.means(), measured.spread_of_mean());
@@ -226,46 +243,61 @@ impl Run<'_> {
                         report.sensors = Some(summary);
                     }
                 }
-                Action::Repeat(_) | Action::Solve(_) => {
-                    for step in steps {
-                        let (part, light) = repeating.report(step, &threads);
-                        self.warn_of_lines(repeating.steps[step].action, &part, light.as_ref());
-                        computed = light.or(computed);
-                        report.stages.push(part);
-                    }
-                    report.light = report.stages.last_mut().and_then(|stage| stage.light.take());
-                    report.time = repeating.time();
-                    report.pilot = self.head.split.map(|split| split.pilot);
-                    report.time.seconds += report.pilot.map_or(0.0, |pilot| pilot.time.seconds);
-                    let is_repeat = matches!(stage.action, Action::Repeat(_));
-                    if is_repeat || !repeating.is_single() {
-                        report.repeats = Some(repeating.count);
-                    }
-                    if let (Action::Repeat(repeat), false) = (&stage.action, repeating.is_ended_early()) {
-                        self.warn(missed_target_warning(repeat, &report));
-                    }
-                }
                 _ => {
-                    for step in steps {
-                        // The previous light is no longer needed, and takes much memory.
-                        drop(computed.take());
-                        let (part, light) = repeating.report(step, &threads);
-                        self.warn_of_lines(&stage.action, &part, light.as_ref());
-                        (report, computed) = (part, light);
-                        if !repeating.is_single() {
-                            report.repeats = Some(repeating.count);
-                        }
-                    }
+                    // The previous light is no longer needed, and takes much memory.
+                    drop(computed.take());
+                    (report, computed) = self.report_lines(number, repeating);
                 }
             }
             self.head.report.stages.push(report);
         }
+        self.close_report(repeating);
+        Ok(())
+    }
+
+    /// Returns the report of a stage with lines, and the light after it if that is used. Warns of what is wrong.
+    pub(super) fn report_lines(
+        &mut self,
+        number: usize,
+        repeating: &mut RepeatSums<'_>,
+    ) -> (StageReport, Option<Computed>) {
+        let (threads, action) = (self.threads(), &self.pipeline.stages[number].action);
+        let mut report = StageReport::of(action.name(), Time::of(0.0));
+        let mut computed = None;
+        let is_whole = matches!(action, Action::Repeat(_) | Action::Solve(_));
+        for step in repeating.steps_of(number) {
+            let (part, light) = repeating.report(step, &threads);
+            self.warn_of_lines(repeating.steps[step].action, &part, light.as_ref());
+            computed = light.or(computed);
+            if is_whole {
+                report.stages.push(part);
+            } else {
+                report = part;
+            }
+        }
+        if is_whole {
+            report.light = report.stages.last_mut().and_then(|stage| stage.light.take());
+            report.time = repeating.time();
+            report.pilot = self.head.split.map(|split| split.pilot);
+            report.time.seconds += report.pilot.map_or(0.0, |pilot| pilot.time.seconds);
+        }
+        let is_repeat = matches!(action, Action::Repeat(_));
+        if action.lines() > 0 && (is_repeat || !repeating.is_single()) {
+            report.repeats = Some(repeating.count);
+        }
+        if let (Action::Repeat(repeat), false) = (action, repeating.is_ended_early()) {
+            self.warn(missed_target_warning(repeat, &report));
+        }
+        (report, computed)
+    }
+
+    /// Adds to the report of the last stage with lines what concerns all of them.
+    pub(super) fn close_report(&mut self, repeating: &RepeatSums<'_>) {
         if let Some(last) = self.head.report.stages.iter_mut().rev().find(|stage| stage.light.is_some()) {
             last.convergence.clone_from(&repeating.convergence);
             let warning = last.light.as_ref().and_then(large_error_warning);
             self.warn(warning.into_iter().collect());
         }
-        Ok(())
     }
 
     /// Warns of what is wrong with the lines of a stage.
@@ -280,7 +312,7 @@ impl Run<'_> {
 }
 
 /// Returns a warning if a table of sums has errors that assume independent patches.
-fn independent_errors(light: &Computed, save: &Save) -> Option<String> {
+pub(super) fn independent_errors(light: &Computed, save: &Save) -> Option<String> {
     let is_assumed = |per: Per| light.parts(per).is_some_and(|parts| parts.errors.is_none());
     let table = save.outputs.iter().find_map(|output| match output {
         Output::Table(table) if table.per.is_some_and(is_assumed) => Some(table),

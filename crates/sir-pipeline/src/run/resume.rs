@@ -35,11 +35,24 @@ pub(crate) struct Head {
     /// Lines of the stages of a `Solve`, after its pilot.
     #[serde(default)]
     pub(crate) split: Option<Split>,
+    /// Number of the light group that is computed, from 0; the number of groups if all are.
+    #[serde(default)]
+    pub(crate) group: usize,
     /// Report of the stages before the saved one.
     pub(crate) report: Report,
 }
 
 impl Head {
+    /// Returns the metadata of a run that has not begun.
+    pub(crate) fn start(fingerprint: String, pipeline: PathBuf, report: Report) -> Self {
+        Self { fingerprint, pipeline, stage: 0, repeat: 0, part: 0, split: None, group: 0, report }
+    }
+
+    /// Resets the position to before the first stage with lines.
+    pub(crate) fn rewind(&mut self) {
+        (self.stage, self.repeat, self.part, self.split) = (0, 0, 0, None);
+    }
+
     /// Returns the metadata as one line of JSON.
     pub(crate) fn to_line(&self) -> String {
         // Serializing a tree of plain structs fails only for keys that are not strings; there are none.

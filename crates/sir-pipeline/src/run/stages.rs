@@ -30,7 +30,7 @@ impl Run<'_> {
         let Prepared { load_seconds, build_seconds, .. } = *self.prepared;
         let stages = &self.pipeline.stages;
         let first = stages.iter().position(|stage| stage.action.lines() > 0).unwrap_or(stages.len());
-        if saved.is_none() {
+        if saved.is_none() && self.head.report.stages.is_empty() {
             for stage in &stages[..first] {
                 let seconds = match &stage.action {
                     Action::Load(_) => load_seconds,
@@ -40,7 +40,10 @@ impl Run<'_> {
                 self.head.report.stages.push(StageReport::of(stage.action.name(), Time::of(seconds)));
             }
         }
-        self.light(first, checkpoints, saved)
+        match self.prepared.groups.is_empty() {
+            true => self.light(first, checkpoints, saved),
+            false => self.groups(first, checkpoints, saved),
+        }
     }
 
     /// Sets the metadata of checkpoints for a stage with lines that begins. `repeat` has the number of the repeat, and

@@ -6,6 +6,7 @@ use sir_geom::{Rgb, luminance};
 
 use crate::probes::harmonics::HARMONICS;
 use crate::sensors::Measurement;
+use crate::solution::in_quadrature;
 
 /// Number of quantities that a probe measures: the coefficients, and the irradiances along the axes.
 pub(super) const QUANTITIES: usize = HARMONICS + 6;
@@ -34,6 +35,9 @@ pub struct ProbeMeasurement {
 }
 
 impl ProbeMeasurement {
+    /// Number of words of [`to_words`](Self::to_words).
+    pub const WORDS: usize = WORDS;
+
     /// Returns the coefficients of the irradiance in [`harmonics`](crate::harmonics): `E(n) = Σ c_i Y_i(n)`.
     #[must_use]
     pub fn coefficients(&self) -> [Rgb; HARMONICS] {
@@ -89,8 +93,20 @@ impl ProbeMeasurement {
         (squares.sum::<f64>() / (4.0 * PI)).sqrt()
     }
 
+    /// Adds an independent measurement at the same probe, with its light times a factor per band. Variances add.
+    pub fn add_dimmed(&mut self, other: &Self, factor: Rgb) {
+        for i in 0..QUANTITIES {
+            self.values[i] += factor * other.values[i];
+            self.sampling[i] = in_quadrature(self.sampling[i], factor * other.sampling[i]);
+            self.inherited[i] = in_quadrature(self.inherited[i], factor * other.inherited[i]);
+        }
+        self.direct += factor * other.direct;
+        self.rays += other.rays;
+    }
+
     /// Returns all numbers as bit patterns, which are zero for the default value.
-    pub(super) fn to_words(self) -> [u64; WORDS] {
+    #[must_use]
+    pub fn to_words(self) -> [u64; Self::WORDS] {
         let Self { values, sampling, inherited, direct, rays } = self;
         let all = [values, sampling, inherited];
         let floats = all.as_flattened().iter().chain([&direct]).flat_map(|value| value.to_array());
@@ -101,7 +117,8 @@ impl ProbeMeasurement {
     }
 
     /// Returns the measurement from the words of [`to_words`](Self::to_words).
-    pub(super) fn from_words(words: &[u64; WORDS]) -> Self {
+    #[must_use]
+    pub fn from_words(words: &[u64; Self::WORDS]) -> Self {
         let value = |i: usize| Rgb::from_array([0, 1, 2].map(|band| f64::from_bits(words[3 * i + band])));
         let values = |first: usize| std::array::from_fn(|i| value(first + i));
         Self {

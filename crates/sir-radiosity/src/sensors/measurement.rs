@@ -4,6 +4,7 @@ use sir_geom::{Rgb, luminance};
 
 use crate::sensors::replication::{Gathered, Replication};
 use crate::sensors::unmet::Squares;
+use crate::solution::in_quadrature;
 
 /// The irradiance at a sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -66,6 +67,26 @@ impl Measurement {
         }
         self.inherited = squares.map(f64::sqrt);
         self.luminance_errors[1] = square.sqrt();
+    }
+
+    /// Adds an independent measurement at the same sensor, with its light times a factor per band. Variances add. The
+    /// error of the luminance is dimmed as if the errors of all bands had the same sign.
+    pub fn add_dimmed(&mut self, other: &Self, factor: Rgb) {
+        let of_luminance = |errors: Rgb| match luminance(errors) {
+            sum if sum > 0.0 => luminance(factor * errors) / sum,
+            _ => luminance(factor) / luminance(Rgb::ONE),
+        };
+        let errors = [other.sampling, other.inherited];
+        for ((sum, more), errors) in self.luminance_errors.iter_mut().zip(other.luminance_errors).zip(errors)
+        {
+            let more = more * of_luminance(errors);
+            *sum = (*sum * *sum + more * more).sqrt();
+        }
+        self.irradiance += factor * other.irradiance;
+        self.direct += factor * other.direct;
+        self.sampling = in_quadrature(self.sampling, factor * other.sampling);
+        self.inherited = in_quadrature(self.inherited, factor * other.inherited);
+        self.rays += other.rays;
     }
 
     /// Returns the standard error of the irradiance per band \[W/m²\].

@@ -159,10 +159,12 @@ mod tests {
             version: VERSION,
             program: PROGRAM.into(),
             units: sir_pipeline::Units::default(),
-            pipeline: PipelineReport { path: String::new(), text: "x".into() },
+            pipeline: PipelineReport { path: String::new(), text: "x".into(), absolute: None },
             seed: 1,
             scene,
             stages: Vec::new(),
+            groups: Vec::new(),
+            mixed_from: None,
             warnings: Vec::new(),
             outputs: vec![OutputReport {
                 path: TABLE.into(),
