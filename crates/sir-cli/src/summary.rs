@@ -1,7 +1,7 @@
 //! The summary that `sir run` prints at the end.
 
 use sir_pipeline::format::{duration, grouped};
-use sir_pipeline::report::{FILE_NAME, GroupReport, LinesReport, Report, StageReport};
+use sir_pipeline::report::{FILE_NAME, GroupReport, LinesReport, Report, StageReport, installed_watts};
 use sir_pipeline::run::absolute;
 use sir_pipeline::{RunResult, Units};
 
@@ -35,6 +35,12 @@ pub fn summary(result: &RunResult) -> String {
                 }
             }
         }
+    }
+    for luminaires in &report.scene.luminaires {
+        text += &format!("luminaires {}\n", luminaires.in_short());
+    }
+    if let Some(watts) = installed_watts(&report.scene.luminaires) {
+        text += &format!("           {watts:.1} W of electric power in all\n");
     }
     let sensors = report.stages.iter().filter_map(|stage| stage.sensors.as_ref());
     text.extend(sensors.map(|sensors| {

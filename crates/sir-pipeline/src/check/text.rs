@@ -13,6 +13,7 @@ use crate::prepare::light_groups::LightGroup;
 use crate::prepare::prepared::Prepared;
 use crate::prepare::sources::kinds;
 use crate::prepare::up::name;
+use crate::report::luminaires::installed_watts;
 
 impl Repeated {
     /// Returns the cost of all repeats, if one takes `once` seconds: whether the time is exact or a bound, the time in
@@ -70,6 +71,13 @@ impl fmt::Display for Estimate {
             power.z,
             self.units.power()
         )?;
+        let luminaires = &self.prepared.luminaires;
+        for luminaire in luminaires {
+            writeln!(f, "luminaires {}", luminaire.in_short())?;
+        }
+        if let Some(watts) = installed_watts(luminaires) {
+            writeln!(f, "installed  {watts:.1} W of electric power")?;
+        }
         let groups = &self.prepared.groups;
         for LightGroup { name, power, .. } in groups {
             let unit = self.units.power();

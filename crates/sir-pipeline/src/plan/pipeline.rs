@@ -48,14 +48,20 @@ record! {
 
 impl Content {
     fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
+        let needs = |what: &str, why: &str| format!("{what} needs photometric units ({why})");
         let has_luminaire = self.stages.iter().any(|stage| match &stage.action {
             Action::Light(light) => light.lamps.iter().any(|lamp| matches!(lamp, Lamp::Luminaire(_))),
             _ => false,
         });
-        if has_luminaire && self.units == Units::Radiometric {
-            let message = "a `Luminaire` needs photometric units (its file states candelas)";
-            reader.problem(fields.place_of("units"), message, "write `units: Photometric` in `Pipeline`");
-        }
+        let has_glare =
+            self.stages.iter().any(|stage| matches!(&stage.action, Action::Sensors(sensors) if sensors.ugr));
+        let message = match (has_luminaire, has_glare) {
+            _ if self.units == Units::Photometric => return,
+            (true, _) => needs("a `Luminaire`", "its file states candelas"),
+            (_, true) => needs("`ugr`", "glare depends on luminances in cd/m²"),
+            _ => return,
+        };
+        reader.problem(fields.place_of("units"), message, "write `units: Photometric` in `Pipeline`");
     }
 }
 

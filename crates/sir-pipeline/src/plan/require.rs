@@ -6,7 +6,7 @@ use crate::text::reader::{Fields, Reader};
 use crate::text::record::record;
 
 record! {
-    /// Least values that a standard or a client requires.
+    /// Limits that a standard or a client requires: least values, and a largest UGR.
     pub struct Require, check Require::check {
         /// Least mean.
         pub mean: Option<f64> = positive(500.0).optional("none").unit("W/m²");
@@ -18,6 +18,8 @@ record! {
         pub diversity: Option<f64> = ratio(0.4).optional("none");
         /// Least mean daylight factor.
         pub daylight_factor: Option<f64> = positive(2.0).optional("none").unit("%");
+        /// Largest UGR at any sensor.
+        pub ugr: Option<f64> = positive(19.0).optional("none");
     }
 }
 
@@ -27,8 +29,8 @@ fn ratio(example: f64) -> Number {
 
 impl Require {
     fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
-        let Self { mean, minimum, uniformity, diversity, daylight_factor } = self;
-        if [mean, minimum, uniformity, diversity, daylight_factor].into_iter().all(Option::is_none) {
+        let Self { mean, minimum, uniformity, diversity, daylight_factor, ugr } = self;
+        if [mean, minimum, uniformity, diversity, daylight_factor, ugr].into_iter().all(Option::is_none) {
             let help = "write for instance `require: (mean: 500, uniformity: 0.6)`";
             reader.problem(fields.place, "`require` states no requirement", help);
         }

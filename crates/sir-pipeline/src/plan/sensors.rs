@@ -38,7 +38,9 @@ record! {
         pub error: Option<f64> = positive(0.005).optional("none");
         /// True to state daylight factors, too, see below.
         pub daylight_factor: bool = Flag.or(false);
-        /// Least values that are required, see below.
+        /// True to measure glare: the unified glare rating of an eye at each sensor that looks where the sensor looks, see below.
+        pub ugr: bool = Flag.or(false);
+        /// Limits that are required, see below.
         pub require: Option<Box<Require>> = nested("(mean: 500, uniformity: 0.6)").optional("none");
     }
 }
@@ -143,6 +145,18 @@ impl Sensors {
             let message = "a daylight factor is required, but not measured";
             reader.problem(fields.place_of("require"), message, "add `daylight_factor: true`");
         }
+        if self.require.as_ref().is_some_and(|r| r.ugr.is_some()) && !self.ugr {
+            reader.problem(
+                fields.place_of("require"),
+                "a UGR is required, but not measured",
+                "add `ugr: true`",
+            );
+        }
+        if self.ugr && self.measure != Measure::Planar {
+            let message =
+                "`ugr` needs the irradiance of a plane (that of the pupil), but `measure` is another";
+            reader.problem(fields.place_of("measure"), message, "leave out `measure` or `ugr`");
+        }
         if !matches!(self.at.value, Place::Probes(_)) {
             return;
         }
@@ -162,6 +176,7 @@ impl Sensors {
                 self.daylight_factor,
                 "probes have no daylight factor (it belongs to planes)",
             ),
+            ("ugr", self.ugr, "probes have no UGR (it needs a line of sight)"),
         ] {
             if is_given {
                 let help = format!("leave out `{field}`, or use `Points`, `Grid` or `Plane`");

@@ -39,6 +39,8 @@ pub struct Cells {
     pub rows: usize,
     /// Width and height of the grid \[m\].
     pub size: DVec2,
+    /// Estimate of the area of the room, with its border \[m²\], if the grid covers one.
+    pub room: Option<f64>,
     /// Number of the cell of each sensor. Cells without a sensor are outside of the room.
     pub of: Vec<usize>,
 }
@@ -126,7 +128,7 @@ impl Grid {
                 of.push(cell);
             }
         }
-        Ok(Layout { sensors, cells: Some(Cells { columns, rows, size, of }) })
+        Ok(Layout { sensors, cells: Some(Cells { columns, rows, size, room: None, of }) })
     }
 }
 
@@ -157,13 +159,17 @@ impl Plane {
         let direction = Some(self.direction.unwrap_or(up));
         let grid = Grid { corner, along, across, spacing: self.spacing, direction };
         let mut tracer = model.accel.tracer();
-        let layout = grid.layout(&mut |sensor| is_inside(sensor.position(), up, model, &mut tracer))?;
+        let mut layout = grid.layout(&mut |sensor| is_inside(sensor.position(), up, model, &mut tracer))?;
         if layout.sensors.is_empty() {
             let message =
                 format!("no point of the plane at the height {} m lies inside the room", self.height);
             let help = "choose another `height`, above the lowest point of the scene, or `up`; points from which backs of \
                         surfaces are seen are outside";
             return Err((message, help.into()));
+        }
+        if let Some(cells) = &mut layout.cells {
+            let share = cells.of.len() as f64 / (cells.columns * cells.rows) as f64;
+            cells.room = Some(all.x * all.y * share);
         }
         Ok(layout)
     }

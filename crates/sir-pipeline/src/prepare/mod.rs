@@ -2,6 +2,7 @@
 
 pub(crate) mod cameras;
 mod daylight;
+mod glare;
 pub(crate) mod layout;
 pub(crate) mod light_groups;
 pub(crate) mod prepared;

@@ -16,10 +16,12 @@ use crate::prepare::up::{Up, sky_doubt};
 use crate::text::diagnostic::Diagnostic;
 
 use crate::plan::{Action, Lamp, Pipeline, Stage, Transport};
-use crate::prepare::daylight;
 use crate::prepare::layout::Placed;
 use crate::prepare::light_groups::{LightGroup, dimming, light_groups};
+use crate::prepare::{daylight, glare};
 use crate::progress::Progress;
+use crate::report::luminaires;
+use crate::report::luminaires::LuminaireReport;
 use crate::stopwatch::Stopwatch;
 
 /// Number of lines from lamps that show what is suspicious. They take a few hundredths of a second.
@@ -56,6 +58,8 @@ pub struct Prepared {
     /// Luminance-weighted irradiance of an unobstructed horizontal surface by the sky \[W/m²\], if there are daylight
     /// factors.
     pub outdoor: Option<f64>,
+    /// Luminaires of the pipeline.
+    pub luminaires: Vec<LuminaireReport>,
     /// Time to read the scene \[s\].
     pub load_seconds: f64,
     /// Time to make the patches and the acceleration structure \[s\].
@@ -112,7 +116,8 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
         requested_focus.iter().for_each(|(bounds, _)| builder.split_at(bounds));
     })?;
     let load_seconds = watch.seconds();
-    let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
+    let mut warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
+    warnings.extend(luminaires::warnings(pipeline));
     progress.warn(&warnings);
 
     if !emits(&built.scene) {
@@ -167,6 +172,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 inside,
                 placed,
                 outdoor,
+                luminaires: LuminaireReport::all(pipeline),
                 load_seconds,
                 build_seconds,
             })
@@ -225,7 +231,11 @@ fn place(
     let (mut all, mut problems) = (BTreeMap::new(), Vec::new());
     for (number, stage) in pipeline.stages.iter().enumerate() {
         let Action::Sensors(sensors) = &stage.action else { continue };
-        match Placed::new(sensors, model, up, focus) {
+        let checked = |placed: Placed| match sensors.ugr {
+            true => glare::check(&placed, &model.scene, up).map(|()| placed),
+            false => Ok(placed),
+        };
+        match Placed::new(sensors, model, up, focus).and_then(checked) {
             Ok(placed) => drop(all.insert(number, placed)),
             Err((message, help)) => {
                 problems.push(Diagnostic { span: sensors.at.span.0.clone(), message, help });

@@ -10,18 +10,22 @@ use crate::units::Units;
 /// cases.
 const UNDECIDED: f64 = 2.0;
 
+/// Name of the quantity that must not be larger than required.
+const UGR: &str = "UGR";
+
 /// A requirement, with what was measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RequirementReport {
-    /// Name of the quantity: `mean`, `minimum`, `uniformity`, `diversity` or `daylight factor`.
+    /// Name of the quantity: `mean`, `minimum`, `uniformity`, `diversity`, `daylight factor` or `UGR`.
     pub quantity: String,
-    /// Least value required, in W/m² unless it is a ratio; in per cent for the daylight factor.
+    /// Least value required, in W/m² unless it is a ratio; in per cent for the daylight factor. For `UGR`, the largest.
     pub required: f64,
     /// Measured value.
     pub measured: f64,
     /// Standard error of the measured value.
     pub error: f64,
-    /// Measured minus required value, in standard errors; `None` if the error is zero.
+    /// Distance of the measured value from the required one, on the good side, in standard errors; `None` if the error is
+    /// zero.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
     /// Whether the requirement is met.
@@ -32,37 +36,39 @@ pub struct RequirementReport {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// The measured value is above the required one, by at least two standard errors.
+    /// The measured value is on the good side of the required one, by at least two standard errors.
     Passes,
-    /// It is below, by at least two standard errors.
+    /// It is on the other side, by at least two standard errors.
     Fails,
     /// The two differ by less than two standard errors.
     Undecided,
 }
 
 impl RequirementReport {
-    /// Compares a measured number with the least one required.
+    /// Compares a measured number with the least one required, or the largest UGR.
     pub(crate) fn new(quantity: &str, required: f64, measured: Uncertain) -> Self {
         let Uncertain { value, error } = measured;
-        let margin = (error > 0.0).then(|| (value - required) / error);
+        let excess = if quantity == UGR { required - value } else { value - required };
+        let margin = (error > 0.0).then(|| excess / error);
         let verdict = match margin {
             Some(margin) if margin.abs() < UNDECIDED => Verdict::Undecided,
-            _ if value >= required => Verdict::Passes,
+            _ if excess >= 0.0 => Verdict::Passes,
             _ => Verdict::Fails,
         };
         Self { quantity: quantity.into(), required, measured: value, error, margin, verdict }
     }
 
     /// Compares all quantities with what is required of them. `measured` are mean, minimum, uniformity,
-    /// diversity and mean daylight factor.
-    pub(crate) fn all(require: &Require, measured: [Uncertain; 5]) -> Vec<Self> {
-        let Require { mean, minimum, uniformity, diversity, daylight_factor } = *require;
+    /// diversity, mean daylight factor and UGR.
+    pub(crate) fn all(require: &Require, measured: [Uncertain; 6]) -> Vec<Self> {
+        let Require { mean, minimum, uniformity, diversity, daylight_factor, ugr } = *require;
         let required = [
             ("mean", mean),
             ("minimum", minimum),
             ("uniformity", uniformity),
             ("diversity", diversity),
             ("daylight factor", daylight_factor),
+            (UGR, ugr),
         ];
         let pairs = required.into_iter().zip(measured);
         pairs
@@ -81,8 +87,9 @@ impl RequirementReport {
         };
         let measured = Uncertain { value: self.measured, error: self.error };
         format!(
-            "{} {measured}{unit}, at least {}: {}",
+            "{} {measured}{unit}, at {} {}: {}",
             self.quantity,
+            if self.quantity == UGR { "most" } else { "least" },
             significant(self.required),
             self.verdict_in_words()
         )
@@ -123,6 +130,17 @@ mod tests {
     }
 
     #[test]
+    fn glare_must_not_be_large() {
+        for (value, words) in [
+            (18.0, "UGR 18.00 ± 0.10, at most 19: passes by 10.0 standard errors"),
+            (20.0, "UGR 20.00 ± 0.10, at most 19: fails by 10.0 standard errors"),
+        ] {
+            let report = RequirementReport::new("UGR", 19.0, Uncertain { value, error: 0.1 });
+            assert_eq!(report.in_short(Units::Photometric), words);
+        }
+    }
+
+    #[test]
     fn ratios_have_no_unit() {
         let require = Require {
             mean: None,
@@ -130,9 +148,10 @@ mod tests {
             uniformity: Some(0.6),
             diversity: None,
             daylight_factor: None,
+            ugr: None,
         };
         let measured = Uncertain { value: 0.65, error: 0.01 };
-        let [report] = &RequirementReport::all(&require, [measured; 5])[..] else { panic!() };
+        let [report] = &RequirementReport::all(&require, [measured; 6])[..] else { panic!() };
         let words = "uniformity 0.650 ± 0.010, at least 0.6: passes by 5.0 standard errors";
         assert_eq!(report.in_short(Units::Photometric), words);
     }

@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::report::luminaires::LuminaireReport;
 use crate::report::sensors::SensorsReport;
 use crate::units::Units;
 
@@ -78,6 +79,9 @@ pub struct SceneReport {
     /// Reason for the up direction.
     #[serde(default)]
     pub up_from: String,
+    /// Luminaires of the pipeline.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub luminaires: Vec<LuminaireReport>,
     /// Warnings of the reader about what it changed or left out.
     pub warnings: Vec<String>,
 }

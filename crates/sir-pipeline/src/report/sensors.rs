@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use sir_radiosity::{Measurement, SpreadOfMean};
 
 use crate::plan::{Require, Sensors};
+use crate::report::glare::GlareReport;
 use crate::report::requirements::RequirementReport;
 use crate::report::uncertain::Uncertain;
 use crate::units::Units;
@@ -54,6 +55,12 @@ pub struct SensorsReport {
     /// Daylight factors, if the sensors have them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub daylight: Option<DaylightReport>,
+    /// Glare, if it was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub glare: Option<GlareReport>,
+    /// Electric power of all luminaires over the area of the room \[W/m²\], if both are known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub power_density: Option<f64>,
     /// Requirements, with what was measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<RequirementReport>,
@@ -80,17 +87,18 @@ pub struct DaylightReport {
 
 impl SensorsReport {
     /// Creates the report of a stage `Sensors`. `spread` has the errors of the mean, if they are known from the spread of
-    /// repeats, and `outdoor` the irradiance to which daylight factors refer \[W/m²\].
+    /// repeats, `outdoor` the irradiance to which daylight factors refer \[W/m²\], and `ratings` the glare, if it was measured.
     pub(crate) fn of(
         sensors: &Sensors,
         measured: &[Measurement],
         spread: Option<&SpreadOfMean>,
         outdoor: Option<f64>,
+        ratings: Option<&[Option<Uncertain>]>,
     ) -> Self {
         let kind = sensors.measure.adjective().map(String::from);
         let report = Self { kind, ..Self::new(&sensors.name, measured, spread) };
         let daylight = outdoor.filter(|_| sensors.daylight_factor).map(|outdoor| report.daylight(outdoor));
-        let report = Self { daylight, ..report };
+        let report = Self { daylight, glare: ratings.map(GlareReport::of), ..report };
         let requirements = sensors.require.as_ref().map(|require| report.compare(require));
         Self { requirements: requirements.unwrap_or_default(), ..report }
     }
@@ -138,6 +146,8 @@ impl SensorsReport {
             diversity: diversity.value,
             diversity_error: diversity.error,
             daylight: None,
+            glare: None,
+            power_density: None,
             requirements: Vec::new(),
         }
     }
@@ -162,6 +172,7 @@ impl SensorsReport {
             (self.uniformity, self.uniformity_error),
             (self.diversity, self.diversity_error),
             self.daylight.map_or((0.0, 0.0), |daylight| (daylight.mean, daylight.mean_error)),
+            self.glare.map_or((0.0, 0.0), |glare| (glare.worst().value, glare.worst().error)),
         ];
         RequirementReport::all(require, measured.map(|(value, error)| Uncertain { value, error }))
     }
@@ -195,6 +206,12 @@ impl SensorsReport {
         }
         if let Some(daylight) = self.daylight {
             text += &format!(", daylight factor: {}", daylight.in_short());
+        }
+        if let Some(glare) = self.glare {
+            text += &format!(", {}", glare.in_short());
+        }
+        if let Some(density) = self.power_density {
+            text += &format!(", {density:.1} W/m² of electric power");
         }
         text
     }

@@ -331,6 +331,7 @@ pub(super) fn scene_report(prepared: &Prepared, path: &Path) -> SceneReport {
         power: prepared.sources.iter().map(|s| s.power).sum::<Rgb>().to_array(),
         up: prepared.up.to_array(),
         up_from: prepared.up_from.clone(),
+        luminaires: prepared.luminaires.clone(),
         warnings: prepared.warnings.clone(),
     }
 }

@@ -12,7 +12,6 @@ use crate::error::Error;
 use crate::plan::Action;
 use crate::report::groups::{errors_of_sum, sum_of_stages};
 use crate::report::result::{GroupReport, LightReport, Time};
-use crate::report::sensors::SensorsReport;
 use crate::run::computed::{Computed, PartErrors};
 use crate::run::execute::Run;
 use crate::run::group_file::{GroupLight, GroupReader, Measurements};
@@ -41,8 +40,7 @@ impl Run<'_> {
                 Action::Sensors(sensors) => {
                     if let Some(Measurements { all, spread }) = sum.sensors(number)? {
                         let outdoor = prepared.outdoor.map(|outdoor| outdoor * sum.dimming_of_sky());
-                        let summary = SensorsReport::of(sensors, &all, spread.as_ref(), outdoor);
-                        self.write_sensors(number, sensors, &all, &summary)?;
+                        let summary = self.write_sensors(number, sensors, &all, spread.as_ref(), outdoor)?;
                         report.sensors = Some(summary);
                     } else if let Some(Measurements { all, spread }) = sum.probes(number)? {
                         let error = spread.map(|spread| spread.error);

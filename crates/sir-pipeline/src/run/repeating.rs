@@ -20,7 +20,6 @@ use crate::progress::{PAUSE, StageProgress};
 use crate::ranks::agree;
 use crate::report::page::{facts, title};
 use crate::report::result::{StageReport, Time};
-use crate::report::sensors::SensorsReport;
 use crate::run::computed::Computed;
 use crate::run::execute::Run;
 use crate::run::lighting::Lighting;
@@ -222,14 +221,8 @@ impl<'a> Run<'a> {
                         let summary = match &step.measured {
                             Some(Measured::Sensors(measured)) => {
                                 let (means, spread) = (measured.means(), measured.spread_of_mean());
-                                let summary = SensorsReport::of(
-                                    sensors,
-                                    &means,
-                                    spread.as_ref(),
-                                    self.prepared.outdoor,
-                                );
-                                self.write_sensors(number, sensors, &means, &summary)?;
-                                summary
+                                let outdoor = self.prepared.outdoor;
+                                self.write_sensors(number, sensors, &means, spread.as_ref(), outdoor)?
                             }
                             Some(Measured::Probes(measured)) => self.write_probes(
                                 number,

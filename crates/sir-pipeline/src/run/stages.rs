@@ -9,6 +9,8 @@ use crate::plan::{Action, Output, Sensors};
 use crate::prepare::layout::Placed;
 use crate::prepare::prepared::Prepared;
 use crate::ranks::agree;
+use crate::report::glare::ratings;
+use crate::report::luminaires::installed_watts;
 use crate::report::page::{of_probes, of_sensors};
 use crate::report::result::{
     BalanceReport, ErrorsFrom, LightReport, LinesReport, OutputReport, StageReport, Time,
@@ -18,6 +20,7 @@ use crate::run::computed::Computed;
 use crate::run::execute::Run;
 use crate::run::save::save;
 use crate::run::saver::Saver;
+use crate::run::sensor_files::SensorValues;
 use crate::run::{probe_files, sensor_files};
 
 impl Run<'_> {
@@ -80,25 +83,36 @@ impl Run<'_> {
         executor
     }
 
-    /// Writes the files of a stage `Sensors` on rank 0.
+    /// Writes the files of a stage `Sensors` on rank 0, and returns the summary. `spread` has the errors of the mean, if the
+    /// spread of repeats tells them, and `outdoor` the irradiance to which daylight factors refer \[W/m²\].
     pub(crate) fn write_sensors(
         &mut self,
         number: usize,
         sensors: &Sensors,
         measured: &[Measurement],
-        summary: &SensorsReport,
-    ) -> Result<(), Error> {
-        let Some(Placed::Sensors(layout)) = self.prepared.placed.get(&number) else { return Ok(()) };
+        spread: Option<&SpreadOfMean>,
+        outdoor: Option<f64>,
+    ) -> Result<SensorsReport, Error> {
+        let Some(Placed::Sensors(layout)) = self.prepared.placed.get(&number) else {
+            return Ok(SensorsReport::of(sensors, measured, spread, outdoor, None));
+        };
+        let ratings =
+            sensors.ugr.then(|| ratings(&self.prepared.model, self.prepared.up, &layout.sensors, measured));
+        let mut summary = SensorsReport::of(sensors, measured, spread, outdoor, ratings.as_deref());
+        let room = layout.cells.as_ref().and_then(|cells| cells.room);
+        let watts = installed_watts(&self.head.report.scene.luminaires);
+        summary.power_density = watts.zip(room).map(|(watts, room)| watts / room);
         if self.pipeline.has_page() {
-            self.pages.sensors.push(of_sensors(layout, measured, summary, self.pipeline.units));
+            self.pages.sensors.push(of_sensors(layout, measured, &summary, self.pipeline.units));
         }
         let written = if self.comm.is_first() {
-            sensor_files::write(sensors, layout, measured, summary, self.pipeline.units, &self.directory)
+            let values = SensorValues { sensors, layout, measured, ratings: ratings.as_deref() };
+            sensor_files::write(&values, &summary, self.pipeline.units, &self.directory)
         } else {
             Ok(Vec::new())
         };
         self.head.report.outputs.extend(agree(self.comm, written)?);
-        Ok(())
+        Ok(summary)
     }
 
     /// Writes the files of the probes of a stage `Sensors` on rank 0, and returns their summary. `error` is the error
@@ -112,7 +126,7 @@ impl Run<'_> {
     ) -> Result<SensorsReport, Error> {
         let means: Vec<Measurement> = measured.iter().map(ProbeMeasurement::mean).collect();
         let spread = error.map(|error| SpreadOfMean { error, ..SpreadOfMean::default() });
-        let mut summary = SensorsReport::of(sensors, &means, spread.as_ref(), None);
+        let mut summary = SensorsReport::of(sensors, &means, spread.as_ref(), None, None);
         let Some(Placed::Probes(grid)) = self.prepared.placed.get(&number) else { return Ok(summary) };
         summary.invalid = Some(grid.len() - grid.valid.len());
         if self.pipeline.has_page() {

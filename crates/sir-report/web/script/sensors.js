@@ -31,13 +31,13 @@ function writeSensor(sensor, facts) {
 
 /** Makes a table of what is required and what was measured. */
 function requirementTable(requirements, unitE, name) {
-  const names = { mean: 'Mean', minimum: 'Minimum', uniformity: 'Uniformity U₀', diversity: 'Diversity U_d', 'daylight factor': 'Mean daylight factor (%)' };
+  const names = { mean: 'Mean', minimum: 'Minimum', uniformity: 'Uniformity U₀', diversity: 'Diversity U_d', 'daylight factor': 'Mean daylight factor (%)', UGR: 'Largest UGR (at most)' };
   const hasUnit = (quantity) => quantity === 'mean' || quantity === 'minimum';
-  const head = ['Quantity', 'At least', 'Measured', '± σ', 'Verdict'].map((label, k) => element('th', { scope: 'col', class: k === 0 || k === 4 ? 'text' : '' }, label));
+  const head = ['Quantity', 'Limit', 'Measured', '± σ', 'Verdict'].map((label, k) => element('th', { scope: 'col', class: k === 0 || k === 4 ? 'text' : '' }, label));
   const rows = requirements.map(({ quantity, required, measured, error, margin, verdict }) => {
     const label = `${names[quantity] ?? cut(quantity, 60)}${hasUnit(quantity) ? ` (${unitE})` : ''}`;
     const by = Number.isFinite(margin) ? `${verdict === 'undecided' ? ', ' : ' by '}${Math.abs(margin).toFixed(1)} standard errors` : '';
-    const side = verdict !== 'undecided' ? '' : margin < 0 ? ' below' : ' above';
+    const side = verdict !== 'undecided' ? '' : measured < required ? ' below' : ' above';
     return element('tr', {}, element('td', { class: 'text' }, label), ...[digits(required, 4), digits(measured, 4), digits(error, 2)].map((text) => element('td', {}, text)), element('td', { class: verdict === 'passes' ? 'text' : 'text doubtful' }, `${cut(verdict, 20)}${by}${side}`));
   });
   return element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': `Requirements on ${cut(name)}` },
