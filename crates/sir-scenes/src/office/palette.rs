@@ -75,9 +75,9 @@ impl Palette {
             felt: paint("felt", 0.22, 0.33, 0.31),
             pot: paint("pot", 0.55, 0.53, 0.50),
             leaf: paint("leaf", 0.10, 0.26, 0.07),
-            facade: paint("facade", 0.30, 0.22, 0.17),
+            facade: paint("facade", 0.26, 0.21, 0.17),
             facade_glass: paint("facade glass", 0.09, 0.10, 0.11),
-            facade_blind: paint("facade blind", 0.42, 0.41, 0.39),
+            facade_blind: paint("facade blind", 0.32, 0.31, 0.30),
             rug: paint("rug", 0.42, 0.40, 0.36),
             ground: paint("ground", 0.20, 0.20, 0.19),
             binders: BINDERS

@@ -19,6 +19,8 @@ const ENDS: [f64; 2] = [-8.0, 20.0];
 const ROOF: f64 = 3.5;
 /// Distance of the facade on the other side of the street \[m\].
 const STREET: f64 = 18.0;
+/// Depth of the windows of that facade \[m\].
+const REVEAL: f64 = 0.3;
 /// Distance of the window frames from the inner surface of the wall \[m\].
 const FRAME: f64 = 0.24;
 
@@ -126,14 +128,16 @@ pub(super) fn street(palette: &Palette) -> Model {
     let floors = lines(GROUND + GAP, GROUND + 8.4, 2.8);
     let mut y: Vec<f64> = floors.iter().flat_map(|floor| [*floor, floor + 0.9, floor + 2.4]).collect();
     y.truncate(3 * (floors.len() - 1) + 1);
-    let z = [-STREET - 12.0, -STREET];
-    m.grid_block([&x, &y, &z], |normal, p| {
+    let z = [-STREET - 12.0, -STREET - REVEAL, -STREET];
+    let is_window = |p: DVec3| {
         let above_floor = (p.y - GROUND).rem_euclid(2.8);
-        let across = (p.x + 30.0).rem_euclid(2.4);
-        let is_window = normal.z > 0.5 && above_floor > 0.9 && above_floor < 2.4 && across > 1.2;
+        above_floor > 0.9 && above_floor < 2.4 && (p.x + 30.0).rem_euclid(2.4) > 1.2
+    };
+    let filled = |p: DVec3| !(is_window(p) && p.z > -STREET - REVEAL);
+    m.cells([&x, &y, &z], filled, |normal, p| {
         // Blinds are down in some of the windows.
         let number = ((p.x + 30.0) / 2.4).floor() + 7.0 * ((p.y - GROUND) / 2.8).floor();
-        match is_window {
+        match normal.z > 0.5 && is_window(p) {
             true if (3.0 * number).rem_euclid(7.0) < 2.0 => palette.facade_blind,
             true => palette.facade_glass,
             false => palette.facade,
