@@ -28,10 +28,11 @@ const NEAR: f64 = 0.01;
 /// Writes a scene to a glTF file: as text with embedded geometry if `path` ends in `.gltf`, in binary form if it ends
 /// in `.glb`.
 ///
-/// Positions, reflectances and emissions become 32-bit floats. A material's exitance `M` is stored as the radiance
-/// `M / π` with the extension `KHR_materials_emissive_strength`. Materials without triangles are stored too, so that
-/// material indices do not change. Partial opacity becomes `alphaMode: BLEND`; textures are left out. The vertical field of view of a camera must be below π. The file cannot distinguish
-/// a surface that reflects on both sides but emits on one from a surface that emits on both.
+/// Positions, reflectances and emissions become 32-bit floats. A material's exitance `M` is stored as the radiance `M /
+/// π` with the extension `KHR_materials_emissive_strength`. Materials without triangles are stored too, so that
+/// material indices do not change. Partial opacity becomes `alphaMode: BLEND`; textures are left out. The vertical
+/// field of view of a camera must be below π. The file cannot distinguish a surface that reflects on both sides but
+/// emits on one from a surface that emits on both.
 ///
 /// # Errors
 ///
