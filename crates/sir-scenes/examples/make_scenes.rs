@@ -16,5 +16,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         sir_scenes::write_gltf(&stored.scene, &path)?;
         eprintln!("{}: {} triangles", path.display(), stored.scene.triangles().len());
     }
+    for stored in sir_scenes::stored_texts() {
+        let path = folder.join(stored.path);
+        fs::write(&path, stored.text)?;
+        eprintln!("{}", path.display());
+    }
     Ok(())
 }

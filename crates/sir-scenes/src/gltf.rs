@@ -28,10 +28,11 @@ const NEAR: f64 = 0.01;
 /// Writes a scene to a glTF file: as text with embedded geometry if `path` ends in `.gltf`, in binary form if it ends
 /// in `.glb`.
 ///
-/// Positions, reflectances and emissions become 32-bit floats. A material's exitance `M` is stored as the radiance
-/// `M / π` with the extension `KHR_materials_emissive_strength`. Materials without triangles are stored too, so that
-/// material indices do not change. The vertical field of view of a camera must be below π. The file cannot distinguish
-/// a surface that reflects on both sides but emits on one from a surface that emits on both.
+/// Positions, reflectances and emissions become 32-bit floats. A material's exitance `M` is stored as the radiance `M /
+/// π` with the extension `KHR_materials_emissive_strength`. Materials without triangles are stored too, so that
+/// material indices do not change. Partial opacity becomes `alphaMode: BLEND`; textures are left out. The vertical
+/// field of view of a camera must be below π. The file cannot distinguish a surface that reflects on both sides but
+/// emits on one from a surface that emits on both.
 ///
 /// # Errors
 ///
@@ -197,7 +198,8 @@ fn strength(material: &Material) -> f32 {
 }
 
 fn material(material: &Material) -> Value {
-    let color = material.reflectance.as_vec3().extend(1.0).to_array().map(short);
+    let alpha = material.opacity.factor as f32;
+    let color = material.reflectance.as_vec3().extend(alpha).to_array().map(short);
     let mut value = json!({
         "name": material.name,
         "pbrMetallicRoughness": {
@@ -207,6 +209,9 @@ fn material(material: &Material) -> Value {
         },
         "doubleSided": material.sides == Sides::Both,
     });
+    if alpha < 1.0 {
+        value["alphaMode"] = json!("BLEND");
+    }
     if material.exitance != DVec3::ZERO {
         let strength = strength(material);
         let radiance = material.exitance / std::f64::consts::PI;

@@ -9,9 +9,10 @@
 //! * [`airplane_cabin`] has many small objects, and almost all of its lamps are hidden. It is made for pictures and for
 //!   runs on many processors.
 //! * [`museum_stairs`] is a large hall full of sculpture, also made for pictures.
+//! * [`office`] is an open-plan office for the work of a lighting designer, with photometric files of its luminaires.
 //!
 //! All lengths are in meters, and `y` points up. All scenes are closed, so that no light escapes, except the Cornell
-//! box, which is open at the front.
+//! box, which is open at the front, and the office, which has windows.
 
 mod airplane_cabin;
 mod cornell_box;
@@ -20,6 +21,7 @@ mod exact;
 mod gltf;
 mod model;
 mod museum_stairs;
+mod office;
 mod random;
 mod reading_room;
 mod spectrum;
@@ -31,5 +33,9 @@ pub use error::Error;
 pub use exact::{SphereShell, concentric_spheres, concentric_spheres_answer, furnace, furnace_answer};
 pub use gltf::write_gltf;
 pub use museum_stairs::museum_stairs;
+pub use office::{DOWNLIGHT_FLUX, RECESSED_FLUX, TASK_FLUX, office};
 pub use reading_room::reading_room;
-pub use stored::{FURNACE_EXITANCE, FURNACE_REFLECTANCE, INNER_SPHERE, OUTER_SPHERE, Stored, stored};
+pub use stored::{
+    FURNACE_EXITANCE, FURNACE_REFLECTANCE, INNER_SPHERE, OUTER_SPHERE, Stored, StoredText, stored,
+    stored_texts,
+};

@@ -3,7 +3,8 @@
 use sir_geom::{Rgb, Scene, SceneError};
 
 use crate::exact::{SphereShell, concentric_spheres, furnace};
-use crate::{airplane_cabin, cornell_box, museum_stairs, reading_room};
+use crate::office::{downlight_ies, recessed_ldt, task_ies};
+use crate::{airplane_cabin, cornell_box, museum_stairs, office, reading_room};
 
 /// Reflectance of the stored furnace, whose radiosity is 2, 5 and 10 W/m².
 pub const FURNACE_REFLECTANCE: Rgb = Rgb::new(0.5, 0.8, 0.9);
@@ -44,5 +45,25 @@ pub fn stored() -> Result<Vec<Stored>, SceneError> {
         Stored { path: "reading-room/reading-room.glb", scene: reading_room()?.scene },
         Stored { path: "airplane-cabin/airplane-cabin.glb", scene: airplane_cabin()?.scene },
         Stored { path: "museum-stairs/museum-stairs.glb", scene: museum_stairs()?.scene },
+        Stored { path: "office/office.glb", scene: office()?.scene },
     ])
+}
+
+/// Text file that belongs to a stored scene.
+#[derive(Clone, Debug)]
+pub struct StoredText {
+    /// Path relative to the folder `scenes`, with `/` as separator.
+    pub path: &'static str,
+    /// Content.
+    pub text: String,
+}
+
+/// Returns all stored text files: the photometric files of the office.
+#[must_use]
+pub fn stored_texts() -> Vec<StoredText> {
+    vec![
+        StoredText { path: "office/recessed.ldt", text: recessed_ldt() },
+        StoredText { path: "office/downlight.ies", text: downlight_ies() },
+        StoredText { path: "office/task.ies", text: task_ies() },
+    ]
 }

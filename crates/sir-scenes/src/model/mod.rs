@@ -9,6 +9,7 @@
 //! * Positions are multiples of 2⁻¹⁶ m (see [`Model::store`]).
 
 mod carve;
+mod cells;
 pub(crate) mod furnish;
 mod lathe;
 mod loft;
