@@ -488,7 +488,7 @@ mod tests {
             let mut b = SceneBuilder::new();
             let m = b.add_material(Material::diffuse("m", Rgb::splat(0.5)));
             corner_triangle(&mut b, 1.0, m);
-            b.add_light(Light { name: "lamp".into(), kind });
+            b.add_light(Light { name: "lamp".into(), kind: kind.clone() });
             match (b.build(), bad) {
                 (Ok(built), None) => assert_eq!(built.scene.lights()[0].kind, kind),
                 (Err(SceneError::BadLight { what, .. }), Some(bad)) => assert_eq!(what, bad),

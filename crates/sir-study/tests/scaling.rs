@@ -65,6 +65,7 @@ fn report(workers: Workers) -> Report {
         power: [3.0; 3],
         up: [0.0, 1.0, 0.0],
         up_from: String::new(),
+        luminaires: Vec::new(),
         warnings: Vec::new(),
     };
     Report {

@@ -189,7 +189,8 @@ mod tests {
             (sun(0.5, -0.4, -0.4), None),
             (sun(1.0, 0.0, 0.0), None),
         ] {
-            let found = clues(DVec3::ZERO, |b| b.add_light(Light { name: String::new(), kind }));
+            let found =
+                clues(DVec3::ZERO, |b| b.add_light(Light { name: String::new(), kind: kind.clone() }));
             assert_eq!(found.first().copied(), expected, "{kind:?}");
         }
     }

@@ -153,6 +153,7 @@ mod tests {
             power: [1.0; 3],
             up: [0.0, 1.0, 0.0],
             up_from: String::new(),
+            luminaires: Vec::new(),
             warnings: Vec::new(),
         };
         let mut report = Report {
