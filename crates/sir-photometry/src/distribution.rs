@@ -1,9 +1,11 @@
 //! Luminous intensity as a function of direction, tabulated over angles.
 
 use std::f64::consts::{PI, TAU};
+use std::fmt;
 
 use glam::{DMat3, DVec3};
 
+use crate::bits::hash_of;
 use crate::error::TableError;
 
 /// Luminous intensity as a function of direction: a table over the angles of a spherical coordinate system, between
@@ -13,7 +15,10 @@ use crate::error::TableError;
 ///
 /// Planes of constant azimuth share the axis of the coordinate system. Intensities are in candela, if the flux is to be in
 /// lumens; any other unit gives the flux in that unit times a steradian.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Its `Debug` text is short: the size of the table, the flux, and a hash of all bits, so that different tables have
+/// different texts.
+#[derive(Clone, PartialEq)]
 pub struct IntensityDistribution {
     /// Directions of the azimuths 0 and 90°, and of the polar angle 0, in the frame of the luminaire.
     axes: DMat3,
@@ -27,6 +32,19 @@ pub struct IntensityDistribution {
     sums: Vec<f64>,
     /// Flux between the first plane and each plane \[lm\].
     fluxes: Vec<f64>,
+    /// Hash of all of the above.
+    hash: u128,
+}
+
+impl fmt::Debug for IntensityDistribution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("IntensityDistribution")
+            .field("planes", &self.azimuths.len())
+            .field("polars", &self.polars.len())
+            .field("flux", &self.flux())
+            .field("hash", &format_args!("{:032x}", self.hash))
+            .finish()
+    }
 }
 
 /// Spherical coordinate system of photometry.
@@ -115,7 +133,17 @@ impl IntensityDistribution {
         if flux <= 0.0 {
             return Err(TableError::Dark);
         }
-        Ok(Self { axes: coordinates.axes(), azimuths, polars, values, sums, fluxes })
+        let table = Self { axes: coordinates.axes(), azimuths, polars, values, sums, fluxes, hash: 0 };
+        Ok(table.hashed())
+    }
+
+    /// Returns the distribution with the hash of its table.
+    fn hashed(mut self) -> Self {
+        let Self { azimuths, polars, values, .. } = &self;
+        let sizes = [azimuths.len() as f64, polars.len() as f64];
+        let table = azimuths.iter().chain(polars).chain(values).copied();
+        self.hash = hash_of(self.axes.to_cols_array().into_iter().chain(sizes).chain(table));
+        self
     }
 
     /// Returns the distribution with all intensities multiplied by a factor, which must be positive.
@@ -124,7 +152,7 @@ impl IntensityDistribution {
         for numbers in [&mut self.values, &mut self.sums, &mut self.fluxes] {
             numbers.iter_mut().for_each(|number| *number *= factor);
         }
-        self
+        self.hashed()
     }
 
     /// Returns the flux \[lm\]: the integral of the intensity over all directions.

@@ -1,9 +1,11 @@
 //! Light of the faces of a luminous opening.
 
 use std::f64::consts::PI;
+use std::fmt;
 
 use glam::DVec3;
 
+use crate::bits::hash_of;
 use crate::distribution::IntensityDistribution;
 use crate::faces::OpeningFace;
 use crate::opening::Opening;
@@ -13,13 +15,30 @@ use crate::opening::Opening;
 ///
 /// The radiance in the direction `ω` is `L(ω) = I(ω) / A(ω)`, with the intensity `I` and the projected area `A` of the
 /// opening. A photometric file says no more about where on the opening the light comes from.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Its `Debug` text is short: the distribution, the number of faces, and a hash of their corners.
+#[derive(Clone, PartialEq)]
 pub struct OpeningLight {
     distribution: IntensityDistribution,
     /// Faces that emit.
     faces: Vec<OpeningFace>,
     /// Share of the flux that comes from each face; they add up to 1.
     shares: Vec<f64>,
+}
+
+impl fmt::Debug for OpeningLight {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The shares follow from the distribution and the faces.
+        let numbers = self.faces.iter().flat_map(|face| {
+            let corners = face.corners.iter().flat_map(|corner| corner.to_array());
+            std::iter::once(face.corners.len() as f64).chain(corners)
+        });
+        f.debug_struct("OpeningLight")
+            .field("distribution", &self.distribution)
+            .field("faces", &self.faces.len())
+            .field("hash", &format_args!("{:032x}", hash_of(numbers)))
+            .finish()
+    }
 }
 
 /// Smallest share of the flux for which a face emits.

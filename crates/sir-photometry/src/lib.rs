@@ -81,6 +81,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod bits;
 mod distribution;
 mod emission;
 mod error;
