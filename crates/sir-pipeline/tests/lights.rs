@@ -22,7 +22,9 @@ fn with<T>(text: &str, f: impl FnOnce(Result<Pipeline, String>) -> T) -> T {
 
 fn lamps(lamps: &str) -> Vec<SceneLight> {
     with(&text(lamps), |pipeline| match &pipeline.unwrap().stages[1].action {
-        Action::Light(light) => light.lamps.iter().map(|lamp| lamp.to_scene().unwrap()).collect(),
+        Action::Light(light) => {
+            light.lamps.iter().flat_map(|lamp| lamp.to_scene(DVec3::Y).unwrap()).collect()
+        }
         other => unreachable!("{other:?}"),
     })
 }
