@@ -229,34 +229,47 @@ impl IntensityDistribution {
     }
 
     /// Returns the integral over all directions of the intensity times a function of the direction, by a midpoint rule over
-    /// `steps²` parts of each cell of the table.
+    /// parts of the cells of the table, of at most `step` degrees in both angles.
     #[must_use]
-    pub fn integrate(&self, steps: u32, mut of: impl FnMut(DVec3) -> f64) -> f64 {
-        let parts = f64::from(steps);
-        let n = self.polars.len();
+    pub fn integrate(&self, step: f64, mut of: impl FnMut(DVec3) -> f64) -> f64 {
         let mut sum = 0.0;
+        self.for_each_part(step, |direction, flux| sum += flux * of(direction));
+        sum
+    }
+
+    /// Calls a function with the middle and the flux \[lm\] of each part of the cells that are not dark.
+    pub(crate) fn for_each_part(&self, step: f64, mut visit: impl FnMut(DVec3, f64)) {
+        let n = self.polars.len();
+        let largest = step.to_radians();
+        // Middles and widths of the parts of the range between two angles.
+        let parts = |angles: &[f64]| {
+            let (start, width) = (angles[0], angles[1] - angles[0]);
+            let count = ((width / largest - ROUNDING).ceil() as u32).max(1);
+            let part = width / f64::from(count);
+            (0..count).map(move |i| {
+                (start + (f64::from(i) + 0.5) * part, (f64::from(i) + 0.5) / f64::from(count), part)
+            })
+        };
         for (plane, azimuths) in self.azimuths.windows(2).enumerate() {
             for (i, polars) in self.polars.windows(2).enumerate() {
                 let [near, far] = [plane, plane + 1].map(|plane| &self.values[plane * n + i..][..2]);
                 if near.iter().chain(far).all(|&value| value == 0.0) {
                     continue;
                 }
-                for k in 0..steps * steps {
-                    let [s, t] = [k / steps, k % steps].map(|index| (f64::from(index) + 0.5) / parts);
-                    let azimuth = azimuths[0] + s * (azimuths[1] - azimuths[0]);
-                    let [from, to] = [k % steps, k % steps + 1]
-                        .map(|i| polars[0] + f64::from(i) / parts * (polars[1] - polars[0]));
-                    let [near, far] = [near, far].map(|pair| pair[0] + t * (pair[1] - pair[0]));
-                    let value = near + s * (far - near);
-                    let ((sin_a, cos_a), (sin, cos)) =
-                        (libm::sincos(azimuth), libm::sincos(from.midpoint(to)));
-                    let direction = self.axes * DVec3::new(sin * cos_a, sin * sin_a, cos);
-                    let solid_angle = (azimuths[1] - azimuths[0]) / parts * (libm::cos(from) - libm::cos(to));
-                    sum += value * solid_angle * of(direction);
+                for (azimuth, across, turn) in parts(azimuths) {
+                    let (sin_azimuth, cos_azimuth) = libm::sincos(azimuth);
+                    for (polar, along, height) in parts(polars) {
+                        let [near, far] = [near, far].map(|pair| pair[0] + along * (pair[1] - pair[0]));
+                        let value = near + across * (far - near);
+                        let (sin, cos) = libm::sincos(polar);
+                        // cos a − cos b = 2 sin((a + b)/2) sin((b − a)/2)
+                        let solid_angle = turn * 2.0 * sin * libm::sin(0.5 * height);
+                        let direction = self.axes * DVec3::new(sin * cos_azimuth, sin * sin_azimuth, cos);
+                        visit(direction, value * solid_angle);
+                    }
                 }
             }
         }
-        sum
     }
 }
 

@@ -44,8 +44,9 @@ impl fmt::Debug for OpeningLight {
 /// Smallest share of the flux for which a face emits.
 const SMALLEST_SHARE: f64 = 1e-4;
 
-/// Number of parts of each cell of the table, per angle, for the integrals over directions.
-const STEPS: u32 = 4;
+/// Largest part of a cell of the table \[°\] for the integrals over directions. Cells may be wide, such as the only one of a
+/// lamp without dependence on the azimuth, but the projected area of a face changes within each quarter of a turn.
+const STEP: f64 = 1.0;
 
 /// Largest number of directions that are drawn for a line.
 const MAX_TRIES: u32 = 1_000_000;
@@ -56,9 +57,16 @@ impl OpeningLight {
     #[must_use]
     pub fn new(distribution: IntensityDistribution, opening: &Opening) -> Option<Self> {
         let faces = opening.faces();
-        let integrals: Vec<f64> = (0..faces.len())
-            .map(|face| distribution.integrate(STEPS, |direction| seen_share(&faces, face, direction)))
-            .collect();
+        let mut integrals = vec![0.0; faces.len()];
+        distribution.for_each_part(STEP, |direction, flux| {
+            let all: f64 = faces.iter().map(|face| projected(face, direction)).sum();
+            for (integral, face) in integrals.iter_mut().zip(&faces) {
+                let own = projected(face, direction);
+                if own > 0.0 {
+                    *integral += flux * own / all;
+                }
+            }
+        });
         let all: f64 = integrals.iter().sum();
         let emitting = |(_, integral): &(OpeningFace, f64)| *integral > SMALLEST_SHARE * all;
         let (faces, integrals): (Vec<_>, Vec<_>) = faces.into_iter().zip(integrals).filter(emitting).unzip();

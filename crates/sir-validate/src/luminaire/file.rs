@@ -27,6 +27,9 @@ pub(crate) enum Opening {
     Box { length: f64, width: f64, height: f64 },
 }
 
+/// Intensity \[cd\] that is written as 0.
+const DUST: f64 = 1e-9;
+
 impl FileKind {
     /// Returns the name in tables.
     pub(crate) fn name(self) -> &'static str {
@@ -68,7 +71,9 @@ impl FileKind {
         let planes = angles.horizontal.iter();
         planes
             .flat_map(move |&h| angles.vertical.iter().map(move |&v| self.direction(h, v)))
-            .map(|direction| lamp.intensity(direction).to_string())
+            .map(|direction| lamp.intensity(direction))
+            // Rounded sines and cosines leave dust, which has hundreds of digits.
+            .map(|intensity| if intensity < DUST { "0".into() } else { intensity.to_string() })
     }
 
     fn ies(self, lamp: &Lamp, angles: &Angles, opening: Option<Opening>) -> String {

@@ -3,7 +3,7 @@
 
 use sir_geom::SceneBuilder;
 use sir_lines::LocalLines;
-use sir_mesh::Subdivision;
+use sir_mesh::{PatchSize, Subdivision};
 use sir_parallel::{Executor, RunError, Start};
 use sir_radiosity::{FirstShot, Model, Points, ShadowRaySettings, ShadowRays, Shot, ShotSettings, Solution};
 
@@ -23,8 +23,12 @@ const LINES: u64 = 400_000;
 /// Number of lines of the first shot before shadow rays, whose light they replace.
 const FEW_LINES: u64 = 1000;
 
-/// Number of rays per point.
-const RAYS: u64 = 2_000;
+/// Number of rays per point. Few of those over the hemisphere meet a small opening, and enough must do so in quick runs,
+/// too, for the spread of the runs to show it.
+const RAYS: u64 = 20_000;
+
+/// Number of patches for shadow rays. Large patches next to a small lamp keep the light of the lines instead.
+const PATCHES: u64 = 2_000;
 
 /// Estimator of the flux that surfaces receive.
 #[derive(Clone, Copy)]
@@ -80,7 +84,11 @@ fn fluxes<'a>(
             .push(Quantity { group: Some(group.clone()), ..Quantity::new(format!("Φ {name}"), exact) });
     }
     let prepare = move |effort: Effort| -> Result<Sample<'a>, ValidateError> {
-        let model = per_face(scene(case, &setup, file, effort)?.build()?.scene)?;
+        let scene = scene(case, &setup, file, effort)?.build()?.scene;
+        let model = match estimator {
+            Estimator::FirstShot => per_face(scene)?,
+            Estimator::ShadowRays => Model::new(scene, Subdivision::Triangles(PatchSize::Count(PATCHES)))?,
+        };
         let (measured, points) = (measured.clone(), if setup.sobol { Points::Sobol } else { Points::Random });
         Ok(Box::new(move |lines, seed, executor| {
             let shot = match estimator {
