@@ -36,6 +36,9 @@ pub(crate) struct Setup {
     pub(crate) fluxes: BTreeMap<String, f64>,
     #[serde(default)]
     pub(crate) points: Vec<Point>,
+    /// Number of rays per point. Few of those over the hemisphere meet a small opening, and enough must do so in quick runs,
+    /// too, for the spread of the runs to show it.
+    pub(crate) rays: Option<u64>,
 }
 
 fn upright() -> [[f64; 3]; 3] {

@@ -17,18 +17,20 @@ use crate::points::{irradiances, sensors};
 use crate::shape::SEGMENTS;
 use crate::trial::{Quantity, Sample, Trial};
 
-/// Number of lines or shadow rays per run.
-const LINES: u64 = 400_000;
+/// Number of lines per run.
+const LINES: u64 = 200_000;
+
+/// Number of shadow rays per run, which have much less noise.
+const SHADOW_RAYS: u64 = 40_000;
 
 /// Number of lines of the first shot before shadow rays, whose light they replace.
 const FEW_LINES: u64 = 1000;
 
-/// Number of rays per point. Few of those over the hemisphere meet a small opening, and enough must do so in quick runs,
-/// too, for the spread of the runs to show it.
-const RAYS: u64 = 20_000;
+/// Number of rays per point, if a case does not state another.
+const RAYS: u64 = 2_000;
 
 /// Number of patches for shadow rays. Large patches next to a small lamp keep the light of the lines instead.
-const PATCHES: u64 = 2_000;
+const PATCHES: u64 = 500;
 
 /// Estimator of the flux that surfaces receive.
 #[derive(Clone, Copy)]
@@ -99,7 +101,11 @@ fn fluxes<'a>(
             Ok(measured.iter().map(|&surface| means[surface].irradiance.x * means[surface].area).collect())
         }))
     };
-    Ok(Trial { quantities, lines: LINES, prepare: Box::new(prepare) })
+    let lines = match estimator {
+        Estimator::FirstShot => LINES,
+        Estimator::ShadowRays => SHADOW_RAYS,
+    };
+    Ok(Trial { quantities, lines, prepare: Box::new(prepare) })
 }
 
 fn first_shot(
@@ -135,7 +141,7 @@ fn at_points<'a>(case: &'a Case, setup: Setup, file: FileKind) -> Result<Trial<'
     };
     let quantities: Vec<Quantity> = setup.points.iter().map(quantity).collect();
     let sensors = sensors(case, &setup.points)?;
-    let count = sensors.len() as u64;
+    let (count, rays) = (sensors.len() as u64, setup.rays.unwrap_or(RAYS));
     let prepare = move |effort: Effort| -> Result<Sample<'a>, ValidateError> {
         let model = Model::new(scene(case, &setup, file, effort)?.build()?.scene, Subdivision::PerTriangle)?;
         let sensors = sensors.clone();
@@ -146,5 +152,5 @@ fn at_points<'a>(case: &'a Case, setup: Setup, file: FileKind) -> Result<Trial<'
             Ok(found.iter().map(|irradiance| irradiance.x).collect())
         }))
     };
-    Ok(Trial { quantities, lines: RAYS * count, prepare: Box::new(prepare) })
+    Ok(Trial { quantities, lines: rays * count, prepare: Box::new(prepare) })
 }
