@@ -7,6 +7,7 @@ use glam::{DMat3, DVec3};
 
 use crate::bits::hash_of;
 use crate::error::TableError;
+use crate::span::{Span, share_of_line};
 
 /// Luminous intensity as a function of direction: a table over the angles of a spherical coordinate system, between
 /// which it is interpolated linearly in both angles. It is zero outside the table.
@@ -116,7 +117,7 @@ impl IntensityDistribution {
             let mut sum = 0.0;
             sums.push(sum);
             for (angles, pair) in polars.windows(2).zip(plane.windows(2)) {
-                sum += Span::of(angles, pair).up_to(angles[1]);
+                sum += Span::of(angles, pair).up_to(angles[1])[0];
                 sums.push(sum);
             }
         }
@@ -313,66 +314,3 @@ fn cell(angles: &[f64], angle: f64) -> Option<usize> {
 fn share(angles: &[f64], i: usize, angle: f64) -> f64 {
     ((angle - angles[i]) / (angles[i + 1] - angles[i])).clamp(0.0, 1.0)
 }
-
-/// Returns the share `s` of the unit interval before which the integral of the line from `a` to `b` is `integral`.
-fn share_of_line([a, b]: [f64; 2], integral: f64) -> f64 {
-    // s a + s² (b − a)/2 = integral, without cancellation where a and b are about equal.
-    let root = (a * a + 2.0 * (b - a) * integral).max(0.0).sqrt();
-    let s = 2.0 * integral / (a + root);
-    if s.is_finite() { s.clamp(0.0, 1.0) } else { 0.0 }
-}
-
-/// Intensity between two polar angles, linear in the angle.
-struct Span {
-    /// First angle \[rad\].
-    start: f64,
-    /// Intensity there.
-    value: f64,
-    /// Its increase per radian.
-    slope: f64,
-}
-
-impl Span {
-    fn of(angles: &[f64], values: &[f64]) -> Self {
-        let slope = (values[1] - values[0]) / (angles[1] - angles[0]);
-        Self { start: angles[0], value: values[0], slope }
-    }
-
-    /// Returns the integral of the intensity times the sine of the polar angle, from the start up to an angle.
-    fn up_to(&self, angle: f64) -> f64 {
-        let Self { start, value, slope } = *self;
-        let turn = angle - start;
-        // Differences of cosines and sines would cancel.
-        let half = 2.0 * libm::sin(0.5 * turn);
-        let middle = 0.5 * (angle + start);
-        let (of_one, sines) = (half * libm::sin(middle), half * libm::cos(middle));
-        // ∫ (t − start) sin t dt = sin(angle) − sin(start) − turn cos(angle)
-        value * of_one + slope * (sines - turn * libm::cos(angle))
-    }
-
-    /// Returns the angle up to which the integral is `wanted`, at most `end`.
-    fn inverse(&self, wanted: f64, end: f64) -> f64 {
-        let (mut low, mut high) = (self.start, end);
-        let mut angle = low.midpoint(high);
-        for _ in 0..MAX_STEPS {
-            let excess = self.up_to(angle) - wanted;
-            if excess > 0.0 {
-                high = angle;
-            } else {
-                low = angle;
-            }
-            let density = (self.value + self.slope * (angle - self.start)) * libm::sin(angle);
-            let next = angle - excess / density;
-            // A step out of the interval, or none, is replaced by half of the interval.
-            let next = if next > low && next < high { next } else { low.midpoint(high) };
-            if (next - angle).abs() <= PI * f64::EPSILON {
-                return next;
-            }
-            angle = next;
-        }
-        angle
-    }
-}
-
-/// Largest number of steps of Newton's method, which bisects the interval where it fails.
-const MAX_STEPS: u32 = 60;

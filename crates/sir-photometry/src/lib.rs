@@ -92,6 +92,7 @@ mod opening;
 mod photometry;
 mod planes;
 mod read;
+mod span;
 mod text;
 mod tilt;
 

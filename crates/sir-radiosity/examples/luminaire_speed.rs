@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let azimuths: Vec<f64> = (0..73).map(|i| 5.0 * f64::from(i)).collect();
     let polars: Vec<f64> = (0..37).map(|i| 5.0 * f64::from(i)).collect();
     let value = |azimuth: f64, polar: f64| {
-        1.1 + polar.to_radians().cos() + 0.5 * polar.to_radians().sin() * azimuth.to_radians().cos()
+        1.2 + polar.to_radians().cos() + 0.5 * polar.to_radians().sin() * azimuth.to_radians().cos()
     };
     let values: Vec<f64> = azimuths.iter().flat_map(|&a| polars.iter().map(move |&p| value(a, p))).collect();
     let table = IntensityDistribution::new(Coordinates::C, &azimuths, &polars, &values)?;
