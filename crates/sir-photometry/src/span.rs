@@ -36,13 +36,20 @@ impl Span {
         let (sin_half, cos_half) = libm::sincos(0.5 * turn);
         let rotated =
             |(sin, cos): (f64, f64)| (sin * cos_half + cos * sin_half, cos * cos_half - sin * sin_half);
-        let (sin_middle, cos_middle) = rotated((sin_start, cos_start));
-        let (sin, cos) = rotated((sin_middle, cos_middle));
-        // Differences of cosines and sines would cancel.
-        let (of_one, sines) = (2.0 * sin_half * sin_middle, 2.0 * sin_half * cos_middle);
-        // ∫ (t − start) sin t dt = sin(angle) − sin(start) − turn cos(angle)
-        let integral = value * of_one + slope * (sines - turn * cos);
-        [integral, (value + slope * turn) * sin]
+        let middle = rotated((sin_start, cos_start));
+        let (sin, cos) = rotated(middle);
+        // A difference of cosines would cancel.
+        let of_one = 2.0 * sin_half * middle.0;
+        let of_turn = if turn < NARROW {
+            let square = turn * turn;
+            let series = |factors: [f64; 6]| factors.into_iter().rev().fold(0.0, |sum, f| sum * square + f);
+            // ∫ t cos t dt and ∫ t sin t dt.
+            square * (sin_start * series(T_COS) + cos_start * turn * series(T_SIN))
+        } else {
+            // ∫ (t − start) sin t dt = sin(angle) − sin(start) − turn cos(angle)
+            2.0 * sin_half * middle.1 - turn * cos
+        };
+        [value * of_one + slope * of_turn, (value + slope * turn) * sin]
     }
 
     /// Returns the angle up to which the integral is `wanted`, at most `end`.
@@ -73,6 +80,17 @@ impl Span {
     }
 }
 
+/// Angle \[rad\] below which integrals are sums of a series, because their terms would cancel.
+const NARROW: f64 = 0.25;
+
+/// Coefficients of `∫₀ˣ t cos t dt / x²` in powers of `x²`.
+const T_COS: [f64; 6] =
+    [1.0 / 2.0, -1.0 / 8.0, 1.0 / 144.0, -1.0 / 5760.0, 1.0 / 403_200.0, -1.0 / 43_545_600.0];
+
+/// Coefficients of `∫₀ˣ t sin t dt / x³` in powers of `x²`.
+const T_SIN: [f64; 6] =
+    [1.0 / 3.0, -1.0 / 30.0, 1.0 / 840.0, -1.0 / 45_360.0, 1.0 / 3_991_680.0, -1.0 / 518_918_400.0];
+
 /// Relative size of the last step of Newton's method, which converges quadratically: the root of the smallest error.
 const CONVERGED: f64 = 1e-8;
 
@@ -88,13 +106,22 @@ mod tests {
     #[test]
     fn the_inverse_is_exact() {
         let radians = f64::to_radians;
-        for [from, to] in [[0.0, 180.0], [0.0, 0.5], [30.0, 35.0], [89.0, 90.0], [175.0, 180.0]] {
+        for [from, to] in [
+            [0.0, 180.0],
+            [0.0, 0.5],
+            [30.0, 35.0],
+            [89.0, 90.0],
+            [175.0, 180.0],
+            [0.0, 14.3],
+            [0.0, 14.4],
+            [0.0, 1e-3],
+        ] {
             let angles = [from, to].map(radians);
             for values in [[1.0, 1.0], [0.0, 1.0], [1.0, 0.0], [1e6, 1.0], [1.0, 1e6]] {
                 let span = Span::of(&angles, &values);
                 let all = span.up_to(angles[1])[0];
-                // Where the intensity is zero at the pole, the terms of the integral cancel.
-                let rounding = 1e-13 + 4e-16 / (angles[1] - angles[0]).powi(2);
+                // Of the last digits of the angle.
+                let rounding = 1e-14 + 8e-16 * angles[1] / (angles[1] - angles[0]);
                 let parts = 20_000;
                 let at =
                     |i: i32| angles[0] + (f64::from(i) + 0.5) / f64::from(parts) * (angles[1] - angles[0]);
