@@ -19,7 +19,15 @@ const LAYERS: [(&str, &[&str]); 17] = [
     // Validation depends on the solver, but not on pipelines or files.
     (
         "sir-validate",
-        &["sir-photometry", "sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel"],
+        &[
+            "sir-photometry",
+            "sir-geom",
+            "sir-mesh",
+            "sir-lines",
+            "sir-accel",
+            "sir-radiosity",
+            "sir-parallel",
+        ],
     ),
     ("sir-view", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
     ("sir-report", &["sir-geom", "sir-mesh", "sir-view"]),

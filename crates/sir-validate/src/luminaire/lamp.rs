@@ -42,9 +42,9 @@ impl Lamp {
     /// Returns the intensity in a direction of unit length. For `Axes` it is that of the nearest axis.
     pub(crate) fn intensity(&self, d: DVec3) -> f64 {
         match *self {
-            Self::Power { peak, exponent, .. } => peak * (-d.z).max(0.0).powi(exponent),
+            Self::Power { peak, exponent, .. } => peak * libm::pow((-d.z).max(0.0), f64::from(exponent)),
             Self::Cone { peak, half_angle_deg } => {
-                let angle = libm::atan2(d.x.hypot(d.y), -d.z).to_degrees();
+                let angle = libm::atan2(libm::hypot(d.x, d.y), -d.z).to_degrees();
                 peak * (1.0 - angle / half_angle_deg).max(0.0)
             }
             Self::Axes { down, up, x, y } => {
