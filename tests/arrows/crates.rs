@@ -17,7 +17,18 @@ const LAYERS: [(&str, &[&str]); 17] = [
     ("sir-radiosity", &["sir-types", "sir-geom", "sir-mesh", "sir-lines", "sir-accel"]),
     ("sir-parallel", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
     // Validation depends on the solver, but not on pipelines or files.
-    ("sir-validate", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity", "sir-parallel"]),
+    (
+        "sir-validate",
+        &[
+            "sir-photometry",
+            "sir-geom",
+            "sir-mesh",
+            "sir-lines",
+            "sir-accel",
+            "sir-radiosity",
+            "sir-parallel",
+        ],
+    ),
     ("sir-view", &["sir-geom", "sir-mesh", "sir-lines", "sir-accel", "sir-radiosity"]),
     ("sir-report", &["sir-geom", "sir-mesh", "sir-view"]),
     ("sir-lightmap", &["sir-geom", "sir-mesh", "sir-view"]),

@@ -1,10 +1,13 @@
 //! Luminous intensity as a function of direction, tabulated over angles.
 
 use std::f64::consts::{PI, TAU};
+use std::fmt;
 
 use glam::{DMat3, DVec3};
 
+use crate::bits::hash_of;
 use crate::error::TableError;
+use crate::span::{Span, share_of_line};
 
 /// Luminous intensity as a function of direction: a table over the angles of a spherical coordinate system, between
 /// which it is interpolated linearly in both angles. It is zero outside the table.
@@ -13,7 +16,10 @@ use crate::error::TableError;
 ///
 /// Planes of constant azimuth share the axis of the coordinate system. Intensities are in candela, if the flux is to be in
 /// lumens; any other unit gives the flux in that unit times a steradian.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Its `Debug` text is short: the size of the table, the flux, and a hash of all bits, so that different tables have
+/// different texts.
+#[derive(Clone, PartialEq)]
 pub struct IntensityDistribution {
     /// Directions of the azimuths 0 and 90°, and of the polar angle 0, in the frame of the luminaire.
     axes: DMat3,
@@ -27,6 +33,19 @@ pub struct IntensityDistribution {
     sums: Vec<f64>,
     /// Flux between the first plane and each plane \[lm\].
     fluxes: Vec<f64>,
+    /// Hash of all of the above.
+    hash: u128,
+}
+
+impl fmt::Debug for IntensityDistribution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("IntensityDistribution")
+            .field("planes", &self.azimuths.len())
+            .field("polars", &self.polars.len())
+            .field("flux", &self.flux())
+            .field("hash", &format_args!("{:032x}", self.hash))
+            .finish()
+    }
 }
 
 /// Spherical coordinate system of photometry.
@@ -98,7 +117,7 @@ impl IntensityDistribution {
             let mut sum = 0.0;
             sums.push(sum);
             for (angles, pair) in polars.windows(2).zip(plane.windows(2)) {
-                sum += Span::of(angles, pair).up_to(angles[1]);
+                sum += Span::of(angles, pair).up_to(angles[1])[0];
                 sums.push(sum);
             }
         }
@@ -115,7 +134,17 @@ impl IntensityDistribution {
         if flux <= 0.0 {
             return Err(TableError::Dark);
         }
-        Ok(Self { axes: coordinates.axes(), azimuths, polars, values, sums, fluxes })
+        let table = Self { axes: coordinates.axes(), azimuths, polars, values, sums, fluxes, hash: 0 };
+        Ok(table.hashed())
+    }
+
+    /// Returns the distribution with the hash of its table.
+    fn hashed(mut self) -> Self {
+        let Self { azimuths, polars, values, .. } = &self;
+        let sizes = [azimuths.len() as f64, polars.len() as f64];
+        let table = azimuths.iter().chain(polars).chain(values).copied();
+        self.hash = hash_of(self.axes.to_cols_array().into_iter().chain(sizes).chain(table));
+        self
     }
 
     /// Returns the distribution with all intensities multiplied by a factor, which must be positive.
@@ -124,7 +153,7 @@ impl IntensityDistribution {
         for numbers in [&mut self.values, &mut self.sums, &mut self.fluxes] {
             numbers.iter_mut().for_each(|number| *number *= factor);
         }
-        self
+        self.hashed()
     }
 
     /// Returns the flux \[lm\]: the integral of the intensity over all directions.
@@ -201,34 +230,47 @@ impl IntensityDistribution {
     }
 
     /// Returns the integral over all directions of the intensity times a function of the direction, by a midpoint rule over
-    /// `steps²` parts of each cell of the table.
+    /// parts of the cells of the table, of at most `step` degrees in both angles.
     #[must_use]
-    pub fn integrate(&self, steps: u32, mut of: impl FnMut(DVec3) -> f64) -> f64 {
-        let parts = f64::from(steps);
-        let n = self.polars.len();
+    pub fn integrate(&self, step: f64, mut of: impl FnMut(DVec3) -> f64) -> f64 {
         let mut sum = 0.0;
+        self.for_each_part(step, |direction, flux| sum += flux * of(direction));
+        sum
+    }
+
+    /// Calls a function with the middle and the flux \[lm\] of each part of the cells that are not dark.
+    pub(crate) fn for_each_part(&self, step: f64, mut visit: impl FnMut(DVec3, f64)) {
+        let n = self.polars.len();
+        let largest = step.to_radians();
+        // Middles and widths of the parts of the range between two angles.
+        let parts = |angles: &[f64]| {
+            let (start, width) = (angles[0], angles[1] - angles[0]);
+            let count = ((width / largest - ROUNDING).ceil() as u32).max(1);
+            let part = width / f64::from(count);
+            (0..count).map(move |i| {
+                (start + (f64::from(i) + 0.5) * part, (f64::from(i) + 0.5) / f64::from(count), part)
+            })
+        };
         for (plane, azimuths) in self.azimuths.windows(2).enumerate() {
             for (i, polars) in self.polars.windows(2).enumerate() {
                 let [near, far] = [plane, plane + 1].map(|plane| &self.values[plane * n + i..][..2]);
                 if near.iter().chain(far).all(|&value| value == 0.0) {
                     continue;
                 }
-                for k in 0..steps * steps {
-                    let [s, t] = [k / steps, k % steps].map(|index| (f64::from(index) + 0.5) / parts);
-                    let azimuth = azimuths[0] + s * (azimuths[1] - azimuths[0]);
-                    let [from, to] = [k % steps, k % steps + 1]
-                        .map(|i| polars[0] + f64::from(i) / parts * (polars[1] - polars[0]));
-                    let [near, far] = [near, far].map(|pair| pair[0] + t * (pair[1] - pair[0]));
-                    let value = near + s * (far - near);
-                    let ((sin_a, cos_a), (sin, cos)) =
-                        (libm::sincos(azimuth), libm::sincos(from.midpoint(to)));
-                    let direction = self.axes * DVec3::new(sin * cos_a, sin * sin_a, cos);
-                    let solid_angle = (azimuths[1] - azimuths[0]) / parts * (libm::cos(from) - libm::cos(to));
-                    sum += value * solid_angle * of(direction);
+                for (azimuth, across, turn) in parts(azimuths) {
+                    let (sin_azimuth, cos_azimuth) = libm::sincos(azimuth);
+                    for (polar, along, height) in parts(polars) {
+                        let [near, far] = [near, far].map(|pair| pair[0] + along * (pair[1] - pair[0]));
+                        let value = near + across * (far - near);
+                        let (sin, cos) = libm::sincos(polar);
+                        // cos a − cos b = 2 sin((a + b)/2) sin((b − a)/2)
+                        let solid_angle = turn * 2.0 * sin * libm::sin(0.5 * height);
+                        let direction = self.axes * DVec3::new(sin * cos_azimuth, sin * sin_azimuth, cos);
+                        visit(direction, value * solid_angle);
+                    }
                 }
             }
         }
-        sum
     }
 }
 
@@ -272,66 +314,3 @@ fn cell(angles: &[f64], angle: f64) -> Option<usize> {
 fn share(angles: &[f64], i: usize, angle: f64) -> f64 {
     ((angle - angles[i]) / (angles[i + 1] - angles[i])).clamp(0.0, 1.0)
 }
-
-/// Returns the share `s` of the unit interval before which the integral of the line from `a` to `b` is `integral`.
-fn share_of_line([a, b]: [f64; 2], integral: f64) -> f64 {
-    // s a + s² (b − a)/2 = integral, without cancellation where a and b are about equal.
-    let root = (a * a + 2.0 * (b - a) * integral).max(0.0).sqrt();
-    let s = 2.0 * integral / (a + root);
-    if s.is_finite() { s.clamp(0.0, 1.0) } else { 0.0 }
-}
-
-/// Intensity between two polar angles, linear in the angle.
-struct Span {
-    /// First angle \[rad\].
-    start: f64,
-    /// Intensity there.
-    value: f64,
-    /// Its increase per radian.
-    slope: f64,
-}
-
-impl Span {
-    fn of(angles: &[f64], values: &[f64]) -> Self {
-        let slope = (values[1] - values[0]) / (angles[1] - angles[0]);
-        Self { start: angles[0], value: values[0], slope }
-    }
-
-    /// Returns the integral of the intensity times the sine of the polar angle, from the start up to an angle.
-    fn up_to(&self, angle: f64) -> f64 {
-        let Self { start, value, slope } = *self;
-        let turn = angle - start;
-        // Differences of cosines and sines would cancel.
-        let half = 2.0 * libm::sin(0.5 * turn);
-        let middle = 0.5 * (angle + start);
-        let (of_one, sines) = (half * libm::sin(middle), half * libm::cos(middle));
-        // ∫ (t − start) sin t dt = sin(angle) − sin(start) − turn cos(angle)
-        value * of_one + slope * (sines - turn * libm::cos(angle))
-    }
-
-    /// Returns the angle up to which the integral is `wanted`, at most `end`.
-    fn inverse(&self, wanted: f64, end: f64) -> f64 {
-        let (mut low, mut high) = (self.start, end);
-        let mut angle = low.midpoint(high);
-        for _ in 0..MAX_STEPS {
-            let excess = self.up_to(angle) - wanted;
-            if excess > 0.0 {
-                high = angle;
-            } else {
-                low = angle;
-            }
-            let density = (self.value + self.slope * (angle - self.start)) * libm::sin(angle);
-            let next = angle - excess / density;
-            // A step out of the interval, or none, is replaced by half of the interval.
-            let next = if next > low && next < high { next } else { low.midpoint(high) };
-            if (next - angle).abs() <= PI * f64::EPSILON {
-                return next;
-            }
-            angle = next;
-        }
-        angle
-    }
-}
-
-/// Largest number of steps of Newton's method, which bisects the interval where it fails.
-const MAX_STEPS: u32 = 60;

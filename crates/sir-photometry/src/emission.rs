@@ -1,9 +1,11 @@
 //! Light of the faces of a luminous opening.
 
 use std::f64::consts::PI;
+use std::fmt;
 
 use glam::DVec3;
 
+use crate::bits::hash_of;
 use crate::distribution::IntensityDistribution;
 use crate::faces::OpeningFace;
 use crate::opening::Opening;
@@ -13,7 +15,9 @@ use crate::opening::Opening;
 ///
 /// The radiance in the direction `ω` is `L(ω) = I(ω) / A(ω)`, with the intensity `I` and the projected area `A` of the
 /// opening. A photometric file says no more about where on the opening the light comes from.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Its `Debug` text is short: the distribution, the number of faces, and a hash of their corners.
+#[derive(Clone, PartialEq)]
 pub struct OpeningLight {
     distribution: IntensityDistribution,
     /// Faces that emit.
@@ -22,11 +26,27 @@ pub struct OpeningLight {
     shares: Vec<f64>,
 }
 
+impl fmt::Debug for OpeningLight {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The shares follow from the distribution and the faces.
+        let numbers = self.faces.iter().flat_map(|face| {
+            let corners = face.corners.iter().flat_map(|corner| corner.to_array());
+            std::iter::once(face.corners.len() as f64).chain(corners)
+        });
+        f.debug_struct("OpeningLight")
+            .field("distribution", &self.distribution)
+            .field("faces", &self.faces.len())
+            .field("hash", &format_args!("{:032x}", hash_of(numbers)))
+            .finish()
+    }
+}
+
 /// Smallest share of the flux for which a face emits.
 const SMALLEST_SHARE: f64 = 1e-4;
 
-/// Number of parts of each cell of the table, per angle, for the integrals over directions.
-const STEPS: u32 = 4;
+/// Largest part of a cell of the table \[°\] for the integrals over directions. Cells may be wide, such as the only one of a
+/// lamp without dependence on the azimuth, but the projected area of a face changes within each quarter of a turn.
+const STEP: f64 = 1.0;
 
 /// Largest number of directions that are drawn for a line.
 const MAX_TRIES: u32 = 1_000_000;
@@ -37,9 +57,16 @@ impl OpeningLight {
     #[must_use]
     pub fn new(distribution: IntensityDistribution, opening: &Opening) -> Option<Self> {
         let faces = opening.faces();
-        let integrals: Vec<f64> = (0..faces.len())
-            .map(|face| distribution.integrate(STEPS, |direction| seen_share(&faces, face, direction)))
-            .collect();
+        let mut integrals = vec![0.0; faces.len()];
+        distribution.for_each_part(STEP, |direction, flux| {
+            let all: f64 = faces.iter().map(|face| projected(face, direction)).sum();
+            for (integral, face) in integrals.iter_mut().zip(&faces) {
+                let own = projected(face, direction);
+                if own > 0.0 {
+                    *integral += flux * own / all;
+                }
+            }
+        });
         let all: f64 = integrals.iter().sum();
         let emitting = |(_, integral): &(OpeningFace, f64)| *integral > SMALLEST_SHARE * all;
         let (faces, integrals): (Vec<_>, Vec<_>) = faces.into_iter().zip(integrals).filter(emitting).unzip();

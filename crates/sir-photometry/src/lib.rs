@@ -81,6 +81,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod bits;
 mod distribution;
 mod emission;
 mod error;
@@ -91,6 +92,7 @@ mod opening;
 mod photometry;
 mod planes;
 mod read;
+mod span;
 mod text;
 mod tilt;
 

@@ -4,7 +4,7 @@ use crate::data::Case;
 use crate::error::ValidateError;
 use crate::points::Lighting;
 use crate::trial::Trial;
-use crate::{cube, factors, flux, points, radiosity};
+use crate::{cube, factors, flux, luminaire, points, radiosity};
 
 /// Plan for a case.
 pub(crate) enum Plan<'a> {
@@ -39,6 +39,7 @@ pub(crate) fn plan(case: &Case) -> Result<Plan<'_>, ValidateError> {
         }
         id if id.starts_with("RE-") => Plan::Run(radiosity::surfaces(case)?),
         id if id.starts_with("VF-") => Plan::Run(factors::factors(case)?),
+        id if id.starts_with("LU-") => Plan::Run(luminaire::luminaires(case)?),
         "CIE-5.2" => Plan::Run(points::points(case, Lighting::PointLight)?),
         "CIE-5.3" => Plan::Run(points::points(case, Lighting::Lamp)?),
         "CIE-5.4a" => Plan::Run(flux::of_point(case)?),

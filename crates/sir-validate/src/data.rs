@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::error::ValidateError;
 
 /// File names, in the order of [`Reference::parse`].
-pub const FILES: [&str; 3] = ["view-factors.json", "radiosity-exact.json", "cie171.json"];
+pub const FILES: [&str; 4] = ["view-factors.json", "radiosity-exact.json", "cie171.json", "luminaires.json"];
 
 /// All cases with exact answers.
 #[derive(Clone, Debug)]
@@ -159,15 +159,16 @@ impl Reference {
             include_str!("../data/view-factors.json"),
             include_str!("../data/radiosity-exact.json"),
             include_str!("../data/cie171.json"),
+            include_str!("../data/luminaires.json"),
         ])
     }
 
-    /// Reads the texts of the three [`FILES`].
+    /// Reads the texts of the four [`FILES`].
     ///
     /// # Errors
     ///
     /// If one of them is not a file of exact answers.
-    pub fn parse(texts: [&str; 3]) -> Result<Self, ValidateError> {
+    pub fn parse(texts: [&str; 4]) -> Result<Self, ValidateError> {
         #[derive(Deserialize)]
         struct File {
             cases: Vec<Case>,
@@ -219,14 +220,14 @@ mod tests {
     #[test]
     fn all_files_are_read() {
         let reference = Reference::built_in().unwrap();
-        assert_eq!(reference.ids().count(), 14 + 9 + 10);
+        assert_eq!(reference.ids().count(), 14 + 9 + 10 + 5);
         let points: usize = reference.cases.iter().map(|case| case.points.len()).sum();
         assert_eq!(points, 10 + 14 + 14 + 14 + 11 + 14 + 14);
     }
 
     #[test]
     fn a_broken_file_is_named() {
-        let error = Reference::parse([r#"{"cases": []}"#, r#"{"cases": [{"id": 1}]}"#, ""]).unwrap_err();
+        let error = Reference::parse([r#"{"cases": []}"#, r#"{"cases": [{"id": 1}]}"#, "", ""]).unwrap_err();
         assert!(error.to_string().contains("radiosity-exact.json"), "{error}");
     }
 }

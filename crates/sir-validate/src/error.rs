@@ -2,6 +2,7 @@
 
 use sir_geom::SceneError;
 use sir_parallel::RunError;
+use sir_photometry::PhotometryError;
 use sir_radiosity::ModelError;
 use thiserror::Error;
 
@@ -48,6 +49,9 @@ pub enum ValidateError {
     /// The surfaces cannot be cut into patches, or not be traced.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// The photometric file of a lamp cannot be read.
+    #[error(transparent)]
+    Photometry(#[from] PhotometryError),
     /// The solver failed or was interrupted.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -65,7 +69,7 @@ impl ValidateError {
     pub fn is_usage(&self) -> bool {
         match self {
             Self::File { .. } | Self::Layout { .. } | Self::Missing { .. } | Self::NoCase { .. } => true,
-            Self::Scene(_) | Self::Model(_) | Self::Run(_) => false,
+            Self::Scene(_) | Self::Model(_) | Self::Photometry(_) | Self::Run(_) => false,
         }
     }
 }

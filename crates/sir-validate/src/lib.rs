@@ -12,6 +12,7 @@
 //! * `shape` makes triangles for the shapes of the reference. `light` makes scenes, and computes the mean light of
 //!   their surfaces.
 //! * A module for each kind of case makes its *trials*: quantities, and a function that estimates them with a seed.
+//!   `luminaire` has several files: its trials begin with the text of a photometric file.
 //! * `repeat` repeats trials, `estimate` and [`Check`] compare them with exact answers, `runner` counts lines, and
 //!   `report` makes tables.
 //!
@@ -49,6 +50,7 @@ mod estimate;
 mod factors;
 mod flux;
 mod light;
+mod luminaire;
 mod points;
 mod radiosity;
 mod repeat;

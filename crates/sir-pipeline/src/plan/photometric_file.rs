@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use sir_photometry::Photometry;
+use sir_photometry::{Photometry, PhotometryError};
 
 use crate::text::back_slashes::{path_help, printable};
 use crate::text::field::Format;
@@ -45,7 +45,13 @@ impl Format for Photometric {
         match Photometry::read(&path) {
             Ok(contents) => Some(PhotometricFile { path, contents: Arc::new(contents) }),
             Err(error) => {
-                let message = format!("cannot read the photometric file {}: {error}", printable(&path));
+                // Without the path, which the message has already.
+                let why = match error {
+                    PhotometryError::Read { source, .. } => source.to_string(),
+                    PhotometryError::InFile { problem, .. } => problem.to_string(),
+                    other => other.to_string(),
+                };
+                let message = format!("cannot read the photometric file {}: {why}", printable(&path));
                 let help = "use an IES (LM-63) or EULUMDAT file; paths are relative to the folder of the pipeline file";
                 reader.problem(node.text, message, path_help(node.text, help));
                 None

@@ -1,0 +1,12 @@
+//! Cases of `luminaires.json`: light of photometric files.
+//!
+//! A case writes the text of an IES or EULUMDAT file from the formula of a lamp, reads it as the file of a maker would be
+//! read, and places the luminaire in a black scene. So an answer tests the whole way from the numbers in a file to the
+//! light at a surface.
+
+mod file;
+mod lamp;
+mod setup;
+mod trials;
+
+pub(crate) use trials::luminaires;
