@@ -3,17 +3,8 @@
 use glam::DVec3;
 use serde::Deserialize;
 
+use crate::luminaire::file_kind::FileKind;
 use crate::luminaire::lamp::{Angles, Lamp};
-
-/// Format of a photometric file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum FileKind {
-    IesC,
-    IesB,
-    IesA,
-    Eulumdat,
-}
 
 /// Luminous opening in a file; lengths in meters.
 #[derive(Clone, Copy, Debug, Deserialize)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::Deserialize;
 
-use crate::luminaire::file::FileKind;
+use crate::luminaire::file_kind::FileKind;
 
 /// Intensity as a function of direction, in the frame of the luminaire, which is aimed at −z. Units are candelas.
 #[derive(Clone, Debug, Deserialize)]

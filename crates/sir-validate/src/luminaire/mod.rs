@@ -5,6 +5,7 @@
 //! light at a surface.
 
 mod file;
+mod file_kind;
 mod lamp;
 mod setup;
 mod trials;

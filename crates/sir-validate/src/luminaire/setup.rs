@@ -10,7 +10,8 @@ use sir_photometry::{OpeningLight, Photometry};
 
 use crate::data::{Case, Point, Surface};
 use crate::error::ValidateError;
-use crate::luminaire::file::{FileKind, Opening};
+use crate::luminaire::file::Opening;
+use crate::luminaire::file_kind::FileKind;
 use crate::luminaire::lamp::Lamp;
 
 /// A luminaire among black surfaces.

@@ -11,7 +11,7 @@ use crate::data::{Case, Point, Surface};
 use crate::effort::Effort;
 use crate::error::ValidateError;
 use crate::light::{Paint, builder, means, per_face};
-use crate::luminaire::file::FileKind;
+use crate::luminaire::file_kind::FileKind;
 use crate::luminaire::setup::Setup;
 use crate::points::{irradiances, sensors};
 use crate::shape::SEGMENTS;
