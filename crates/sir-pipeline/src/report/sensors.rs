@@ -129,6 +129,10 @@ impl SensorsReport {
         let maximum = Uncertain { value: maximum, error: error(highest) };
         let uniformity = minimum.over(Uncertain { value: mean, error: mean_error }, with_mean);
         let diversity = minimum.over(maximum, with_maximum);
+        // The ratios of a single sensor have no error; rounding would leave some.
+        let exact =
+            |ratio: Uncertain| if measured.len() == 1 { Uncertain { error: 0.0, ..ratio } } else { ratio };
+        let [uniformity, diversity] = [uniformity, diversity].map(exact);
         Self {
             name: name.into(),
             kind: None,
@@ -267,7 +271,7 @@ mod tests {
         }];
         let report = SensorsReport::new("point", &measured, None);
         assert!((report.uniformity - 1.0).abs() < 1e-12 && (report.diversity - 1.0).abs() < 1e-12);
-        assert!(report.uniformity_error < 1e-8 && report.diversity_error < 1e-8);
+        assert_eq!((report.uniformity_error, report.diversity_error), (0.0, 0.0));
         let dark = SensorsReport::new("dark", &[Measurement::default()], None);
         assert_eq!((dark.uniformity, dark.diversity, dark.uniformity_error), (0.0, 0.0, 0.0));
     }
