@@ -10,6 +10,7 @@ use sir_pipeline::fingerprint::PROGRAM_VERSION;
 
 use crate::experiment::ExperimentArgs;
 use crate::info::InfoArgs;
+use crate::light::LightArgs;
 use crate::numbers::{factor, seconds, threads};
 use crate::scaling::ScalingArgs;
 use crate::validate::options::ValidateArgs;
@@ -17,6 +18,7 @@ use crate::viewfactors::options::ViewFactorsArgs;
 
 const EXAMPLES: &str = "\
 Examples:
+  sir light room.glb                             light a scene; choose everything, and say what was chosen
   sir info room.gltf                             show the contents of a scene, and suggest settings
   sir check scenes/cornell-box/pipeline.ron      check a pipeline, and estimate its time and memory
   sir run scenes/cornell-box/pipeline.ron        light the scene; write files to results/cornell-box
@@ -24,7 +26,7 @@ Examples:
   sir resume results/cornell-box                 continue a run stopped by Ctrl-C or a power cut
   mpirun -n 4 sir run room.ron                   run on several machines, if built with --features mpi
   sir run room.ron --watch                       show the light in the browser while it is computed
-  sir mix results/office --set desk=0.5           dim a light group of a finished run
+  sir mix results/office --set desk=0.5          dim a light group of a finished run
   sir scaling room.ron --threads 1,2,4           measure the speed-up by more threads
   sir viewfactors room.obj --by group            compute the view factors between named parts
   sir experiment --scale 0.01                    check the claims of the paper of 2009, with 1 % of the lines
@@ -59,6 +61,12 @@ pub struct Args {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Light a scene file: choose a pipeline, run it, and end with a page to look at.
+    ///
+    /// Reads a glTF, GLB or OBJ file; chooses units, lights, patches and lines by rules (docs/guide.md); writes the pipeline
+    /// that it chose as pipeline.ron beside the results, with a comment on each choice; and runs it. What is doubtful it says,
+    /// with the line to change. The same file gives the same pipeline.
+    Light(LightArgs),
     /// Run a pipeline: light its scene and write its output files.
     ///
     /// Prints the paths of the files, images first, and a summary of each stage. Also writes all of this to result.json

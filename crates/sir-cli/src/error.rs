@@ -20,6 +20,11 @@ pub enum CliError {
     /// Wrong answers, or answers that cannot be checked.
     #[error(transparent)]
     Validation(#[from] ValidationError),
+    /// Several ranks were started for a command that drafts a pipeline.
+    #[error(
+        "`sir light` runs in one process; write the pipeline with `sir light SCENE --dry-run`, and start `sir run` on several ranks"
+    )]
+    LightOnRanks,
     /// The page of a run cannot be served.
     #[error("the page cannot be served on this computer; run it without --watch")]
     Watch(#[source] std::io::Error),
@@ -45,6 +50,7 @@ impl CliError {
             Self::Pipeline(error) => error.kind(),
             Self::Study(error) => error.kind(),
             Self::Validation(error) => error.kind(),
+            Self::LightOnRanks => ErrorKind::Usage,
             Self::Watch(_) => ErrorKind::Failed,
         }
     }

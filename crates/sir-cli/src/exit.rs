@@ -41,13 +41,17 @@ fn hint(error: &CliError) -> Option<String> {
         CliError::Study(StudyError::Pipeline(error)) => pipeline_hint(error),
         CliError::Study(StudyError::Scaling(error)) => scaling_hint(error),
         CliError::Study(StudyError::Experiment(error)) => experiment_hint(error),
-        CliError::Study(StudyError::View(_)) | CliError::Validation(_) | CliError::Watch(_) => None,
+        CliError::Study(StudyError::View(_))
+        | CliError::Validation(_)
+        | CliError::Watch(_)
+        | CliError::LightOnRanks => None,
     }
 }
 
 fn pipeline_hint(error: &Error) -> Option<String> {
     Some(match error {
         Error::NotText { .. } | Error::LongPipeline { .. } => "`sir --help` shows an example pipeline".into(),
+        Error::IsPipeline { path } => format!("`sir run {}` runs it", path.display()),
         Error::Exists { .. } | Error::ViewFactors(ViewFactorsError::Exists { .. }) => {
             "`--out DIR` chooses another directory, `--force` replaces the existing result".into()
         }

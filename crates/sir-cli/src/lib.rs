@@ -23,6 +23,7 @@ mod exit;
 pub mod experiment;
 pub mod info;
 mod interrupt;
+pub mod light;
 mod numbers;
 mod output;
 pub mod progress;
@@ -82,7 +83,11 @@ pub fn main_from(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) ->
 /// code.
 fn execute(command: Command) -> Result<String, ExitCode> {
     match command {
-        Command::Run(_) | Command::Resume { .. } | Command::Mix(_) | Command::ViewFactors(_) => {
+        Command::Light(_)
+        | Command::Run(_)
+        | Command::Resume { .. }
+        | Command::Mix(_)
+        | Command::ViewFactors(_) => {
             // Before anything that takes time: the handlers must be installed when a signal arrives.
             let stop = interrupt::flag();
             let comm = connect().map_err(|error| show(&error.into()))?;
@@ -104,15 +109,18 @@ fn show(error: &CliError) -> ExitCode {
 /// Executes a command together with the other ranks, until it is done or `stop` becomes true.
 fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Result<String, CliError> {
     match command {
+        Command::Light(args) => light::command(&args, comm, stop),
         Command::Run(RunArgs { pipeline, out, seed, force, how }) => {
-            let options = RunOptions { out, seed, force, ..options(&how, stop, comm)? };
+            let options = RunOptions { out, seed, force, ..run_options(&how, stop, comm)? };
             run_together(Pipeline::read(&pipeline), &options, comm)
                 .map(|result| result_text(&result, &how, comm))
                 .map_err(CliError::from)
         }
-        Command::Resume { directory, how } => resume_together(&directory, &options(&how, stop, comm)?, comm)
-            .map(|result| result_text(&result, &how, comm))
-            .map_err(CliError::from),
+        Command::Resume { directory, how } => {
+            resume_together(&directory, &run_options(&how, stop, comm)?, comm)
+                .map(|result| result_text(&result, &how, comm))
+                .map_err(CliError::from)
+        }
         // The work of one rank.
         Command::Mix(_) if !comm.is_first() => Ok(String::new()),
         Command::Mix(MixArgs { directory, set, out, force, threads, quiet, json }) => {
@@ -142,7 +150,11 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
 }
 
 /// Returns the options of a run that `stop` can interrupt. Starts the server of `--watch`.
-fn options(how: &HowArgs, stop: Arc<AtomicBool>, comm: &dyn Communicator) -> Result<RunOptions, CliError> {
+fn run_options(
+    how: &HowArgs,
+    stop: Arc<AtomicBool>,
+    comm: &dyn Communicator,
+) -> Result<RunOptions, CliError> {
     let mut watcher: Option<Arc<dyn Watcher>> = None;
     if how.watch && comm.is_first() {
         let (page, url) = watch::Page::start().map_err(CliError::Watch)?;

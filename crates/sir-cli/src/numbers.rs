@@ -10,6 +10,21 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     number.ok_or_else(|| "write a number of seconds, 0 or more".into())
 }
 
+/// Parses a time in minutes.
+pub(crate) fn minutes(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|minutes| *minutes > 0.0 && *minutes <= 1e6);
+    number.ok_or_else(|| "write a number of minutes above 0, such as 2".into())
+}
+
+/// Parses a share in per cent, such as `2%`.
+pub(crate) fn per_cent(text: &str) -> Result<f64, String> {
+    let number = text.trim().strip_suffix('%').and_then(|number| number.trim().parse::<f64>().ok());
+    let number = number.filter(|number| (0.001..=100.0).contains(number));
+    number
+        .map(|number| number / 100.0)
+        .ok_or_else(|| "write a number from 0.001 to 100 with a per cent sign, such as 2%".into())
+}
+
 pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let number = text.parse().ok().filter(|&n| n <= 4096).and_then(NonZeroUsize::new);
     number.ok_or_else(|| "write a whole number from 1 to 4096".into())
@@ -67,6 +82,18 @@ pub(crate) fn reference(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_error_has_a_per_cent_sign() {
+        assert_eq!((per_cent("2%"), per_cent("0.5 %")), (Ok(0.02), Ok(0.005)));
+        for bad in ["2", "0.02", "%", "-1%", "0%", "NaN%", "101%"] {
+            assert!(per_cent(bad).is_err(), "{bad}");
+        }
+        assert_eq!(minutes("0.5"), Ok(0.5));
+        for bad in ["0", "-1", "NaN", "inf", "soon"] {
+            assert!(minutes(bad).is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn factors_are_numbers_or_colors() {

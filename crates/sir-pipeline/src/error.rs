@@ -45,6 +45,12 @@ pub enum Error {
         /// Largest accepted size \[bytes\].
         most: u64,
     },
+    /// A pipeline was given in place of a scene.
+    #[error("{} is a pipeline, not a scene", path.display())]
+    IsPipeline {
+        /// The file.
+        path: PathBuf,
+    },
     /// The run does not fit the memory of this machine.
     #[error(
         "the run needs {needed} of memory in addition to its scene, but only {available} are available (of the machine, or \
@@ -288,6 +294,7 @@ impl Error {
             | Self::NotText { .. }
             | Self::LongPipeline { .. }
             | Self::Exists { .. }
+            | Self::IsPipeline { .. }
             | Self::ExistsInterrupted { .. }
             | Self::OutputExists { .. }
             | Self::OutputIsInput { .. }

@@ -69,6 +69,7 @@
 
 mod available_memory;
 pub mod check;
+pub mod draft;
 mod error;
 mod error_kind;
 pub mod fingerprint;

@@ -91,7 +91,12 @@ fn settings(info: &Info) -> String {
     for setting in &info.settings {
         let set = setting.set.replace(&info.scene, "room.obj");
         let load = if set.starts_with("Load") { "" } else { "Load(path: \"room.obj\")," };
-        let text = format!("Pipeline(stages: [{load} {set}, FirstShot(lines: 1000)])");
+        let (units, set) = if set.starts_with("units") {
+            (format!("{set},"), String::new())
+        } else {
+            (String::new(), format!("{set},"))
+        };
+        let text = format!("Pipeline({units} stages: [{load} {set} FirstShot(lines: 1000)])");
         Pipeline::parse(&text, &path).unwrap_or_else(|problems| panic!("{problems}"));
     }
     let settings: Vec<&str> = info.settings.iter().map(|setting| setting.set.as_str()).collect();
@@ -147,13 +152,13 @@ fn what_leaves_through_a_missing_wall_is_the_view_factor_to_it() {
 #[test]
 fn a_dark_room_gets_a_lamp_and_an_open_one_the_sky() {
     let closed = settings(&room(false, |_, _| {}));
-    assert!(
-        closed.contains("Light([Panel(corner: (1.5, 2.7, 1.875), edges: ((1, 0, 0), (0, 0, 1.25))"),
-        "{closed}"
-    );
+    // 500 lumens for each of 20 square meters.
+    let lamp = "Light([Panel(corner: (1.5, 2.7, 1.875), edges: ((1, 0, 0), (0, 0, 1.25)), power: 10_000)])";
+    assert!(closed.contains(lamp) && closed.contains("units: Photometric"), "{closed}");
     assert!(!closed.contains("Sky"), "{closed}");
-    let open = settings(&room(false, |_, walls| walls.truncate(5)));
-    assert!(open.contains("Sky(") && !open.contains("Panel"), "{open}");
+    let open = room(false, |_, walls| walls.truncate(5));
+    let light = open.settings.iter().find(|setting| setting.set.starts_with("Light")).unwrap();
+    assert!(light.set.contains("Sky(") && light.doubt.as_ref().unwrap().contains("Panel("), "{light:?}");
 }
 
 #[test]
@@ -173,7 +178,11 @@ fn a_room_inside_out_is_found() {
     assert_eq!((info.lines.global.mixed, info.lines.reflected), (0.0, None));
     assert!(info.findings.iter().any(|f| f.contains("inside out")), "{:?}", info.findings);
     let settings = settings(&info);
-    assert!(settings.contains("sides: Both") && settings.contains("Sky(") && settings.contains("Panel("));
+    assert!(settings.contains("sides: Both") && settings.contains("Sky("), "{settings}");
+    let lamp = "a lamp would be `Light([Panel(corner: (1.5, 2.7, 1.875)";
+    assert!(
+        info.settings.iter().any(|setting| setting.doubt.as_ref().is_some_and(|doubt| doubt.contains(lamp)))
+    );
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::check::needs::{group_file_bytes, memory, needed_besides_model};
 use crate::check::probe::{StageEstimate, probe};
 use crate::error::Error;
 use crate::memory;
-use crate::plan::{Action, Pipeline, Repeat, Until};
+use crate::plan::{Action, Ending, Pipeline};
 use crate::prepare::prepared::{Prepared, prepare};
 use crate::progress::{NoProgress, Progress};
 use crate::units::Units;
@@ -27,17 +27,8 @@ pub struct Estimate {
     /// Lines and lines per second of each stage with lines: the rate of one thread in a short trial on this machine,
     /// times the number of its processor cores.
     pub stages: Vec<StageEstimate>,
-    /// Repetition of these stages, if there is any.
-    pub repeat: Option<Repeated>,
-}
-
-/// Repetition of stages, see [`Repeat`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Repeated {
-    /// Target at which to stop.
-    pub until: Until,
-    /// Maximum number of repeats.
-    pub at_most: Option<u64>,
+    /// End of the `Repeat` of these stages, if there is one.
+    pub repeat: Option<Ending>,
 }
 
 /// Estimates the cost of the pipeline in the file `path`: reads its scene, makes its patches and traces a few lines of
@@ -62,10 +53,9 @@ pub fn estimate(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Estimate
     // The trial below needs as much memory as the run.
     memory::refuse_more_than_available(needed_besides_model(&memory))?;
     let repeat = pipeline.stages.iter().find_map(|stage| match &stage.action {
-        Action::Repeat(repeat) => Some(repeat),
+        Action::Repeat(repeat) => Some(repeat.ending()),
         _ => None,
     });
     let stages = probe(pipeline, &prepared)?;
-    let repeat = repeat.map(|&Repeat { until, at_most, .. }| Repeated { until, at_most });
     Ok(Estimate { units: pipeline.units, prepared, memory, peak_memory, group_file, stages, repeat })
 }

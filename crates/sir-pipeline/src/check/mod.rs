@@ -5,5 +5,5 @@ pub(crate) mod needs;
 pub mod probe;
 mod text;
 
-pub use estimate::{Estimate, Repeated, check, estimate};
+pub use estimate::{Estimate, check, estimate};
 pub use probe::StageEstimate;

@@ -102,7 +102,7 @@ fn try_sensors(
 ) -> Result<Vec<StageEstimate>, SolveError> {
     let (model, seed) = (&prepared.model, pipeline.seed);
     let repeats = pipeline.stages.iter().find_map(|stage| match &stage.action {
-        Action::Repeat(repeat) => Some(repeat.until.share_rays(repeat.at_most)),
+        Action::Repeat(repeat) => Some(repeat.ending().share_rays()),
         _ => None,
     });
     let mut estimates = Vec::new();

@@ -4,10 +4,10 @@ use std::fmt;
 
 use sir_geom::{Rgb, Scene};
 
-use crate::check::estimate::{Estimate, Repeated};
+use crate::check::estimate::Estimate;
 use crate::check::probe::StageEstimate;
 use crate::format::{bytes, duration, grouped};
-use crate::plan::Until;
+use crate::plan::{Ending, Until};
 use crate::prepare::layout::Placed;
 use crate::prepare::light_groups::LightGroup;
 use crate::prepare::prepared::Prepared;
@@ -15,27 +15,37 @@ use crate::prepare::sources::kinds;
 use crate::prepare::up::name;
 use crate::report::luminaires::installed_watts;
 
-impl Repeated {
+impl Ending {
     /// Returns the cost of all repeats, if one takes `once` seconds: whether the time is exact or a bound, the time in
     /// seconds, and a description of the number of repeats.
     fn cost(self, once: f64) -> (&'static str, f64, Option<String>) {
         let most = self.at_most.map_or(f64::INFINITY, |most| most as f64);
-        let limit = self.at_most.map_or(String::new(), |most| format!(", {} times at most", grouped(most)));
+        let limited_seconds = self.at_most_seconds.unwrap_or(f64::INFINITY).max(once);
+        let limits = [
+            self.at_most.map(|most| format!(", {} times at most", grouped(most))),
+            self.at_most_seconds.map(|most| format!(", for {} at most", duration(most))),
+        ];
+        let limit: String = limits.into_iter().flatten().collect();
         match self.until {
             Until::Times(times) => {
                 let times = most.min(times as f64);
-                (" in total", times * once, Some(format!("{} times", grouped(times as u64))))
+                let (bound, limit) = match self.at_most_seconds {
+                    Some(most) => (" at most", format!(", for {} at most", duration(most))),
+                    None => (" in total", String::new()),
+                };
+                let seconds = (times * once).min(limited_seconds);
+                (bound, seconds, Some(format!("{} times{limit}", grouped(times as u64))))
             }
             Until::Seconds(budget) => {
-                let seconds = budget.min(most * once).max(once);
+                let seconds = budget.min(most * once).min(limited_seconds).max(once);
                 let how = format!("for {}{limit}", duration(budget));
                 (" in total", seconds, Some(how))
             }
             Until::RelativeError(target) => {
                 let how = format!("until the relative error is {} %{limit}", 100.0 * target);
-                match self.at_most {
-                    Some(_) => (" at most", most * once, Some(how)),
-                    None => (" or more", once, Some(how)),
+                match (most * once).min(limited_seconds) {
+                    seconds if seconds.is_finite() => (" at most", seconds, Some(how)),
+                    _ => (" or more", once, Some(how)),
                 }
             }
         }

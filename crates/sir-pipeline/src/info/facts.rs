@@ -38,6 +38,8 @@ pub struct Info {
     pub up: [f64; 3],
     /// Reason for the up direction.
     pub up_from: String,
+    /// What speaks against the up direction, if anything.
+    pub doubt_of_up: Option<String>,
     /// Materials that triangles have, largest area first.
     pub materials: Vec<MaterialInfo>,
     /// Named parts, in file order.
@@ -109,11 +111,16 @@ pub struct Lights {
     pub power: [f64; 3],
 }
 
-/// Suggested stage of a pipeline.
+/// Suggested stage or field of a pipeline.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Setting {
-    /// Text of the stage in a pipeline file.
+    /// Text in a pipeline file.
     pub set: String,
     /// Reason for the suggestion.
     pub why: String,
+    /// What is doubtful about it, and what to write instead.
+    pub doubt: Option<String>,
+    /// True if every pipeline has it, so that it needs no mention.
+    #[serde(skip)]
+    pub is_usual: bool,
 }

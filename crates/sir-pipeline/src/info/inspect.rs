@@ -11,6 +11,7 @@ use sir_radiosity::{ModelError, Source, build_accel, sources};
 use crate::error::Error;
 use crate::fingerprint::PROGRAM;
 use crate::info::advice;
+use crate::info::choices::Choices;
 use crate::info::facts::{Group, Info, Lights, MaterialInfo, Textures};
 use crate::info::lines;
 use crate::info::shape;
@@ -28,6 +29,13 @@ const VERSION: u32 = 1;
 ///
 /// If the file cannot be read; see [`sir_geom::load`].
 pub fn inspect(path: &Path) -> Result<Info, Error> {
+    inspect_for(path, &path.display().to_string())
+        .map(|(info, choices)| Info { settings: choices.special(), ..info })
+}
+
+/// Reads a scene file, like [`inspect`]. Returns its contents without settings, and the choices for a pipeline that finds
+/// the file at `path_in_pipeline`.
+pub(crate) fn inspect_for(path: &Path, path_in_pipeline: &str) -> Result<(Info, Choices), Error> {
     let built = sir_geom::load(path, &LoadOptions::default())?;
     let scene = &built.scene;
     let mesh = PatchMesh::new(scene, Subdivision::PerTriangle).map_err(ModelError::from)?;
@@ -64,6 +72,7 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         distance_from_origin: extent.center().length(),
         up: up.into(),
         up_from,
+        doubt_of_up: doubt,
         materials: materials(scene),
         groups: groups(scene),
         sources: by_kind(&sources),
@@ -75,9 +84,9 @@ pub fn inspect(path: &Path) -> Result<Info, Error> {
         settings: Vec::new(),
     };
     info.findings = advice::findings(&info, &survey);
-    info.findings.extend(doubt);
-    info.settings = advice::settings(&info, &survey);
-    Ok(info)
+    info.findings.extend(info.doubt_of_up.clone());
+    let choices = Choices::new(&info, &survey, path_in_pipeline);
+    Ok((info, choices))
 }
 
 fn materials(scene: &Scene) -> Vec<MaterialInfo> {

@@ -6,6 +6,7 @@ use sir_geom::{Scene, TriangleId};
 use sir_radiosity::Source;
 
 use crate::format::{dimensions, grouped, length, percent};
+use crate::info::lamp_place::LampPlace;
 use crate::info::lamps::{Cover, LampLight, describe, lamp_light};
 use crate::info::shape;
 use crate::info::shape::{Dominant, Extent};
@@ -39,6 +40,8 @@ pub(crate) struct Survey {
     pub dominant: Option<Dominant>,
     /// Light of lamps; `None` if there are none.
     pub lamps: Option<LampLight>,
+    /// Place for a lamp; `None` if there is light.
+    pub lamp_place: Option<LampPlace>,
     /// Triangle that is so far away that the grid is coarse, if there is one.
     pub remote: Option<Remote>,
 }
@@ -65,6 +68,8 @@ pub(crate) struct LikelyUnit {
     pub name: &'static str,
     /// Length of the unit \[m\], as a pipeline has it.
     pub scale: &'static str,
+    /// The same as a number.
+    pub meters: f64,
 }
 
 impl Survey {
@@ -77,36 +82,37 @@ impl Survey {
         // Where the grid is so coarse that light passes through walls, light travels too far.
         let lit = by_lamps.into_iter().chain(rest).min_by(|a, b| a.1.total_cmp(&b.1));
         let remote = lit.and_then(|(center, size)| remote(scene, accel.grid_step(), center, size));
-        Self { extent: scene.bounding_box().into(), up, dominant, lamps, remote }
+        let extent: Extent = scene.bounding_box().into();
+        let room = dominant.as_ref().map_or(extent, |dominant| dominant.rest);
+        let lamp_place = sources.is_empty().then(|| LampPlace::find(scene, accel, up, room));
+        Self { extent, up, dominant, lamps, lamp_place, remote }
     }
 
     /// Returns what is suspicious, one line each. `has_focus` is true if a focus makes up for a part that dwarfs the
     /// rest.
     pub(crate) fn suspicions(&self, has_focus: bool) -> Vec<String> {
         let dominated = self.dominant.as_ref().filter(|_| !has_focus).map(dominated);
-        [
-            self.unit(),
-            self.far_from_origin(),
-            self.remote.as_ref().map(coarse),
-            dominated,
-            self.covered(),
-            self.absorbed(),
-            self.lost(),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+        [self.unit(), self.far_from_origin(), self.remote.as_ref().map(coarse), dominated]
+            .into_iter()
+            .flatten()
+            .chain(self.lamp_suspicions())
+            .collect()
     }
 
     /// Returns the unit that the file probably has, if that is not the meter.
     pub(crate) fn likely_unit(&self) -> Option<LikelyUnit> {
         let height = self.height()?;
         match height {
-            h if h > 1000.0 => Some(LikelyUnit { name: "millimeters", scale: "0.001" }),
-            h if h > 200.0 => Some(LikelyUnit { name: "centimeters", scale: "0.01" }),
-            h if h > 100.0 => Some(LikelyUnit { name: "inches", scale: "0.0254" }),
+            h if h > 1000.0 => Some(LikelyUnit { name: "millimeters", scale: "0.001", meters: 0.001 }),
+            h if h > 200.0 => Some(LikelyUnit { name: "centimeters", scale: "0.01", meters: 0.01 }),
+            h if h > 100.0 => Some(LikelyUnit { name: "inches", scale: "0.0254", meters: 0.0254 }),
             _ => None,
         }
+    }
+
+    /// Returns what is suspicious about the light of lamps, one line each.
+    pub(crate) fn lamp_suspicions(&self) -> impl Iterator<Item = String> {
+        [self.covered(), self.absorbed(), self.lost()].into_iter().flatten()
     }
 
     /// Returns the height of the scene, if it may be a room: as high as wide, about, while a landscape is flat.
@@ -116,11 +122,12 @@ impl Survey {
         (self.dominant.is_none() && height > 0.05 * size.max_element()).then_some(height)
     }
 
-    fn unit(&self) -> Option<String> {
+    /// Returns what is suspicious about the size of the scene.
+    pub(crate) fn unit(&self) -> Option<String> {
         let most = self.dominant.as_ref().map_or(self.extent, |dominant| dominant.rest).size().max_element();
         let lengths = "powers and distances of lights assume meters";
         match (self.likely_unit(), self.height()) {
-            (Some(LikelyUnit { name, scale }), Some(height)) => Some(format!(
+            (Some(LikelyUnit { name, scale, .. }), Some(height)) => Some(format!(
                 "a height of {} m looks like {name}, if this is a room; {lengths}; set `Load(scale: {scale})`",
                 length(height)
             )),

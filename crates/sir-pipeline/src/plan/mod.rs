@@ -54,5 +54,5 @@ pub use scene_light::SceneLight;
 pub use sensors::{Grid, Place, Plane, Points, SensorPoint, Sensors};
 pub use show::{ColorScale, Show};
 pub use sky::{Cie, Environment, Sky, SkyModel};
-pub use stage::{Action, Repeat, Stage, Until};
+pub use stage::{Action, Ending, Repeat, Stage, Until};
 pub use subdivide::{Divided, Division, Subdivide};

@@ -101,9 +101,32 @@ record! {
         pub until: Until = until();
         /// Maximum number of repeats. A warning reports that a target was not reached.
         pub at_most: Option<u64> = count(1, MAX_LINES, 100).optional("no limit");
+        /// Time limit beside `until: RelativeError(…)` or `times`: ends like `Seconds(s)`, if the target is not reached
+        /// before.
+        pub at_most_seconds: Option<f64> = positive(600.0).optional("no limit").unit("s");
         /// `Solve`, or `FirstShot` and the stages that may follow it, except `Sensors` and `Save`.
         pub stages: Vec<Stage> = StageList::REPEATED.required();
     }
+}
+
+impl Repeat {
+    /// Returns when it ends.
+    #[must_use]
+    pub fn ending(&self) -> Ending {
+        let Self { until, at_most, at_most_seconds, .. } = *self;
+        Ending { until, at_most, at_most_seconds }
+    }
+}
+
+/// When a `Repeat` ends: at its target, or at a limit before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ending {
+    /// Target.
+    pub until: Until,
+    /// Maximum number of repeats.
+    pub at_most: Option<u64>,
+    /// Time limit \[s\].
+    pub at_most_seconds: Option<f64>,
 }
 
 /// Target of a `Repeat`.

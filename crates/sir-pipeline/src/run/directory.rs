@@ -71,7 +71,7 @@ pub(crate) fn check_given(directory: &Path, force: bool, pipeline: &Pipeline) ->
 }
 
 /// Returns an error if the directory holds a result, or the checkpoint of an interrupted run, unless `force` is true.
-fn check_empty(directory: &Path, force: bool) -> Result<(), Error> {
+pub(crate) fn check_empty(directory: &Path, force: bool) -> Result<(), Error> {
     if !force && directory.join(REPORT).exists() {
         return Err(Error::Exists { directory: directory.to_owned() });
     }

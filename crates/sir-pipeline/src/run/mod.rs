@@ -9,7 +9,7 @@
 //!   probes; `measured`: their measurements in all repeats.
 
 pub(crate) mod computed;
-mod directory;
+pub(crate) mod directory;
 pub(crate) mod execute;
 mod group_file;
 mod groups;

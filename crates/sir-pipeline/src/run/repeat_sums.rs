@@ -9,7 +9,7 @@ use sir_parallel::{Communicator, StageTime, Threads};
 use sir_radiosity::{MIN_REPEATS, Model, PowerUnit, Repeats, Solution, Visitor, share};
 
 use crate::format::{duration, grouped};
-use crate::plan::{Action, Pipeline, Until};
+use crate::plan::{Action, Ending, Pipeline, Repeat, Until};
 use crate::prepare::prepared::Prepared;
 use crate::report::lines::Facts;
 use crate::report::result::{
@@ -30,8 +30,7 @@ pub(super) struct RepeatSums<'a> {
     /// Direct irradiance for pages, after its stage has been reported.
     direct: Option<Arc<[Rgb]>>,
     pub(super) steps: Vec<Step<'a>>,
-    until: Until,
-    at_most: Option<u64>,
+    ending: Ending,
     /// How the repeats share the lines that the pipeline states; `None` if each has all of them.
     pub(super) sharing: Option<Sharing>,
     /// Number of repeats that share the rays of sensors.
@@ -66,14 +65,11 @@ impl<'a> RepeatSums<'a> {
             let actions = stage.flat().flat_map(|stage| parts_of(&stage.action, of_solve)).enumerate();
             places.extend(actions.map(|(part, action)| ((number, part), action)));
         }
-        let (sharing, until, at_most) = match repeat {
-            Some(repeat) => (None, repeat.until, repeat.at_most),
-            None => {
-                let sharing = Sharing::of(places.iter().map(|(_, action)| *action), prepared);
-                (Some(sharing), Until::Times(sharing.repeats), None)
-            }
-        };
-        let share_rays = until.share_rays(at_most);
+        let sharing =
+            repeat.is_none().then(|| Sharing::of(places.iter().map(|(_, action)| *action), prepared));
+        let times = Until::Times(sharing.map_or(1, |sharing| sharing.repeats));
+        let ending = repeat.map_or(Ending::after(times), Repeat::ending);
+        let share_rays = ending.share_rays();
         let sides = prepared.model.mesh.side_count();
         let parts = parts_of_tables(pipeline, prepared);
         let direct_step = if pipeline.shows_direct() {
@@ -84,10 +80,8 @@ impl<'a> RepeatSums<'a> {
             None
         };
         let sums = |is_result: bool| {
-            let repeats = match until {
-                Until::Times(MIN_REPEATS..) if at_most.is_none() => Repeats::of_many(sides),
-                _ => Repeats::new(sides),
-            };
+            let has_many = ending.is_exact() && matches!(ending.until, Until::Times(MIN_REPEATS..));
+            let repeats = if has_many { Repeats::of_many(sides) } else { Repeats::new(sides) };
             repeats.with_sums(if is_result { &parts } else { &[] })
         };
         let mut steps = Vec::new();
@@ -111,8 +105,7 @@ impl<'a> RepeatSums<'a> {
             parts,
             direct: None,
             steps,
-            until,
-            at_most,
+            ending,
             sharing,
             share_rays,
             count: 0,
@@ -127,7 +120,7 @@ impl<'a> RepeatSums<'a> {
 
     /// True if the stages are run once, as the pipeline states them.
     pub(super) fn is_single(&self) -> bool {
-        self.until == Until::Times(1)
+        self.ending.until == Until::Times(1)
     }
 
     /// Returns the index of the step at a place.
@@ -180,7 +173,7 @@ impl<'a> RepeatSums<'a> {
         self.count += 1;
         let Prepared { model, inside, .. } = self.prepared;
         let Some(light) = self.steps.iter().rev().find_map(|step| step.light.as_ref()) else { return };
-        let is_target = matches!(self.until, Until::RelativeError(_));
+        let is_target = matches!(self.ending.until, Until::RelativeError(_));
         if !is_target && !light.have_spread() {
             return;
         }
@@ -195,10 +188,9 @@ impl<'a> RepeatSums<'a> {
 
     /// Returns true if another repeat should run. Rank 0 decides, because clocks differ.
     pub(super) fn wants_more(&mut self, comm: &dyn Communicator, watcher: Option<&dyn Watcher>) -> bool {
-        let wanted = self.until.wants_more(self.count, self.error, self.elapsed().as_secs_f64());
-        let allowed = self.at_most.is_none_or(|most| self.count < most);
-        let is_ended_early = wanted && allowed && watcher.is_some_and(|watcher| watcher.wants_end());
-        let mut decision = [i64::from(wanted && allowed), i64::from(is_ended_early)];
+        let wanted = self.ending.wants_more(self.count, self.error, self.elapsed().as_secs_f64());
+        let is_ended_early = wanted && watcher.is_some_and(|watcher| watcher.wants_end());
+        let mut decision = [i64::from(wanted), i64::from(is_ended_early)];
         comm.broadcast(&mut decision);
         self.is_ended_early = decision[1] > 0;
         decision[0] > 0 && !self.is_ended_early
@@ -227,16 +219,19 @@ impl<'a> RepeatSums<'a> {
     fn expected_repeats(&self) -> Option<f64> {
         let done = self.count as f64;
         let (error, seconds) = (self.error, self.elapsed().as_secs_f64());
-        let wanted = match self.until {
+        let in_time = |budget: f64| (done > 0.0).then(|| (done * budget / seconds).floor());
+        let wanted = match self.ending.until {
             Until::Times(times) => Some(times as f64),
             // The error falls with the square root of the number of repeats.
             Until::RelativeError(target) => {
                 error.map(|error| (done * (error / target) * (error / target)).ceil())
             }
-            Until::Seconds(budget) => (done > 0.0).then(|| (done * budget / seconds).floor()),
+            Until::Seconds(budget) => in_time(budget),
         };
-        let most = self.at_most.map_or(f64::INFINITY, |most| most as f64);
-        wanted.map(|wanted| wanted.max(done + 1.0).min(most))
+        let most = self.ending.at_most.map_or(f64::INFINITY, |most| most as f64);
+        let allowed = self.ending.at_most_seconds.and_then(in_time);
+        let least = [wanted, allowed].into_iter().flatten().reduce(f64::min);
+        least.map(|wanted| wanted.max(done + 1.0).min(most))
     }
 
     /// Returns a line about what is repeated.
@@ -255,10 +250,10 @@ impl<'a> RepeatSums<'a> {
     pub(super) fn title(&self) -> String {
         let mut title = format!("Repeat {}", self.count + 1);
         let expected = self.expected_repeats();
-        if let (Until::Times(_), Some(times)) = (self.until, expected) {
+        if let (Until::Times(times), true) = (self.ending.until, self.ending.is_exact()) {
             title += &format!(" of {times}");
         }
-        match (self.until, self.error) {
+        match (self.ending.until, self.error) {
             (Until::RelativeError(target), Some(error)) => {
                 title += &format!(", relative error {:.3} % (target {} %)", 100.0 * error, 100.0 * target);
             }
@@ -345,22 +340,34 @@ impl Convergence {
     }
 }
 
-impl Until {
+impl Ending {
+    /// Returns an ending without limits before its target.
+    fn after(until: Until) -> Self {
+        Self { until, at_most: None, at_most_seconds: None }
+    }
+
+    /// True if there is no limit before the target.
+    fn is_exact(self) -> bool {
+        self.at_most.is_none() && self.at_most_seconds.is_none()
+    }
+
     /// Returns the number of repeats that share the rays of sensors.
-    pub(crate) fn share_rays(self, at_most: Option<u64>) -> u64 {
+    pub(crate) fn share_rays(self) -> u64 {
         // The number of repeats may not be known, or be large.
-        let most = at_most.unwrap_or(u64::MAX).min(SHARED);
-        if let Self::Times(times) = self { times.min(most) } else { most }
+        let most = self.at_most.unwrap_or(u64::MAX).min(SHARED);
+        if let Until::Times(times) = self.until { times.min(most) } else { most }
     }
 
     /// Returns true if another repeat should run after `done` repeats, at least one, which took `seconds` and whose
     /// mean has the relative error `error`.
-    pub(super) fn wants_more(self, done: u64, error: Option<f64>, seconds: f64) -> bool {
-        match self {
-            Self::Times(times) => done < times,
-            Self::RelativeError(target) => error.is_some_and(|error| error > target),
-            Self::Seconds(budget) => seconds + seconds / done.max(1) as f64 <= budget,
-        }
+    fn wants_more(self, done: u64, error: Option<f64>, seconds: f64) -> bool {
+        let ends_within = |budget: f64| seconds + seconds / done.max(1) as f64 <= budget;
+        let wanted = match self.until {
+            Until::Times(times) => done < times,
+            Until::RelativeError(target) => error.is_some_and(|error| error > target),
+            Until::Seconds(budget) => ends_within(budget),
+        };
+        wanted && self.at_most.is_none_or(|most| done < most) && self.at_most_seconds.is_none_or(ends_within)
     }
 }
 
@@ -370,17 +377,24 @@ mod tests {
 
     #[test]
     fn a_repeat_that_would_end_too_late_is_not_begun() {
-        let budget = Until::Seconds(60.0);
-        // Five repeats of ten seconds each; a sixth would end just in time.
-        assert!(budget.wants_more(5, None, 50.0));
-        assert!(!budget.wants_more(5, None, 50.1));
-        assert!(!budget.wants_more(1, None, 31.0));
+        let target = Until::RelativeError(0.01);
+        let limited = Ending { at_most_seconds: Some(60.0), ..Ending::after(target) };
+        for budget in [Ending::after(Until::Seconds(60.0)), limited] {
+            // Five repeats of ten seconds each; a sixth would end just in time.
+            assert!(budget.wants_more(5, Some(0.02), 50.0));
+            assert!(!budget.wants_more(5, Some(0.02), 50.1));
+            assert!(!budget.wants_more(1, Some(0.02), 31.0));
+        }
+        assert!(!limited.wants_more(5, Some(0.01), 1.0));
     }
 
     #[test]
     fn a_target_is_met_when_it_is_reached() {
-        let target = Until::RelativeError(0.01);
+        let target = Ending::after(Until::RelativeError(0.01));
         assert!(target.wants_more(3, Some(0.0101), 1.0) && !target.wants_more(3, Some(0.01), 1.0));
-        assert!(Until::Times(3).wants_more(2, None, 1.0) && !Until::Times(3).wants_more(3, None, 1.0));
+        let times = Ending::after(Until::Times(3));
+        assert!(times.wants_more(2, None, 1.0) && !times.wants_more(3, None, 1.0));
+        let limited = Ending { at_most: Some(3), ..target };
+        assert!(limited.wants_more(2, Some(0.02), 1.0) && !limited.wants_more(3, Some(0.02), 1.0));
     }
 }

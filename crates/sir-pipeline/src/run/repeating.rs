@@ -27,7 +27,7 @@ use crate::run::measured::Measured;
 use crate::run::reach::{dark_warning, few_lines_warning};
 use crate::run::repeat_sums::RepeatSums;
 use crate::run::save::view_of;
-use crate::run::sharing::SHARED;
+use crate::run::sharing::{SHARED, rounded_up};
 use crate::run::stages::{large_error_warning, unshot_warning};
 use crate::stopwatch::Stopwatch;
 use crate::watcher::Watcher;
@@ -325,13 +325,24 @@ fn missed_target_warning(settings: &Repeat, report: &StageReport) -> Vec<String>
         report.light.as_ref().map_or(0.0, |light| light.relative_error.into_iter().fold(0.0, f64::max));
     match settings.until {
         Until::Times(times) if repeats < times => {
-            vec![format!("`at_most` limited `Repeat` to {repeats} of {times} repeats")]
+            let limit = if settings.at_most.is_some_and(|most| repeats >= most) {
+                "at_most"
+            } else {
+                "at_most_seconds"
+            };
+            vec![format!("`{limit}` limited `Repeat` to {repeats} of {times} repeats")]
         }
         Until::RelativeError(target) if error > target => {
-            let wanted = (repeats as f64 * (error / target) * (error / target)).ceil();
+            let factor = (error / target) * (error / target);
+            let advice = if settings.at_most.is_some_and(|most| repeats >= most) {
+                let wanted = (repeats as f64 * factor).ceil();
+                format!("increase `at_most` to about {wanted}, or give the stages more lines")
+            } else {
+                let wanted = rounded_up(report.time.seconds * factor);
+                format!("increase `at_most_seconds` to about {wanted}")
+            };
             vec![format!(
-                "after {repeats} repeats the relative error is {:.3} %, not {} %; increase `at_most` to about {wanted}, or give \
-                 the stages more lines",
+                "after {repeats} repeats the relative error is {:.3} %, not {} %; {advice}",
                 100.0 * error,
                 100.0 * target
             )]

@@ -66,7 +66,7 @@ pub(crate) fn repeats_of(possible: f64) -> u64 {
 }
 
 /// Returns a number rounded up to two digits.
-fn rounded_up(x: f64) -> u64 {
+pub(crate) fn rounded_up(x: f64) -> u64 {
     let unit = 10u64.pow((x.max(10.0).log10().floor() as u32).saturating_sub(1));
     (x / unit as f64).ceil() as u64 * unit
 }
