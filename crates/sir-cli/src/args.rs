@@ -2,10 +2,13 @@
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
+use clap_complete::Shell;
 use sir_geom::Rgb;
+use sir_parallel::HAS_MPI;
 use sir_pipeline::fingerprint::PROGRAM_VERSION;
 
 use crate::experiment::ExperimentArgs;
@@ -51,7 +54,7 @@ Exit codes: 0 success; 1 failure; 2 invalid usage or pipeline; 130 interrupted."
 /// Computes the light on every part of every surface of a scene, with all diffuse reflections between the surfaces, and
 /// states the accuracy of the result.
 #[derive(Debug, Parser)]
-#[command(name = "sir", version = PROGRAM_VERSION, after_long_help = EXAMPLES, after_help = "`sir --help` shows examples and exit codes.")]
+#[command(name = "sir", version = PROGRAM_VERSION, long_version = LONG_VERSION.as_str(), after_long_help = EXAMPLES, after_help = "`sir --help` shows examples and exit codes.")]
 pub struct Args {
     /// Command to execute.
     #[command(subcommand)]
@@ -145,7 +148,30 @@ pub enum Command {
     /// and computed answers, standard errors and differences. Exits with code 1 if an answer is off by more than four
     /// standard errors. Takes minutes; with --quick, half a minute.
     Validate(ValidateArgs),
+    /// Print the fields of pipeline files as JSON, for editors.
+    ///
+    /// `records` has each record, such as Load, with its fields: their values, units, defaults and meanings, as in
+    /// docs/pipeline.md. `choices` has the names among which a place of the file chooses: stages, lights, outputs and others.
+    Schema,
+    /// Print a script that completes commands and options in a shell.
+    ///
+    /// For example, in bash: `source <(sir completions bash)`.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
 }
+
+/// Version of the program and how it was built.
+static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
+    let kind = if cfg!(debug_assertions) { "debug" } else { "release" };
+    let mpi = if HAS_MPI { "mpi" } else { "none" };
+    format!(
+        "{PROGRAM_VERSION}\nbuild: {kind}, {} {}\nfeatures: {mpi}",
+        std::env::consts::ARCH,
+        std::env::consts::OS
+    )
+});
 
 /// Arguments of `sir run`.
 #[derive(Debug, clap::Args)]

@@ -38,10 +38,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use clap::Parser as _;
+use clap::{CommandFactory as _, Parser as _};
 use sir_parallel::{Communicator, SingleProcess, connect};
 use sir_pipeline::check::estimate;
-use sir_pipeline::plan::Pipeline;
+use sir_pipeline::plan::{Pipeline, schema};
 use sir_pipeline::run::{resume_together, run_together};
 use sir_pipeline::{ErrorKind, MixOptions, RunOptions, RunResult, Watcher, mix, report};
 
@@ -146,7 +146,16 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
         Command::Experiment(args) => experiment::command(&args),
         Command::ViewFactors(args) => viewfactors::command(&args, comm, &stop),
         Command::Validate(args) => validate::command(&args),
+        Command::Schema => Ok(format!("{:#}\n", serde_json::json!(schema()))),
+        Command::Completions { shell } => Ok(completions(shell)),
     }
+}
+
+/// Returns the script for a shell.
+fn completions(shell: clap_complete::Shell) -> String {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Args::command(), "sir", &mut script);
+    String::from_utf8_lossy(&script).into_owned()
 }
 
 /// Returns the options of a run that `stop` can interrupt. Starts the server of `--watch`.

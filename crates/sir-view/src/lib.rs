@@ -49,7 +49,7 @@
 //! let display = DisplayMesh::new(&scene, &mesh, &irradiance);
 //! let corners: Vec<_> = scene.triangles().iter().map(|triangle| triangle.vertices.map(|v| v.0)).collect();
 //! let accel = Accel::build(scene.vertices(), &corners, Options::default())?;
-//! let camera = default_camera(&display, &accel, DVec3::Y);
+//! let camera = default_camera(&display, &accel, DVec3::Y, scene.bounding_box());
 //! let settings = PictureSettings { width: 40, height: 30, grid: 2, threads: 1 };
 //! let picture = render(&display, &accel, &camera, settings)?;
 //!

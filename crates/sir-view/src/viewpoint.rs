@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use sir_accel::{Accel, Tracer};
-use sir_geom::{Camera, Scene, TriangleId, luminance};
+use sir_geom::{BoundingBox, Camera, Scene, TriangleId, luminance};
 
 use crate::camera_rays::CameraRays;
 use crate::display::DisplayMesh;
@@ -24,22 +24,26 @@ const ACROSS: [f64; 5] = [0.07, 0.28, 0.5, 0.72, 0.93];
 /// Eye heights, as fractions of the height of the scene.
 const HEIGHTS: [f64; 2] = [0.4, 0.6];
 
+/// Distance from the box at which a surface still counts, in diagonals of the box.
+const ROUNDING: f64 = 1e-6;
+
 /// Number of view directions around the vertical.
 const TURNS: u32 = 8;
 
-/// Returns a view that shows much of the inside of a scene, for use when neither the user nor the file specifies one.
+/// Returns a view that shows much of the inside of a box, such as that of the scene, for use when neither the user nor
+/// the file specifies one.
 ///
-/// A few hundred views are tried, from places inside the bounding box of the scene and from all sides outside of it,
+/// A few hundred views are tried, from places inside the box and from all sides outside of it,
 /// each with a few hundred rays. The best view sees lit surfaces near and far, a large part of the total surface area,
 /// and many materials and triangles. Little of its picture is empty, dark, or covered by backs of surfaces or by
 /// something right before the eye. `up` is the up direction of the scene; see
 /// [`up_clues`](crate::up_clues).
 #[must_use]
-pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3) -> Camera {
-    let scorer = ViewScorer::new(display);
+pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3, bounds: BoundingBox) -> Camera {
+    let scorer = ViewScorer::new(display, bounds);
     let mut tracer = accel.tracer();
     let mut best: Option<(f64, Camera)> = None;
-    for camera in candidates(display.scene, up) {
+    for camera in candidates(bounds, up) {
         let score = scorer.score(&mut tracer, &camera);
         if best.as_ref().is_none_or(|(most, _)| score > *most) {
             best = Some((score, camera));
@@ -47,7 +51,7 @@ pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3) -> Ca
     }
     let fallback = || Camera {
         name: String::new(),
-        eye: display.scene.bounding_box().center(),
+        eye: bounds.center(),
         forward: DVec3::X,
         up,
         projection: sir_geom::Projection::Perspective { vertical_fov: FIELD },
@@ -58,12 +62,12 @@ pub fn default_camera(display: &DisplayMesh<'_>, accel: &Accel, up: DVec3) -> Ca
     camera
 }
 
-fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
+fn candidates(bounds: BoundingBox, up: DVec3) -> Vec<Camera> {
     let up = up.normalize_or(DVec3::Y);
     // Horizontal axes: axes of the scene, if `up` is one of them.
     let east = if up.x.abs() < 0.9 { DVec3::X.reject_from(up) } else { DVec3::Z.reject_from(up) }.normalize();
     let north = up.cross(east);
-    let (center, size) = (scene.bounding_box().center(), scene.bounding_box().size());
+    let (center, size) = (bounds.center(), bounds.size());
     let extent = |axis: DVec3| axis.abs().dot(size);
     let at = |e: f64, n: f64, u: f64| {
         center
@@ -94,7 +98,7 @@ fn candidates(scene: &Scene, up: DVec3) -> Vec<Camera> {
     {
         add(center + (0.5 * size + 0.5 * extent(up) / (0.5 * FIELD).tan()) * axis, center);
     }
-    let distance = scene.bounding_sphere().radius / (0.5 * FIELD).sin();
+    let distance = 0.5 * size.length() / (0.5 * FIELD).sin();
     for k in 0..TURNS {
         for height in [0.0, 0.35] {
             add(center + distance * (turned(k) + height * up).normalize(), center);
@@ -108,18 +112,19 @@ struct ViewScorer<'a> {
     display: &'a DisplayMesh<'a>,
     /// Luminance of the radiosity of a well-lit surface \[W/m²\].
     bright: f64,
-    /// Diagonal of the bounding box of the scene \[m\].
-    diagonal: f64,
-    /// Area of all surfaces \[m²\].
+    /// Box whose surfaces count.
+    bounds: BoundingBox,
+    /// Area of all surfaces that count \[m²\].
     area: f64,
 }
 
 impl<'a> ViewScorer<'a> {
-    fn new(display: &'a DisplayMesh<'a>) -> Self {
+    fn new(display: &'a DisplayMesh<'a>, bounds: BoundingBox) -> Self {
         let scene = display.scene;
         let (mut sum, mut area) = (0.0, 0.0);
         for piece in display.pieces() {
-            if scene.exitance(piece.triangle, piece.side) == DVec3::ZERO {
+            let is_inside = counts(scene, bounds, piece.triangle);
+            if is_inside && scene.exitance(piece.triangle, piece.side) == DVec3::ZERO {
                 let patch = display.mesh.patch_of_side(piece.triangle, piece.id);
                 let part = display.mesh.covered_area(piece.triangle, patch);
                 sum += part * luminance(display.own_radiosity(&piece)).sqrt();
@@ -131,14 +136,14 @@ impl<'a> ViewScorer<'a> {
         Self {
             display,
             bright: mean * mean,
-            diagonal: scene.bounding_box().size().length(),
-            area: scene.total_area(),
+            bounds,
+            area: scene.triangle_ids().filter(|&id| counts(scene, bounds, id)).map(|id| scene.area(id)).sum(),
         }
     }
 
     fn score(&self, tracer: &mut Tracer<'_>, camera: &Camera) -> f64 {
         let scene = self.display.scene;
-        let rays = CameraRays::new(camera, ASPECT);
+        let (rays, diagonal) = (CameraRays::new(camera, ASPECT), self.bounds.size().length());
         let (mut lit, mut near, mut depth) = (0.0, 0.0, 0.0);
         let mut materials: BTreeMap<u32, f64> = BTreeMap::new();
         let mut triangles: BTreeMap<u32, f64> = BTreeMap::new();
@@ -151,7 +156,7 @@ impl<'a> ViewScorer<'a> {
                 let patch = self.display.mesh.patch_at(hit.triangle, hit.point);
                 let b = luminance(self.display.radiosity(hit.triangle, patch, hit.side, e));
                 lit += if self.bright > 0.0 { (b / self.bright).min(1.0) } else { 1.0 };
-                let far = hit.t / self.diagonal;
+                let far = hit.t / diagonal;
                 near += f64::from(u8::from(far < 0.06));
                 depth += far.min(1.0).sqrt();
                 *materials.entry(scene.triangle(hit.triangle).material.0).or_default() += 1.0;
@@ -165,8 +170,8 @@ impl<'a> ViewScorer<'a> {
         }
         let (lit, near, depth) = (lit / hits, near / hits, depth / hits);
         let filled = (hits / count).sqrt();
-        let seen: f64 = triangles.keys().map(|&t| scene.area(TriangleId(t))).sum();
-        let overview = (seen / self.area).sqrt();
+        let seen = triangles.keys().map(|&t| TriangleId(t)).filter(|&id| counts(scene, self.bounds, id));
+        let overview = (seen.map(|id| scene.area(id)).sum::<f64>() / self.area).sqrt();
         filled
             * lit
             * depth
@@ -175,6 +180,14 @@ impl<'a> ViewScorer<'a> {
             * (1.0 + entropy(&materials, hits))
             * (2.0 + entropy(&triangles, hits))
     }
+}
+
+/// True if the middle of a triangle is in the box.
+fn counts(scene: &Scene, bounds: BoundingBox, id: TriangleId) -> bool {
+    // Rounding must not take a wall in a face of the box out of it.
+    let (middle, step) =
+        (scene.corners(id).into_iter().sum::<DVec3>() / 3.0, ROUNDING * bounds.size().length());
+    middle.distance(middle.clamp(bounds.min, bounds.max)) <= step
 }
 
 /// Returns the entropy of the shares of `total`: the logarithm of the effective number of things seen.

@@ -239,7 +239,7 @@ fn the_default_camera_stands_in_a_lit_closed_room() {
         });
         let display = DisplayMesh::new(&scene, &mesh, &irradiance);
         let accel = build_accel(&scene).unwrap();
-        let camera = default_camera(&display, &accel, DVec3::Y);
+        let camera = default_camera(&display, &accel, DVec3::Y, scene.bounding_box());
         let inside = |p: DVec3| p.cmpgt(DVec3::ZERO).all() && p.cmplt(SIZE).all();
         assert!(inside(camera.eye), "{camera:?}");
         let picture = render(&display, &accel, &camera, settings(1)).unwrap();

@@ -30,6 +30,7 @@ pub(crate) mod sky;
 pub(crate) mod stage;
 pub(crate) mod subdivide;
 
+pub use crate::text::field::Row;
 pub use border::Border;
 pub use focus::Focus;
 pub use image::{Camera, CameraChoice, Image};
@@ -47,7 +48,7 @@ pub use pipeline::Pipeline;
 pub use point::{Lambertian, Point, PointStrength, Spot, Spread};
 pub use points_file::PointsFile;
 pub use probes::Probes;
-pub use reference::field_tables;
+pub use reference::{ChoiceSchema, RecordSchema, Schema, schema};
 pub use require::Require;
 pub use save::{Gltf, Output, Report, Save, Table};
 pub use scene_light::SceneLight;

@@ -1,80 +1,144 @@
-//! Tables of the fields of a pipeline file, for the reference.
+//! The records of a pipeline file and their fields, for the reference and for editors.
 
+use serde::Serialize;
+
+use crate::fingerprint::PROGRAM;
 use crate::plan::focus::Focus;
 use crate::plan::image::{Camera, Image};
-use crate::plan::light::Distant;
+use crate::plan::light::{Distant, Lamp};
 use crate::plan::light_group::FileLights;
 use crate::plan::lightmap::Lightmap;
 use crate::plan::lines::{FirstShot, SecondShot, ShadowRays, Solve};
 use crate::plan::load::Load;
 use crate::plan::luminaire::Luminaire;
-use crate::plan::measure::SemiCylindrical;
-use crate::plan::multipath::{Multipath, Replicas};
+use crate::plan::measure::{Measure, SemiCylindrical};
+use crate::plan::multipath::{Multipath, Replicas, Transport};
 use crate::plan::panel::Panel;
 use crate::plan::pipeline::Content;
-use crate::plan::point::{Lambertian, Point, Spot};
+use crate::plan::point::{Lambertian, Point, Spot, Spread};
 use crate::plan::probes::Probes;
 use crate::plan::require::Require;
-use crate::plan::save::{Gltf, Report, Table};
-use crate::plan::sensors::{Grid, Plane, SensorPoint, Sensors};
-use crate::plan::sky::{Cie, Environment, Sky};
-use crate::plan::stage::Repeat;
+use crate::plan::save::{Gltf, Output, Report, Table};
+use crate::plan::sensors::{Grid, Place, Plane, SensorPoint, Sensors};
+use crate::plan::sky::{Cie, Environment, Sky, SkyModel};
+use crate::plan::stage::{Action, Repeat};
 use crate::plan::subdivide::Subdivide;
 use crate::text::field::Row;
-use crate::text::record::Record;
+use crate::text::record::{Choose, Record};
 
-/// Returns a Markdown table of fields for each record, with its name in a pipeline file.
-#[must_use]
-pub fn field_tables() -> Vec<(&'static str, String)> {
-    vec![
-        table::<Content>(),
-        table::<Load>(),
-        table::<Point>(),
-        table::<Lambertian>(),
-        table::<Spot>(),
-        table::<Distant>(),
-        table::<Panel>(),
-        table::<Luminaire>(),
-        table::<Sky>(),
-        table::<Cie>(),
-        table::<Environment>(),
-        table::<FileLights>(),
-        table::<Subdivide>(),
-        table::<Focus>(),
-        table::<Solve>(),
-        table::<FirstShot>(),
-        table::<ShadowRays>(),
-        table::<SecondShot>(),
-        table::<Multipath>(),
-        table::<Replicas>(),
-        table::<Repeat>(),
-        table::<Sensors>(),
-        table::<SensorPoint>(),
-        table::<Grid>(),
-        table::<Plane>(),
-        table::<SemiCylindrical>(),
-        table::<Require>(),
-        table::<Probes>(),
-        table::<Image>(),
-        table::<Camera>(),
-        table::<Gltf>(),
-        table::<Table>(),
-        table::<Report>(),
-        table::<Lightmap>(),
-    ]
+/// Version of the JSON layout of a [`Schema`].
+const VERSION: u32 = 1;
+
+/// What a pipeline file may contain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Schema {
+    /// Version of the JSON layout.
+    pub version: u32,
+    /// Name and version of the program.
+    pub program: &'static str,
+    /// Records: `Name(field: value, …)`.
+    pub records: Vec<RecordSchema>,
+    /// Choices among records and names.
+    pub choices: Vec<ChoiceSchema>,
 }
 
-fn table<T: Record>() -> (&'static str, String) {
-    let rows = T::rows();
-    let has_units = rows.iter().any(|row| !row.unit.is_empty());
-    let line = |[name, values, unit, default, meaning]: [&str; 5]| {
-        let unit = if has_units { format!(" {unit} |") } else { String::new() };
-        format!("| {name} | {values} |{unit} {default} | {meaning} |\n")
-    };
-    let mut text = line([&format!("field of `{}`", T::NAME), "value", "unit", "default", "meaning"]);
-    text += &line(["---"; 5]);
-    for Row { name, values, unit, default, meaning } in &rows {
-        text += &line([&format!("`{name}`"), values, unit, default, meaning.trim()]);
+/// A record and its fields.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordSchema {
+    /// Name in a pipeline file.
+    pub name: &'static str,
+    /// Fields, in their order.
+    pub fields: Vec<Row>,
+}
+
+/// A choice.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChoiceSchema {
+    /// Noun for what is chosen, such as `stage`.
+    pub what: &'static str,
+    /// Names of the variants. Those that have fields are records.
+    pub variants: &'static [&'static str],
+}
+
+impl RecordSchema {
+    fn of<T: Record>() -> Self {
+        Self { name: T::NAME, fields: T::rows() }
     }
-    (T::NAME, text)
+
+    /// Returns a Markdown table of the fields.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        let has_units = self.fields.iter().any(|row| !row.unit.is_empty());
+        let line = |[name, values, unit, default, meaning]: [&str; 5]| {
+            let unit = if has_units { format!(" {unit} |") } else { String::new() };
+            format!("| {name} | {values} |{unit} {default} | {meaning} |\n")
+        };
+        let mut text = line([&format!("field of `{}`", self.name), "value", "unit", "default", "meaning"]);
+        text += &line(["---"; 5]);
+        for Row { name, values, unit, default, meaning } in &self.fields {
+            text += &line([&format!("`{name}`"), values, unit, default, meaning.trim()]);
+        }
+        text
+    }
+}
+
+impl ChoiceSchema {
+    fn of<T: Choose>() -> Self {
+        Self { what: T::WHAT, variants: T::NAMES }
+    }
+}
+
+/// Returns what a pipeline file may contain.
+#[must_use]
+pub fn schema() -> Schema {
+    Schema {
+        version: VERSION,
+        program: PROGRAM,
+        records: vec![
+            RecordSchema::of::<Content>(),
+            RecordSchema::of::<Load>(),
+            RecordSchema::of::<Point>(),
+            RecordSchema::of::<Lambertian>(),
+            RecordSchema::of::<Spot>(),
+            RecordSchema::of::<Distant>(),
+            RecordSchema::of::<Panel>(),
+            RecordSchema::of::<Luminaire>(),
+            RecordSchema::of::<Sky>(),
+            RecordSchema::of::<Cie>(),
+            RecordSchema::of::<Environment>(),
+            RecordSchema::of::<FileLights>(),
+            RecordSchema::of::<Subdivide>(),
+            RecordSchema::of::<Focus>(),
+            RecordSchema::of::<Solve>(),
+            RecordSchema::of::<FirstShot>(),
+            RecordSchema::of::<ShadowRays>(),
+            RecordSchema::of::<SecondShot>(),
+            RecordSchema::of::<Multipath>(),
+            RecordSchema::of::<Replicas>(),
+            RecordSchema::of::<Repeat>(),
+            RecordSchema::of::<Sensors>(),
+            RecordSchema::of::<SensorPoint>(),
+            RecordSchema::of::<Grid>(),
+            RecordSchema::of::<Plane>(),
+            RecordSchema::of::<SemiCylindrical>(),
+            RecordSchema::of::<Require>(),
+            RecordSchema::of::<Probes>(),
+            RecordSchema::of::<Image>(),
+            RecordSchema::of::<Camera>(),
+            RecordSchema::of::<Gltf>(),
+            RecordSchema::of::<Table>(),
+            RecordSchema::of::<Report>(),
+            RecordSchema::of::<Lightmap>(),
+        ],
+        choices: vec![
+            ChoiceSchema::of::<Action>(),
+            ChoiceSchema::of::<Lamp>(),
+            ChoiceSchema::of::<SkyModel>(),
+            ChoiceSchema::of::<Spread>(),
+            ChoiceSchema::of::<Transport>(),
+            ChoiceSchema::of::<Place>(),
+            ChoiceSchema::of::<Measure>(),
+            ChoiceSchema::of::<Output>(),
+        ],
+    }
 }

@@ -256,9 +256,10 @@ impl<'a> Renderer<'a> {
 
     /// Returns the camera for a scene without cameras. Keeps it, because finding it takes time.
     fn default_camera(&mut self) -> Camera {
-        let Prepared { model, up, .. } = self.prepared;
+        let Prepared { model, up, focus, .. } = self.prepared;
+        let bounds = focus.map_or(model.scene.bounding_box(), |focus| focus.bounds());
         let find = || {
-            let camera = default_camera((self.display)(), &model.accel, *up);
+            let camera = default_camera((self.display)(), &model.accel, *up, bounds);
             // The report states this camera, so its numbers are short.
             plan::Camera::of_scene(&camera).and_then(|camera| camera.to_scene(*up)).unwrap_or(camera)
         };

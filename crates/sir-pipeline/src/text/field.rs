@@ -1,5 +1,7 @@
 //! Fields: the syntax of a value, and its default.
 
+use serde::Serialize;
+
 use crate::format::list;
 use crate::text::reader::{Fields, Reader};
 use crate::text::ron_tree::Node;
@@ -38,18 +40,19 @@ pub(crate) trait Format: Sized {
 }
 
 /// Row of a table of fields in the reference.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Row {
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
     /// Name of the field.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// Valid values.
-    pub(crate) values: String,
+    #[serde(rename = "value")]
+    pub values: String,
     /// Unit, or empty.
-    pub(crate) unit: &'static str,
+    pub unit: &'static str,
     /// Default, or a remark that there is none.
-    pub(crate) default: String,
+    pub default: String,
     /// Meaning of the field.
-    pub(crate) meaning: &'static str,
+    pub meaning: &'static str,
 }
 
 /// Part of a record: one field, or several fields of which exactly one is given.
