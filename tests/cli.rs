@@ -174,3 +174,55 @@ fn info_tells_people_and_programs_the_same() {
     assert_eq!((code, stdout.as_str()), (1, ""));
     assert!(stderr.starts_with("error: ") && stderr.contains("absent.obj"), "{stderr}");
 }
+
+#[test]
+fn a_scene_is_lit_by_one_command_which_ends_with_the_page() {
+    let folder = folder();
+    let light = |args: &[&str]| sir(folder.path(), &[&["light"], args].concat());
+    let (code, stdout, stderr) = light(&["room.obj", "--minutes", "0.001", "--quiet"]);
+    assert_eq!(code, 0, "{stderr}");
+    let page = stdout.lines().last().unwrap().strip_prefix("page: ").unwrap();
+    assert!(page.ends_with("results/room/report.html") && Path::new(page).is_file(), "{stdout}");
+    assert!(stdout.contains("sir run results/room/pipeline.ron"), "{stdout}");
+
+    // The pipeline is one like any other.
+    let (code, _, stderr) = sir(folder.path(), &["check", "results/room/pipeline.ron"]);
+    assert_eq!(code, 0, "{stderr}");
+
+    let (code, stdout, _) = light(&["room.obj", "--dry-run", "--json", "--error", "5%", "--out", "drafted"]);
+    assert_eq!(code, 0);
+    let drafted: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert!(Path::new(drafted["pipeline"].as_str().unwrap()).ends_with("drafted/pipeline.ron"));
+    assert_eq!(fs::read_dir(folder.path().join("drafted")).unwrap().count(), 1);
+    let text = fs::read_to_string(folder.path().join("drafted/pipeline.ron")).unwrap();
+    assert!(text.contains("until: RelativeError(0.05), stages") && text.contains("../room.obj"), "{text}");
+
+    for (args, expected) in [
+        (&["room.ron"][..], "`sir run room.ron` runs it"),
+        (&["room.obj", "--error", "0.02"], "with a per cent sign"),
+        (&["room.obj", "--minutes", "0"], "a number of minutes above 0"),
+        (&["room.obj", "--out", "results/room"], "already holds a result"),
+    ] {
+        let (code, stdout, stderr) = light(args);
+        assert!(code == 2 && stdout.is_empty() && stderr.contains(expected), "{code} {stderr}");
+    }
+    let (code, _, stderr) = light(&["."]);
+    assert!(code == 1 && stderr.contains(". is a folder; name the scene file in it"), "{code} {stderr}");
+}
+
+#[test]
+fn editors_and_shells_learn_what_there_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, stdout, _) = sir(folder.path(), &["schema"]);
+    let schema: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    let records = schema["records"].as_array().unwrap();
+    let load = records.iter().find(|record| record["name"] == "Load").unwrap();
+    assert_eq!((code, &load["fields"][0]["name"]), (0, &"path".into()));
+    assert!(schema["choices"].as_array().unwrap().iter().any(|choice| choice["what"] == "stage"));
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let (code, stdout, _) = sir(folder.path(), &["completions", shell]);
+        assert!(code == 0 && stdout.contains("viewfactors"), "{shell}");
+    }
+    let (code, stdout, _) = sir(folder.path(), &["--version"]);
+    assert!(code == 0 && stdout.contains("\nbuild: ") && stdout.contains("\nfeatures: "), "{stdout}");
+}

@@ -3,7 +3,6 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::LazyLock;
-use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
@@ -12,9 +11,10 @@ use sir_parallel::HAS_MPI;
 use sir_pipeline::fingerprint::PROGRAM_VERSION;
 
 use crate::experiment::ExperimentArgs;
+use crate::how::HowArgs;
 use crate::info::InfoArgs;
 use crate::light::LightArgs;
-use crate::numbers::{factor, seconds, threads};
+use crate::numbers::{factor, threads};
 use crate::scaling::ScalingArgs;
 use crate::validate::options::ValidateArgs;
 use crate::viewfactors::options::ViewFactorsArgs;
@@ -215,27 +215,6 @@ pub struct MixArgs {
     /// Threads, 1 to 4096; default: one per processor core. The result does not depend on it.
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
-    /// Show no progress; warnings and errors are still shown.
-    #[arg(long, short)]
-    pub quiet: bool,
-    /// Print the content of result.json instead of a summary.
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// Options of the execution of a run. None of them changes the result.
-#[derive(Debug, clap::Args)]
-pub struct HowArgs {
-    /// Threads of each process, 1 to 4096; default: one per processor core. The result does not depend on it.
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub threads: Option<NonZeroUsize>,
-    /// Seconds between checkpoints, from which `sir resume` can continue.
-    #[arg(long, value_name = "SECONDS", default_value = "300", value_parser = seconds)]
-    pub checkpoint_every: Duration,
-    /// Serve a page on this computer that shows the light after each repeat, and print its address. It has a button that ends
-    /// the run after the current repeat.
-    #[arg(long)]
-    pub watch: bool,
     /// Show no progress; warnings and errors are still shown.
     #[arg(long, short)]
     pub quiet: bool,

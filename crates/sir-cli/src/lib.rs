@@ -21,6 +21,7 @@ pub mod compare;
 mod error;
 mod exit;
 pub mod experiment;
+pub mod how;
 pub mod info;
 mod interrupt;
 pub mod light;
@@ -43,10 +44,11 @@ use sir_parallel::{Communicator, SingleProcess, connect};
 use sir_pipeline::check::estimate;
 use sir_pipeline::plan::{Pipeline, schema};
 use sir_pipeline::run::{resume_together, run_together};
-use sir_pipeline::{ErrorKind, MixOptions, RunOptions, RunResult, Watcher, mix, report};
+use sir_pipeline::{ErrorKind, MixOptions, RunOptions, RunResult, mix, report};
 
-use args::{Args, Command, HowArgs, MixArgs, RunArgs};
+use args::{Args, Command, MixArgs, RunArgs};
 pub use error::CliError;
+use how::HowArgs;
 use progress::Stderr;
 
 /// Runs the program on the arguments of the process.
@@ -111,16 +113,14 @@ fn work(command: Command, comm: &dyn Communicator, stop: Arc<AtomicBool>) -> Res
     match command {
         Command::Light(args) => light::command(&args, comm, stop),
         Command::Run(RunArgs { pipeline, out, seed, force, how }) => {
-            let options = RunOptions { out, seed, force, ..run_options(&how, stop, comm)? };
+            let options = RunOptions { out, seed, force, ..how.options(stop, comm)? };
             run_together(Pipeline::read(&pipeline), &options, comm)
                 .map(|result| result_text(&result, &how, comm))
                 .map_err(CliError::from)
         }
-        Command::Resume { directory, how } => {
-            resume_together(&directory, &run_options(&how, stop, comm)?, comm)
-                .map(|result| result_text(&result, &how, comm))
-                .map_err(CliError::from)
-        }
+        Command::Resume { directory, how } => resume_together(&directory, &how.options(stop, comm)?, comm)
+            .map(|result| result_text(&result, &how, comm))
+            .map_err(CliError::from),
         // The work of one rank.
         Command::Mix(_) if !comm.is_first() => Ok(String::new()),
         Command::Mix(MixArgs { directory, set, out, force, threads, quiet, json }) => {
@@ -156,28 +156,6 @@ fn completions(shell: clap_complete::Shell) -> String {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Args::command(), "sir", &mut script);
     String::from_utf8_lossy(&script).into_owned()
-}
-
-/// Returns the options of a run that `stop` can interrupt. Starts the server of `--watch`.
-fn run_options(
-    how: &HowArgs,
-    stop: Arc<AtomicBool>,
-    comm: &dyn Communicator,
-) -> Result<RunOptions, CliError> {
-    let mut watcher: Option<Arc<dyn Watcher>> = None;
-    if how.watch && comm.is_first() {
-        let (page, url) = watch::Page::start().map_err(CliError::Watch)?;
-        output::print_note(format!("watch: {url}"));
-        watcher = Some(Arc::new(page));
-    }
-    Ok(RunOptions {
-        threads: how.threads,
-        checkpoint_every: how.checkpoint_every,
-        stop,
-        progress: Arc::new(Stderr::unless(how.quiet)),
-        watcher,
-        ..RunOptions::default()
-    })
 }
 
 /// Returns the text to print after a run; it is empty on all ranks except the first.

@@ -14,7 +14,6 @@ use sir_pipeline::run::{absolute, run_pipeline};
 
 use crate::error::CliError;
 use crate::output::print_note;
-use crate::run_options;
 use crate::summary::summary;
 
 pub use options::LightArgs;
@@ -48,7 +47,7 @@ pub(crate) fn command(
         print_note(format!("Pipeline: {}", path.display()));
     }
     let options =
-        RunOptions { out: Some(drafted.directory.clone()), force: *force, ..run_options(how, stop, comm)? };
+        RunOptions { out: Some(drafted.directory.clone()), force: *force, ..how.options(stop, comm)? };
     let result = run_pipeline(&drafted.pipeline, &options)?;
     Ok(if how.json { result.report.to_json() } else { summary(&result) + &text::finished(&drafted, &result) })
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use sir_pipeline::draft::Goal;
 
-use crate::args::HowArgs;
+use crate::how::HowArgs;
 use crate::numbers::{minutes, per_cent};
 
 /// Time for the light, unless another goal is given \[min\].

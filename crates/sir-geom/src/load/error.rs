@@ -18,6 +18,12 @@ pub enum LoadError {
         /// Extension of its name, if any.
         extension: Option<String>,
     },
+    /// The scene is a folder.
+    #[error("{} is a folder; name the scene file in it", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The reader for the format was disabled when the program was built.
     #[error("{}: the reader for this format is disabled; build sir-geom with the cargo feature `{feature}`", path.display())]
     WithoutReader {

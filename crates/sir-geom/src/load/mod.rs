@@ -87,6 +87,9 @@ pub fn load_with(
     options: &LoadOptions,
     add: impl FnOnce(&mut SceneBuilder),
 ) -> Result<Built, LoadError> {
+    if path.is_dir() {
+        return Err(LoadError::Folder { path: path.to_owned() });
+    }
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     match extension.as_deref() {
         #[cfg(feature = "gltf")]

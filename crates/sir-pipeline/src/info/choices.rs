@@ -71,8 +71,10 @@ fn units(info: &Info) -> Setting {
     let is_gltf = !info.scene.to_lowercase().ends_with(".obj");
     let (units, why) = match (info.sources.is_empty(), is_gltf) {
         (true, _) => ("Photometric", "the light is stated in lux and lumens"),
-        (false, true) => ("Photometric", "glTF states luminous intensities in cd, and luminances in cd/m²"),
-        (false, false) => ("Radiometric", "OBJ does not state units of light; they are taken to be watts"),
+        (false, true) => {
+            ("Photometric", "luminous intensities in cd and luminances in cd/m², as glTF states them")
+        }
+        (false, false) => ("Radiometric", "watts and W/m², as OBJ states no units of light"),
     };
     Setting {
         set: format!("units: {units}"),
@@ -151,10 +153,14 @@ fn light(info: &Info, survey: &Survey, scale: f64) -> Setting {
                 sky(info)
             )
         });
-        let lamps: Vec<&str> = info.sources.iter().map(|lights| lights.what.as_str()).collect();
+        let lamps = info.sources.iter().map(|lights| {
+            let [r, g, b] = lights.power.map(length);
+            format!("{} (red {r}, green {g}, blue {b})", lights.what)
+        });
+        let lamps: Vec<String> = lamps.collect();
         return Setting {
             set: String::new(),
-            why: format!("the light is that of the file: {}", lamps.join(", ")),
+            why: format!("the light sources are those of the file: {}", lamps.join(", ")),
             doubt: joined(survey.lamp_suspicions().chain(lost).collect()),
             is_usual: true,
         };

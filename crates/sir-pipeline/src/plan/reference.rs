@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use crate::fingerprint::PROGRAM;
 use crate::plan::focus::Focus;
 use crate::plan::image::{Camera, Image};
 use crate::plan::light::{Distant, Lamp};
@@ -34,8 +33,6 @@ const VERSION: u32 = 1;
 pub struct Schema {
     /// Version of the JSON layout.
     pub version: u32,
-    /// Name and version of the program.
-    pub program: &'static str,
     /// Records: `Name(field: value, …)`.
     pub records: Vec<RecordSchema>,
     /// Choices among records and names.
@@ -93,7 +90,6 @@ impl ChoiceSchema {
 pub fn schema() -> Schema {
     Schema {
         version: VERSION,
-        program: PROGRAM,
         records: vec![
             RecordSchema::of::<Content>(),
             RecordSchema::of::<Load>(),
