@@ -35,7 +35,7 @@ const TURNS: u32 = 8;
 ///
 /// A few hundred views are tried, from places inside the box and from all sides outside of it,
 /// each with a few hundred rays. The best view sees lit surfaces near and far, a large part of the total surface area,
-/// and many materials and triangles. Little of its picture is empty, dark, or covered by backs of surfaces or by
+/// and many materials and triangles. Little of its picture is empty, outside of the box, dark, or covered by backs of surfaces or by
 /// something right before the eye. `up` is the up direction of the scene; see
 /// [`up_clues`](crate::up_clues).
 #[must_use]
@@ -152,6 +152,9 @@ impl<'a> ViewScorer<'a> {
                 let middle = |k: u32, count: u32| (f64::from(k) + 0.5) / f64::from(count);
                 let ray = rays.ray(middle(x, RAYS.0), middle(y, RAYS.1));
                 let Some(hit) = tracer.closest(&ray.into()) else { continue };
+                if !is_within(self.bounds, ray.origin + hit.t * ray.direction) {
+                    continue;
+                }
                 let Some(e) = self.display.irradiance_at(hit.triangle, hit.point, hit.side) else { continue };
                 let patch = self.display.mesh.patch_at(hit.triangle, hit.point);
                 let b = luminance(self.display.radiosity(hit.triangle, patch, hit.side, e));
@@ -184,10 +187,12 @@ impl<'a> ViewScorer<'a> {
 
 /// True if the middle of a triangle is in the box.
 fn counts(scene: &Scene, bounds: BoundingBox, id: TriangleId) -> bool {
-    // Rounding must not take a wall in a face of the box out of it.
-    let (middle, step) =
-        (scene.corners(id).into_iter().sum::<DVec3>() / 3.0, ROUNDING * bounds.size().length());
-    middle.distance(middle.clamp(bounds.min, bounds.max)) <= step
+    is_within(bounds, scene.corners(id).into_iter().sum::<DVec3>() / 3.0)
+}
+
+/// True if a point is in the box, or so close to it that rounding may have taken it out of a face.
+fn is_within(bounds: BoundingBox, point: DVec3) -> bool {
+    point.distance(point.clamp(bounds.min, bounds.max)) <= ROUNDING * bounds.size().length()
 }
 
 /// Returns the entropy of the shares of `total`: the logarithm of the effective number of things seen.
