@@ -8,6 +8,8 @@ mod file;
 mod file_kind;
 mod glare;
 mod lamp;
+#[cfg(test)]
+mod rectangle;
 mod setup;
 mod trials;
 
