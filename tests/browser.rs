@@ -33,8 +33,13 @@ struct Page {
 }
 
 impl Page {
+    /// Returns a folder without a page.
+    fn none() -> Self {
+        Self { folder: tempfile::tempdir().unwrap(), exposure: 1.0 }
+    }
+
     fn new() -> Self {
-        let mut page = Self { folder: tempfile::tempdir().unwrap(), exposure: 1.0 };
+        let mut page = Self::none();
         page.run("page", "Report(path: \"report.html\"), Table(path: \"patches.csv\")");
         let text = fs::read_to_string(page.path("page/report.html")).unwrap();
         let facts = text.split_once("id=\"facts\">").unwrap().1.split_once("</script>").unwrap().0;
@@ -49,10 +54,18 @@ impl Page {
 
     /// Runs a pipeline with these outputs. The light is always the same.
     fn run(&self, name: &str, outputs: &str) {
+        let stages = format!(
+            "FirstShot(lines: 400_000), Multipath(lines: 400_000), \
+             Sensors(name: \"floor\", at: Plane(height: 0.1, spacing: 0.1), rays: 256), Save([{outputs}])"
+        );
+        self.run_stages(name, "", &stages);
+    }
+
+    /// Runs stages in the Cornell box, with further fields of the pipeline.
+    fn run_stages(&self, name: &str, fields: &str, stages: &str) {
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-box/cornell-box.gltf");
         let text = format!(
-            "(seed: 1, stages: [Load(path: {scene:?}), Subdivide(patches: 3_000), FirstShot(lines: 400_000), \
-             Multipath(lines: 400_000), Sensors(name: \"floor\", at: Plane(height: 0.1, spacing: 0.1), rays: 256), Save([{outputs}])])"
+            "(seed: 1, {fields}stages: [Load(path: {scene:?}), Subdivide(patches: 3_000), {stages}])"
         );
         fs::write(self.path("x.ron"), text).unwrap();
         let pipeline = Pipeline::read(&self.path("x.ron")).unwrap_or_else(|e| panic!("{e}"));
@@ -190,6 +203,47 @@ fn all_modes_are_drawn_in_a_browser() {
         let differs = picture.pixels().zip(lit.pixels()).filter(|(a, b)| a != b).count();
         assert!(differs > 50_000, "{mode}: {differs}");
     }
+}
+
+/// Light groups have a table with their flux and its share, and eyes their rating, with a mark where it is above the limit.
+#[test]
+#[ignore = "needs Chromium: set SIR_BROWSER to its command"]
+fn groups_and_ratings_are_tables_in_a_browser() {
+    let page = Page::none();
+    let eye = |x: f64| format!("(position: (0.27, 0.2, 0.5), direction: ({x}, 0, -1))");
+    let stages = format!(
+        "Light([Panel(corner: (0.1, 0.5, 0.1), edges: ((0.05, 0, 0), (0, 0, 0.05)), power: (20, 40, 60), group: \"panel <b>\")]), \
+         FirstShot(lines: 100_000), Multipath(lines: 100_000), \
+         Sensors(name: \"eyes\", at: Points([{}, {}]), rays: 256, ugr: true, require: (ugr: 10)), \
+         Save([Report(path: \"report.html\")])",
+        eye(0.0),
+        eye(-0.5)
+    );
+    page.run_stages("page", "units: Photometric, ", &stages);
+    let document = page.document("camera=1");
+    let table = |section: &str, number: usize| {
+        let (_, rest) = document.split_once(&format!("<section id=\"{section}\"")).unwrap();
+        let (section, _) = rest.split_once("</section>").unwrap();
+        let table = section.split("<table").nth(number).unwrap().to_owned();
+        table
+            .split("<tr")
+            .skip(1)
+            .map(|row| texts(&row.replace("<th", "<td").replace("</th>", "</td>"), "<td", "</td>"))
+            .collect::<Vec<_>>()
+    };
+    let groups = table("groups", 1);
+    assert_eq!(groups[0][..7], ["Group", "Factor", "Flux (lm)", "Red", "Green", "Blue", "Share"]);
+    let flux = luminance(sir::geom::Rgb::new(20.0, 40.0, 60.0));
+    assert_eq!(groups[1][..2], ["panel &lt;b&gt;", "1"]);
+    assert!((groups[1][2].parse::<f64>().unwrap() / flux - 1.0).abs() < 1e-3, "{groups:?}");
+    assert_eq!(
+        (groups[2][0].as_str(), groups[3][0].as_str(), groups[3][6].as_str()),
+        ("other", "All", "100.0 %")
+    );
+    let eyes = table("sensors", 2);
+    assert_eq!(eyes[0][7..], ["UGR (at most 10)", "± σ of UGR"]);
+    assert!(eyes[1..].iter().all(|eye| eye[7].parse::<f64>().unwrap() > 10.0), "{eyes:?}");
+    assert_eq!(document.matches("<td class=\"doubtful\">").count(), 2);
 }
 
 #[test]

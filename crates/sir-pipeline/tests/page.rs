@@ -15,14 +15,16 @@ use sir_report::View;
 /// Runs stages in the furnace, whose irradiance is 2, 5 and 10 W/m², 1 W/m² of it direct. Returns the contents of a page,
 /// and of `result.json`.
 fn run(stages: &str) -> (Vec<String>, Value) {
-    watched(stages, None)
+    watched("", stages, None)
 }
 
-fn watched(stages: &str, watcher: Option<Arc<dyn Watcher>>) -> (Vec<String>, Value) {
+/// The same with further fields of the pipeline, and a watcher.
+fn watched(fields: &str, stages: &str, watcher: Option<Arc<dyn Watcher>>) -> (Vec<String>, Value) {
     let folder = tempfile::tempdir().unwrap();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/furnace/furnace.gltf");
     fs::copy(scene, folder.path().join("a \"b\".gltf")).unwrap();
-    let text = format!("(stages: [Load(path: \"a \\\"b\\\".gltf\"), Subdivide(patches: 200), {stages}])");
+    let text =
+        format!("({fields}stages: [Load(path: \"a \\\"b\\\".gltf\"), Subdivide(patches: 200), {stages}])");
     fs::write(folder.path().join("x.ron"), text).unwrap();
     let pipeline = Pipeline::read(&folder.path().join("x.ron")).unwrap_or_else(|e| panic!("{e}"));
     let out = folder.path().join("out");
@@ -59,12 +61,42 @@ fn a_page_has_the_figures_of_all_stages() {
         let [sensors] = &facts["sensors"].as_array().unwrap()[..] else { panic!("one stage of sensors") };
         assert_eq!(sensors["points"].as_array().unwrap().len(), 4);
         assert_eq!(sensors["map"]["cells"].as_array().unwrap().len(), 4);
+        assert_eq!(sensors["ratings"], Value::Null, "not asked for");
         assert_eq!(facts["units"]["irradiance"], "W/m²");
         let cameras = facts["cameras"].as_array().unwrap();
         assert!(
             !cameras.is_empty() && cameras.iter().all(|camera| camera["exposure"].as_f64().unwrap() > 0.0)
         );
     }
+}
+
+/// A page has the light groups, and the rating of each eye or `null` where nothing glares: the furnace glares everywhere, but
+/// not for an eye outside that looks away.
+#[test]
+fn a_page_has_light_groups_and_ratings() {
+    let (pages, result) = watched(
+        "units: Photometric, ",
+        "Light([Panel(corner: (0.45, 0.98, 0.4), edges: ((0.1, 0, 0), (0, 0, 0.1)), exitance: 500, group: \"lamp\")]), \
+         FirstShot(lines: 20_000), Multipath(lines: 20_000), \
+         Sensors(name: \"eyes\", at: Points([(position: (0.5, 0.7, 0.9), direction: (0, 0, -1)), \
+         (position: (0.5, 0.7, 5), direction: (0, 0, 1))]), rays: 256, ugr: true, require: (ugr: 10)), \
+         Save([Report(path: \"page.html\")])",
+        None,
+    );
+    let facts = facts(&pages[0]);
+    let names: Vec<_> = facts["report"]["groups"].as_array().unwrap().iter().map(|g| &g["name"]).collect();
+    assert_eq!(names, ["lamp", "other"]);
+    assert_eq!(facts["report"]["groups"], result["groups"]);
+    let sensors = &facts["sensors"][0];
+    let [first, second] = &sensors["ratings"].as_array().unwrap()[..] else { panic!("two eyes") };
+    let glare = &sensors["report"]["glare"];
+    assert_eq!((glare["rated"].as_u64(), second), (Some(1), &Value::Null), "{sensors}");
+    let largest = glare["maximum"].as_f64().unwrap();
+    assert!(
+        (first[0].as_f64().unwrap() - largest).abs() < 1e-3 && first[1].as_f64().unwrap() > 0.0,
+        "{first}"
+    );
+    assert_eq!(sensors["report"]["requirements"][0]["required"], 10.0);
 }
 
 /// Watcher that ends the run after a number of updates.
@@ -104,7 +136,7 @@ fn a_watcher_sees_each_repeat_and_can_end_the_run() {
         ("Repeat(times: 20, stages: [FirstShot(lines: 5_000)]), Save([Table(path: \"a.csv\")])", false),
     ] {
         let watcher = Arc::new(Patience { most: 9, seen: Mutex::default(), last: Mutex::default() });
-        let (pages, result) = watched(stages, Some(Arc::clone(&watcher) as Arc<dyn Watcher>));
+        let (pages, result) = watched("", stages, Some(Arc::clone(&watcher) as Arc<dyn Watcher>));
         assert_eq!(pages.len(), usize::from(is_page));
         let seen = watcher.seen.lock().unwrap();
         assert_eq!(seen.len(), 9);

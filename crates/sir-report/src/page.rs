@@ -31,6 +31,7 @@ const SCRIPT: &str = concat!(
     include_str!("../web/script/picks.js"),
     include_str!("../web/script/pointer.js"),
     include_str!("../web/script/computed.js"),
+    include_str!("../web/script/groups.js"),
     include_str!("../web/script/balance.js"),
     include_str!("../web/script/convergence.js"),
     include_str!("../web/script/sensors.js"),

@@ -39,6 +39,7 @@ pub(crate) fn plan(case: &Case) -> Result<Plan<'_>, ValidateError> {
         }
         id if id.starts_with("RE-") => Plan::Run(radiosity::surfaces(case)?),
         id if id.starts_with("VF-") => Plan::Run(factors::factors(case)?),
+        "LU-06" => Plan::Run(luminaire::glare(case)?),
         id if id.starts_with("LU-") => Plan::Run(luminaire::luminaires(case)?),
         "CIE-5.2" => Plan::Run(points::points(case, Lighting::PointLight)?),
         "CIE-5.3" => Plan::Run(points::points(case, Lighting::Lamp)?),

@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn all_files_are_read() {
         let reference = Reference::built_in().unwrap();
-        assert_eq!(reference.ids().count(), 14 + 9 + 10 + 5);
+        assert_eq!(reference.ids().count(), 14 + 9 + 10 + 6);
         let points: usize = reference.cases.iter().map(|case| case.points.len()).sum();
         assert_eq!(points, 10 + 14 + 14 + 14 + 11 + 14 + 14);
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use sir_geom::{Rgb, Scene};
 use sir_mesh::Subdivision;
 use sir_parallel::{Executor, RunError, Start};
-use sir_radiosity::{Model, Sensor, SensorSettings, SensorStage, SensorTask, Solution};
+use sir_radiosity::{Measurement, Model, Sensor, SensorSettings, SensorStage, SensorTask, Solution};
 
 use crate::data::{Case, Point, Surface};
 use crate::effort::Effort;
@@ -29,6 +29,20 @@ pub(crate) fn sensors<'p>(
     points.map(|point| Ok(*case.need("normal of a point", sensor(point).as_ref())?)).collect()
 }
 
+/// Returns the light at each sensor, measured with `rays` rays.
+pub(crate) fn measurements(
+    model: &Model,
+    solution: &Solution,
+    sensors: &[Sensor],
+    rays: u64,
+    seed: u64,
+    executor: &mut Executor<'_>,
+) -> Result<Vec<Measurement>, RunError> {
+    let settings = SensorSettings::new(rays, 0.0);
+    let task = SensorTask { model, solution, sensors, settings, seed };
+    Ok(executor.run::<SensorStage<'_>>(task, Start::Fresh(()))?.outcome)
+}
+
 /// Returns the irradiance at each sensor, measured with `rays` rays.
 pub(crate) fn irradiances(
     model: &Model,
@@ -38,9 +52,7 @@ pub(crate) fn irradiances(
     seed: u64,
     executor: &mut Executor<'_>,
 ) -> Result<Vec<Rgb>, RunError> {
-    let settings = SensorSettings::new(rays, 0.0);
-    let task = SensorTask { model, solution, sensors, settings, seed };
-    let measured = executor.run::<SensorStage<'_>>(task, Start::Fresh(()))?.outcome;
+    let measured = measurements(model, solution, sensors, rays, seed, executor)?;
     Ok(measured.iter().map(|measurement| measurement.irradiance).collect())
 }
 

@@ -8,6 +8,7 @@ use sir_radiosity::Measurement;
 use crate::prepare::layout::Layout;
 use crate::report::result::Report;
 use crate::report::sensors::SensorsReport;
+use crate::report::uncertain::Uncertain;
 use crate::units::Units;
 
 /// Largest number of points of sensors that a page lists. Maps have all.
@@ -64,15 +65,19 @@ pub(crate) fn title(report: &Report) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
+/// Rounds a number to the digits that are not noise.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
 /// Returns what the measurements of a stage `Sensors` contribute to the facts.
 pub(crate) fn of_sensors(
     layout: &Layout,
     measured: &[Measurement],
+    ratings: Option<&[Option<Uncertain>]>,
     summary: &SensorsReport,
     units: Units,
 ) -> Value {
-    // More digits than these are noise.
-    let rounded = |x: f64| format!("{x:.5e}").parse::<f64>().unwrap_or(x);
     let points = layout.sensors.iter().zip(measured).take(MAX_POINTS).map(|(sensor, m)| {
         let places = [sensor.position(), sensor.direction()].map(|v| v.to_array());
         let light = [m.luminance(), sir_geom::luminance(m.direct), m.luminance_error()];
@@ -94,7 +99,14 @@ pub(crate) fn of_sensors(
         "report": summary,
         "map": map,
         "points": points.collect::<Vec<_>>(),
+        "ratings": ratings.map(of_ratings),
     })
+}
+
+/// Returns the unified glare ratings of sensors with their standard errors, `null` where nothing glares.
+fn of_ratings(ratings: &[Option<Uncertain>]) -> Vec<Option<[f64; 2]>> {
+    let of_sensor = |rating: &Option<Uncertain>| rating.map(|r| [r.value, r.error].map(rounded));
+    ratings.iter().take(MAX_POINTS).map(of_sensor).collect()
 }
 
 /// Returns what the measurements at probes contribute to the facts: their means over all directions.
@@ -104,7 +116,6 @@ pub(crate) fn of_probes(
     summary: &SensorsReport,
     units: Units,
 ) -> Value {
-    let rounded = |x: f64| format!("{x:.5e}").parse::<f64>().unwrap_or(x);
     let points = positions.iter().zip(means).take(MAX_POINTS).map(|(position, m)| {
         let light = [m.luminance(), sir_geom::luminance(m.direct), m.luminance_error()];
         // The mean over all directions has none.
@@ -117,6 +128,7 @@ pub(crate) fn of_probes(
         "report": summary,
         "map": None::<Value>,
         "points": points.collect::<Vec<_>>(),
+        "ratings": None::<Value>,
     })
 }
 

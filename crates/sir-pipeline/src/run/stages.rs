@@ -103,7 +103,8 @@ impl Run<'_> {
         let watts = installed_watts(&self.head.report.scene.luminaires);
         summary.power_density = watts.zip(room).map(|(watts, room)| watts / room);
         if self.pipeline.has_page() {
-            self.pages.sensors.push(of_sensors(layout, measured, &summary, self.pipeline.units));
+            let facts = of_sensors(layout, measured, ratings.as_deref(), &summary, self.pipeline.units);
+            self.pages.sensors.push(facts);
         }
         let written = if self.comm.is_first() {
             let values = SensorValues { sensors, layout, measured, ratings: ratings.as_deref() };

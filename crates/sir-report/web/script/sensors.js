@@ -21,7 +21,7 @@ function writeSensor(sensor, facts) {
     element('p', {}, cut(sensor.summary, 1000)));
   const requirements = sensor.report?.requirements ?? [];
   if (requirements.length > 0) part.append(requirementTable(requirements, unitE, sensor.name));
-  copy.addEventListener('click', () => copyText(sensorCsv(points), copy, part));
+  copy.addEventListener('click', () => copyText(sensorCsv(sensor), copy, part));
   const pair = element('div', { class: 'pair' });
   if (sensor.map) pair.append(attempt(sensorMap, sensor, unitE, facts.units.name) ?? '');
   if (points.length > 0) pair.append(sensorTable(sensor, unitE));
@@ -44,7 +44,12 @@ function requirementTable(requirements, unitE, name) {
     element('table', {}, element('caption', { class: 'aside' }, `Requirements on ${cut(name)}`), element('thead', {}, element('tr', {}, ...head)), element('tbody', {}, ...rows)));
 }
 
-const sensorCsv = (points) => toCsv([['x', 'y', 'z', 'dx', 'dy', 'dz', 'E', 'E_direct', 'se'], ...points]);
+/** Writes all sensors as CSV. Where nothing glares, the fields of the rating are empty. */
+function sensorCsv({ points, ratings }) {
+  const head = ['x', 'y', 'z', 'dx', 'dy', 'dz', 'E', 'E_direct', 'se'];
+  if (!ratings) return toCsv([head, ...points]);
+  return toCsv([[...head, 'UGR', 'se_UGR'], ...points.map((point, i) => [...point, ...(ratings[i] ?? ['', ''])])]);
+}
 
 /** Returns the ends of the scale of a map. It begins at 0 unless the values differ by no more than half of the largest. */
 function mapRange(list) {
@@ -156,6 +161,17 @@ function drawMapScale(picture, { left, top, width, height }, [low, high], unitE)
   }
 }
 
+/** Returns the columns of the unified glare rating. Ratings above the limit are marked. */
+function ratingColumns({ ratings, report }) {
+  const limit = (report?.requirements ?? []).find(({ quantity }) => quantity === 'UGR')?.required;
+  const of = (k) => (_, i) => ratings[i]?.[k] ?? -Infinity;
+  const isOver = (i) => limit !== undefined && (ratings[i]?.[0] ?? -Infinity) > limit;
+  return [
+    { label: limit === undefined ? 'UGR' : `UGR (at most ${tickText(limit)})`, of: of(0), text: (x) => (Number.isFinite(x) ? x.toFixed(1).replace('-', '−') : 'none'), isOver },
+    { label: '± σ of UGR', of: of(1), text: (x) => (Number.isFinite(x) ? digits(x, 2) : '') },
+  ];
+}
+
 /** Makes a table that is sorted by a click on the head of a column. */
 function sensorTable(sensor, unitE) {
   const columns = [
@@ -164,6 +180,7 @@ function sensorTable(sensor, unitE) {
     { label: `E (${unitE})`, of: (p) => p[6], text: digits },
     { label: 'Direct', of: (p) => p[7], text: digits },
     { label: '± σ', of: (p) => p[8], text: (x) => digits(x, 2) },
+    ...(sensor.ratings ? ratingColumns(sensor) : []),
   ];
   const order = sensor.points.map((_, i) => i);
   const sorting = { column: 0, sign: 1 };
@@ -188,7 +205,7 @@ function sensorTable(sensor, unitE) {
       head.setAttribute('aria-sort', isSorted ? (sorting.sign > 0 ? 'ascending' : 'descending') : 'none');
       head.firstChild.textContent = `${columns[k].label}${isSorted ? (sorting.sign > 0 ? ' ↑' : ' ↓') : ''}`;
     });
-    body.replaceChildren(...order.slice(0, shown).map((i) => element('tr', {}, ...columns.map(({ of, text }) => element('td', {}, text(of(sensor.points[i], i)))))));
+    body.replaceChildren(...order.slice(0, shown).map((i) => element('tr', {}, ...columns.map(({ of, text, isOver }) => element('td', { class: isOver?.(i) ? 'doubtful' : null }, text(of(sensor.points[i], i)))))));
     for (const node of [more, part]) node.hidden = shown >= order.length;
   }
 

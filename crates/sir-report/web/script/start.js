@@ -6,7 +6,7 @@ async function main() {
   addThemeButton(() => viewer);
   const facts = attempt(() => JSON.parse(byId('facts').textContent));
   if (!facts) return showMessage('The data of this page cannot be read.');
-  for (const part of [writeHeader, writeNotices, writeComputed, writeBalance, writeConvergence, writeSensors, writeRepeat]) attempt(part, facts);
+  for (const part of [writeHeader, writeNotices, writeComputed, writeGroups, writeBalance, writeConvergence, writeSensors, writeRepeat]) attempt(part, facts);
   viewer = await startViewer(facts);
   followRun(facts, viewer);
   return viewer;
