@@ -40,7 +40,7 @@ pub fn summary(result: &RunResult) -> String {
         text += &format!("luminaires {}\n", luminaires.in_short());
     }
     if let Some(watts) = installed_watts(&report.scene.luminaires) {
-        text += &format!("           {watts:.1} W of electric power in all\n");
+        text += &format!("           {watts:.1} W of installed electric power in all\n");
     }
     let sensors = report.stages.iter().filter_map(|stage| stage.sensors.as_ref());
     text.extend(sensors.map(|sensors| {

@@ -58,7 +58,9 @@ pub enum PhotometryError {
     },
     /// Angles do not cover the range that the format demands.
     #[error(
-        "the {what} go from {first}° to {last}° (expected {expected}); correct them, or export the file again"
+        "the {what} go from {}° to {}° (expected {expected}); correct them, or export the file again",
+        short(*first),
+        short(*last)
     )]
     Angles {
         /// Kind of angles.
@@ -69,6 +71,14 @@ pub enum PhotometryError {
         last: f64,
         /// Ranges that the format allows.
         expected: &'static str,
+    },
+    /// A problem with a list or a table that begins in a line.
+    #[error("line {line}: {problem}")]
+    FromLine {
+        /// Number of the line in which the list or table begins, from 1.
+        line: usize,
+        /// The problem.
+        problem: Box<PhotometryError>,
     },
     /// The file has fewer sets of lamps than the option asks for.
     #[error("the file has {count} sets of lamps, but set {wanted} was asked for; choose one of them")]
@@ -92,6 +102,18 @@ pub enum PhotometryError {
         /// The problem.
         problem: Box<PhotometryError>,
     },
+}
+
+/// Returns a number for a message; a tiny one would have hundreds of digits.
+fn short(number: f64) -> String {
+    if number != 0.0 && number.abs() < 1e-6 { format!("{number:e}") } else { number.to_string() }
+}
+
+impl PhotometryError {
+    /// Returns a function that adds the line in which a list or table begins.
+    pub(crate) fn from_line(line: usize) -> impl Fn(Self) -> Self {
+        move |problem| Self::FromLine { line, problem: Box::new(problem) }
+    }
 }
 
 /// Reason that a table is no distribution of intensity.

@@ -21,7 +21,8 @@ pub struct PhotometryOptions {
 }
 
 impl Photometry {
-    /// Reads an IES LM-63 or EULUMDAT file. Its contents decide the format, not the extension of its name. A file with tilt
+    /// Reads an IES LM-63 or EULUMDAT file. Its contents decide the format; a file that is neither is read as EULUMDAT if its
+    /// name ends in `.ldt`, so that the error says what is wrong with it. A file with tilt
     /// factors that it names must be in its folder or below it.
     ///
     /// # Errors
@@ -44,7 +45,8 @@ impl Photometry {
             Some(path) => contents(&path),
             None => Err(io::Error::other("it is not in the folder of the file")),
         };
-        Self::parse_with(&bytes, options, tilt_file)
+        let is_ldt = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ldt"));
+        parse(&bytes, options, is_ldt, tilt_file)
             .map_err(|problem| PhotometryError::InFile { path: path.to_owned(), problem: Box::new(problem) })
     }
 
@@ -67,31 +69,43 @@ impl Photometry {
     pub fn parse_with(
         bytes: &[u8],
         options: PhotometryOptions,
-        mut tilt_file: impl FnMut(&str) -> io::Result<Vec<u8>>,
+        tilt_file: impl FnMut(&str) -> io::Result<Vec<u8>>,
     ) -> Result<Self, PhotometryError> {
-        let text = decode(bytes);
-        if text.lines().any(|line| ies::tilt_value(line).is_some()) {
-            return ies::read(&text, &mut tilt_file);
-        }
-        if eulumdat::is_eulumdat(&text) {
-            return eulumdat::read(&text, options.lamp_set);
-        }
-        let start = text.trim_start();
-        let why = match start.get(..3).map(str::to_ascii_uppercase).as_deref() {
-            _ if start.is_empty() => "it is empty",
-            _ if start.starts_with(['<', '{']) => "it seems to be XML or JSON, which is not supported",
-            Some("IES") => "the line \"TILT=\" of IES LM-63 is missing",
-            _ => {
-                "there is no line \"TILT=\" of IES LM-63, and lines 2 to 4 are not the indicators of EULUMDAT"
-            }
-        };
-        Err(PhotometryError::UnknownFormat { why })
+        parse(bytes, options, false, tilt_file)
     }
+}
+
+/// Reads the contents of a file. `is_ldt` is true if its name is that of a EULUMDAT file.
+fn parse(
+    bytes: &[u8],
+    options: PhotometryOptions,
+    is_ldt: bool,
+    mut tilt_file: impl FnMut(&str) -> io::Result<Vec<u8>>,
+) -> Result<Photometry, PhotometryError> {
+    let text = decode(bytes);
+    if text.lines().any(|line| ies::tilt_value(line).is_some()) {
+        return ies::read(&text, &mut tilt_file);
+    }
+    let start = text.trim_start();
+    let may_be_eulumdat = is_ldt && !start.is_empty() && !start.starts_with(['<', '{']);
+    if may_be_eulumdat || eulumdat::is_eulumdat(&text) {
+        return eulumdat::read(&text, options.lamp_set);
+    }
+    let why = match start.get(..3).map(str::to_ascii_uppercase).as_deref() {
+        _ if start.is_empty() => "it is empty",
+        _ if start.starts_with(['<', '{']) => "it seems to be XML or JSON, which is not supported",
+        Some("IES") => "the line \"TILT=\" of IES LM-63 is missing",
+        _ => "there is no line \"TILT=\" of IES LM-63, and lines 2 to 4 are not the indicators of EULUMDAT",
+    };
+    Err(PhotometryError::UnknownFormat { why })
 }
 
 /// Reads a regular file. Anything else is an error, because a pipe or a device may never end.
 fn contents(path: &Path) -> io::Result<Vec<u8>> {
     let metadata = fs::metadata(path)?;
+    if metadata.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "this is a folder, not a file"));
+    }
     if !metadata.is_file() {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "this is not a regular file"));
     }

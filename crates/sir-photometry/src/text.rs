@@ -11,6 +11,9 @@ const MAX_SHOWN: usize = 60;
 /// numbers are finite.
 const MAX_NUMBER: f64 = 1e12;
 
+/// What is expected instead of a number above [`MAX_NUMBER`].
+pub(crate) const WITHIN_LIMITS: &str = "a number up to 1e12";
+
 /// Decodes a file: UTF-8 or UTF-16 with a byte order mark, otherwise UTF-8 if it is valid, otherwise Latin-1. All line
 /// ends become `\n`, and the end-of-file character of DOS becomes a space.
 pub(crate) fn decode(bytes: &[u8]) -> String {
@@ -84,6 +87,14 @@ fn number(text: &str) -> Option<f64> {
     (number.abs() <= MAX_NUMBER).then_some(number)
 }
 
+/// Returns true if a text is a number, but one above [`MAX_NUMBER`].
+pub(crate) fn is_too_large(text: &str) -> bool {
+    number(text).is_none() && text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && {
+        let value = text.replace(['d', 'D'], "e").replace(',', ".").parse::<f64>();
+        value.is_ok_and(|value| value.abs() > MAX_NUMBER)
+    }
+}
+
 /// Character that separates numbers besides blanks and line ends, or is a part of them.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Comma {
@@ -139,9 +150,7 @@ impl<'a> Reader<'a> {
 
     /// Returns the next word and its place; `None` at the end of the file.
     fn word(&mut self) -> Option<(&'a str, Place)> {
-        let comma = self.comma;
-        let separates = |c: char| c.is_whitespace() || c == ',' && comma == Comma::Separator;
-        let start = self.rest.find(|c| !separates(c))?;
+        let start = self.rest.find(|c| !self.separates(c))?;
         for c in self.rest[..start].chars() {
             if c == '\n' {
                 self.place = Place { line: self.place.line + 1, column: 1 };
@@ -150,21 +159,32 @@ impl<'a> Reader<'a> {
             }
         }
         let rest = &self.rest[start..];
-        let (word, rest) = rest.split_at(rest.find(separates).unwrap_or(rest.len()));
+        let (word, rest) = rest.split_at(rest.find(|c| self.separates(c)).unwrap_or(rest.len()));
         let place = self.place;
         self.rest = rest;
         self.place.column += word.chars().count();
         Some((word, place))
     }
 
+    /// Returns the number of the line of the next word; at the end of the file, that of its last line.
+    pub(crate) fn line_of_next(&self) -> usize {
+        let start = self.rest.find(|c| !self.separates(c)).unwrap_or(self.rest.len());
+        self.place.line + self.rest[..start].matches('\n').count()
+    }
+
+    /// Returns true if a character separates words.
+    fn separates(&self, c: char) -> bool {
+        c.is_whitespace() || c == ',' && self.comma == Comma::Separator
+    }
+
     /// Returns true if no word is left.
     pub(crate) fn is_at_end(&self) -> bool {
-        self.rest.chars().all(|c| c.is_whitespace() || c == ',' && self.comma == Comma::Separator)
+        self.rest.chars().all(|c| self.separates(c))
     }
 
     /// Returns the number of words left.
-    pub(crate) fn words_left(&mut self) -> usize {
-        std::iter::from_fn(|| self.word()).count()
+    pub(crate) fn words_left(&self) -> usize {
+        self.rest.split(|c| self.separates(c)).filter(|word| !word.is_empty()).count()
     }
 
     /// Returns the next number. `what` names it, as in `the vertical angle 3`.
@@ -197,7 +217,7 @@ impl<'a> Reader<'a> {
                 column: place.column,
                 what: what(),
                 found: shortened(word),
-                expected,
+                expected: if is_too_large(word) { WITHIN_LIMITS } else { expected },
             }),
         }
     }
@@ -217,7 +237,7 @@ impl<'a> Reader<'a> {
     /// If the file ends, or the next word is no such number.
     pub(crate) fn count(&mut self, what: &str) -> Result<usize, PhotometryError> {
         let whole = |number: f64| (1.0..=1e9).contains(&number) && number.fract() == 0.0;
-        Ok(self.number_in(|| what.to_owned(), "a whole number from 1", whole)? as usize)
+        Ok(self.number_in(|| what.to_owned(), "a whole number from 1 to 1000000000", whole)? as usize)
     }
 
     /// Returns the next `count` numbers. Memory is taken only for numbers that are in the file, however large the count is.
@@ -263,6 +283,7 @@ mod tests {
         }
         for text in ["", ".", "e", "inf", "nan", "1e999", "1e13", "0x10", "1_000", "--1", "1,5"] {
             assert_eq!(number(text), None, "{text}");
+            assert_eq!(is_too_large(text), ["1e999", "1e13"].contains(&text), "{text}");
         }
     }
 

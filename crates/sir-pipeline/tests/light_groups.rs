@@ -414,8 +414,9 @@ fn what_cannot_be_mixed_is_refused() {
     };
     insta::assert_snapshot!(refused(&[("dusk", gray(0.5))], "a"), @"light group `dusk`: did you mean `desk`?");
     insta::assert_snapshot!(refused(&[("sun", gray(0.5))], "a"), @"light group `sun`: the light groups of the run are `desk` and `other`");
-    insta::assert_snapshot!(refused(&[("desk", gray(-0.5))], "a"), @"light group `desk`: its factor must be finite and not negative");
-    insta::assert_snapshot!(refused(&[("desk", gray(f64::NAN))], "a"), @"light group `desk`: its factor must be finite and not negative");
+    insta::assert_snapshot!(refused(&[("desk", gray(-0.5))], "a"), @"light group `desk`: its factor must be from 0 to 1,000,000");
+    insta::assert_snapshot!(refused(&[("desk", gray(1e21))], "a"), @"light group `desk`: its factor must be from 0 to 1,000,000");
+    insta::assert_snapshot!(refused(&[("desk", gray(f64::NAN))], "a"), @"light group `desk`: its factor must be from 0 to 1,000,000");
     insta::assert_snapshot!(refused(&[("desk", gray(0.5)), ("desk", gray(1.0))], "a"), @"light group `desk`: it has a factor already; give one factor for each group");
     assert!(!case.place("a").exists());
     assert!(matches!(mix(&run.directory, &case.mix_options("run", &[])), Err(Error::MixOfItself { .. })));
@@ -432,6 +433,9 @@ fn what_cannot_be_mixed_is_refused() {
     assert!(matches!(mix(&run.directory, &case.mix_options("c", &[])), Err(Error::GroupFile { .. })));
     fs::write(&scene, ROOM).unwrap();
     assert!(!case.place("c").exists());
+    // The file is that of another group.
+    fs::copy(run.directory.join("group-1.light"), run.directory.join("group-2.light")).unwrap();
+    assert!(matches!(mix(&run.directory, &case.mix_options("f", &[])), Err(Error::GroupFile { .. })));
     fs::write(run.directory.join("group-2.light"), "").unwrap();
     assert!(matches!(mix(&run.directory, &case.mix_options("e", &[])), Err(Error::GroupFile { .. })));
 }

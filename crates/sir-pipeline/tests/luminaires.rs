@@ -7,6 +7,7 @@ use std::path::Path;
 use glam::DVec3;
 use sir_geom::{LightKind, Rgb, Scene, luminance};
 use sir_pipeline::NoProgress;
+use sir_pipeline::check::estimate;
 use sir_pipeline::fingerprint::of_scene;
 use sir_pipeline::plan::Pipeline;
 use sir_pipeline::prepare::{Prepared, prepare};
@@ -240,6 +241,10 @@ fn mistakes_have_one_message_each() {
         "file: \"axes.ies\", position: (0, 1, 0), maintenance: 0",
         "file: \"axes.ies\", position: (0, 1, 0), flux: 0",
         "file: \"axes.ies\", position: (0, 1, 0), intensity: 5",
+        "file: \"axes.ies\", position: (0, 1, 0), dim: 0.5",
+        "file: \"axs.ies\", position: (0, 1, 0)",
+        "file: \"axes.ies\", position: (0, 1, 0), rows: 2, row_step: (0, 0, 1), column_step: (1, 0, 0)",
+        "file: \"axes.ies\", position: (0, 1, 0), columns: 10000, rows: 10000, column_step: (1, 0, 0), row_step: (0, 0, 1)",
     ] {
         let message = try_prepare("path: \"floor.obj\"", luminaire).unwrap_err();
         assert_eq!(message.matches("error: ").count(), 1, "{luminaire}: {message}");
@@ -248,7 +253,80 @@ fn mistakes_have_one_message_each() {
     // All light is turned off.
     let dark = "file: \"axes.ies\", position: (0, 1, 0), dimming: 0";
     all += &try_prepare("path: \"floor.obj\"", dark).unwrap_err();
+    all += &try_prepare("path: \"floor.obj\"", &format!("{dark}, group: \"desk\"")).unwrap_err();
+    all += &try_prepare("path: \"hall.obj\"", &format!("{dark}, group: \"desk\"")).unwrap_err();
     insta::assert_snapshot!(all);
+}
+
+#[test]
+fn many_luminaires_are_counted_in_the_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    files(folder.path());
+    let peak = |rest: &str| {
+        let text = format!(
+            "(units: Photometric, stages: [Load(path: \"floor.obj\"), Light([Luminaire(file: \"panel.ies\", \
+             position: (0, 0, 0), {rest})]), FirstShot(lines: 10)])"
+        );
+        let pipeline = Pipeline::parse(&text, &folder.path().join("x.ron")).unwrap();
+        estimate(&pipeline, &NoProgress).unwrap().peak_memory
+    };
+    for (opening, least) in [("Point", 800_000), ("FromFile", 4 * 400_000)] {
+        let array = format!("columns: 1000, column_step: (0.001, 0, 0), opening: {opening}");
+        let more = peak(&array) - peak(&format!("opening: {opening}"));
+        assert!((least..3 * least).contains(&more), "{opening}: {more} bytes");
+    }
+}
+
+/// A luminaire above the ceiling or beside the room, unlike one that lights the scene from outside.
+#[test]
+fn luminaires_outside_of_the_scene_are_pointed_out() {
+    let folder = tempfile::tempdir().unwrap();
+    files(folder.path());
+    // A floor, a ceiling 3 m above it, and a wall of 9 m beside them.
+    let room =
+        "v 0 0 0\nv 0 0 4\nv 6 0 4\nv 6 0 0\nf 1 2 3 4\nv 0 3 0\nv 6 3 0\nv 6 3 4\nv 0 3 4\nf 5 6 7 8\n";
+    fs::write(folder.path().join("room.obj"), room).unwrap();
+    let outside = |scene: &str, luminaire: &str| -> Vec<String> {
+        let text = format!(
+            "(units: Photometric, stages: [Load(path: \"{scene}.obj\"), Light([\
+             Luminaire(file: \"axes.ies\", position: (3, 2, 2)), Luminaire({luminaire})]), FirstShot(lines: 10)])"
+        );
+        let pipeline = Pipeline::parse(&text, &folder.path().join("x.ron")).unwrap();
+        let suspicions = prepare(&pipeline, &NoProgress).unwrap().suspicions;
+        suspicions.into_iter().filter(|suspicion| suspicion.contains("outside of the scene,")).collect()
+    };
+    let one = outside("room", "file: \"axes.ies\", name: \"a\", position: (3, 3.2, 2)");
+    assert_eq!(
+        one,
+        [
+            "the luminaire \"a\" at (3, 3.2, 2) is outside of the scene, which extends from (0, 0, 0) to (6, 3, 4); is the \
+          position right?"
+        ]
+    );
+    for opening in ["Point", "FromFile"] {
+        let array = "columns: 4, column_step: (1.5, 0, 0), rows: 2, row_step: (0, 0, 1)";
+        let some = outside(
+            "room",
+            &format!("file: \"panel.ies\", position: (3, 2.9, 1.5), {array}, opening: {opening}"),
+        );
+        assert!(
+            some.len() == 1
+                && some[0]
+                    .starts_with("2 of 8 luminaires \"panel\", the first at (7.5, 2.9, 1.5), are outside"),
+            "{some:?}"
+        );
+    }
+    for luminaire in [
+        // At the ceiling, and at a wall.
+        "file: \"axes.ies\", position: (3, 3, 2)",
+        "file: \"axes.ies\", position: (0, 2, 2)",
+        // A floodlight that is aimed into the open side of the scene.
+        "file: \"axes.ies\", position: (3, 2.5, 8), target: (3, 0, 2)",
+    ] {
+        assert_eq!(outside("room", luminaire), [""; 0], "{luminaire}");
+    }
+    // Above a ground.
+    assert_eq!(outside("floor", "file: \"axes.ies\", position: (3, 8, 2)"), [""; 0]);
 }
 
 /// The hash of a scene has the tables of its luminaires, but not by their text, which would be gigabytes.

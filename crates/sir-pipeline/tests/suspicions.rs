@@ -214,3 +214,28 @@ fn a_copy_of_a_lamp_is_pointed_out() {
     let warnings = run(folder.path(), "", STAGES).warnings;
     assert!(warnings[0].starts_with("50.0 % of the light of lamps ends where it begins"), "{warnings:?}");
 }
+
+/// A `Grid` keeps points outside of the room, which are dark.
+#[test]
+fn a_grid_that_leaves_the_room_is_pointed_out() {
+    let folder = tempfile::tempdir().unwrap();
+    room(folder.path(), 1.0, Some(2.5), 0.0);
+    let warnings = |grid: &str| -> Vec<String> {
+        let stages = format!("{STAGES}, Sensors(name: \"desk\", at: Grid({grid}))");
+        prepared(folder.path(), "", &stages).suspicions
+    };
+    for inside in [
+        "corner: (0, 0.75, 4), along: (4, 0, 0), across: (0, 0, -4), spacing: 1",
+        // On the floor, and on a wall.
+        "corner: (0, 0, 4), along: (4, 0, 0), across: (0, 0, -4), spacing: 1",
+        "corner: (0, 0, 0), along: (4, 0, 0), across: (0, 3, 0), spacing: 0.5",
+    ] {
+        assert_eq!(warnings(inside), [""; 0], "{inside}");
+    }
+    let outside = warnings("corner: (2, 0.75, 4), along: (4, 0, 0), across: (0, 0, -4), spacing: 1");
+    assert!(
+        outside.len() == 1
+            && outside[0].starts_with("8 of 16 points of the `Grid` \"desk\" are outside of the scene"),
+        "{outside:?}"
+    );
+}

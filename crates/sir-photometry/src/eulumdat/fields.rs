@@ -1,7 +1,7 @@
 //! Fields that have a line of their own.
 
 use crate::error::PhotometryError;
-use crate::text::{Reader, shortened};
+use crate::text::{Reader, WITHIN_LIMITS, is_too_large, shortened};
 
 /// Returns the next line.
 pub(crate) fn line<'a>(reader: &mut Reader<'a>, what: &str) -> Result<&'a str, PhotometryError> {
@@ -41,6 +41,6 @@ pub(crate) fn field_or(
         column: place.column,
         what: what.to_owned(),
         found: shortened(text),
-        expected,
+        expected: if is_too_large(text) { WITHIN_LIMITS } else { expected },
     })
 }

@@ -5,13 +5,16 @@ use crate::error::PhotometryError;
 use crate::eulumdat::fields::line;
 use crate::eulumdat::header::Header;
 use crate::eulumdat::lamps::Lamps;
-use crate::eulumdat::table::{extend, intensities, measured_planes, regular_if_broken};
+use crate::eulumdat::table::{extend, intensities, measured_count, measured_planes, regular_if_broken};
 use crate::photometry::Photometry;
 use crate::planes::{Planes, ascending, snapped, warn_of_range, without_negative};
 use crate::text::{Comma, Reader};
 
 /// Number of lines with direct ratios, which are ignored.
 const DIRECT_RATIOS: usize = 10;
+
+/// Line of the number of sets of lamps.
+const SETS_LINE: usize = 26;
 
 /// Flux \[lm\] to which intensities refer if the file states no flux of its lamps.
 const REFERENCE_FLUX: f64 = 1000.0;
@@ -35,36 +38,46 @@ pub(crate) fn is_eulumdat(text: &str) -> bool {
 pub(crate) fn read(text: &str, lamp_set: usize) -> Result<Photometry, PhotometryError> {
     let mut warnings = Vec::new();
     let mut reader = Reader::new(text, Comma::Decimal);
-    let header = Header::read(&mut reader)?;
+    let header = Header::read(&mut reader, &mut warnings)?;
     let lamps = Lamps::read(&mut reader, header.sets, lamp_set, &mut warnings)?;
     for _ in 0..DIRECT_RATIOS {
         line(&mut reader, "the direct ratios")?;
     }
+    let line_of_planes = reader.line_of_next();
     let planes = reader.numbers(header.planes, "the angle C")?;
+    let line_of_gammas = reader.line_of_next();
     let gammas = reader.numbers(header.gammas, "the angle γ")?;
+    check_sets(&header, &planes, &gammas, &reader)?;
     let planes = regular_if_broken(planes, header.plane_step, "C", &mut warnings);
     let gammas = regular_if_broken(gammas, header.gamma_step, "γ", &mut warnings);
 
-    let angles = measured_planes(header.symmetry, &planes)?;
+    let of_planes = PhotometryError::from_line(line_of_planes);
+    let angles = measured_planes(header.symmetry, &planes).map_err(&of_planes)?;
+    let line_of_values = reader.line_of_next();
     let values = intensities(&mut reader, angles.len(), gammas.len(), &mut warnings)?;
     let mut planes = Planes { angles, values };
     without_negative(&mut planes.values, &mut warnings);
     let flux = if lamps.flux > 0.0 {
         lamps.flux
     } else {
-        warnings.push(format!("The flux of the lamps is not stated; {REFERENCE_FLUX} lm are assumed."));
+        let why = match lamps.flux {
+            flux if flux < 0.0 => format!("{flux} lm is negative"),
+            _ => "is not stated".to_owned(),
+        };
+        warnings.push(format!("The flux of the lamps {why}; {REFERENCE_FLUX} lm are assumed."));
         REFERENCE_FLUX
     };
     let factor = header.conversion(&mut warnings) * flux / 1000.0;
     planes.values.iter_mut().for_each(|value| *value *= factor);
 
-    ascending("angles γ", &gammas)?;
+    ascending("angles γ", &gammas).map_err(PhotometryError::from_line(line_of_gammas))?;
     let gammas: Vec<f64> = gammas.into_iter().map(snapped).collect();
     warn_of_range(&gammas, &mut warnings);
-    extend(header.symmetry, &mut planes)?;
+    extend(header.symmetry, &mut planes).map_err(of_planes)?;
     let distribution =
         IntensityDistribution::new(Coordinates::CAcross, &planes.angles, &gammas, &planes.values)
-            .map_err(|problem| PhotometryError::Table { problem })?;
+            .map_err(|problem| PhotometryError::Table { problem })
+            .map_err(PhotometryError::from_line(line_of_values))?;
     if header.tilt != 0.0 {
         warnings.push(format!(
             "The luminaire was measured at a tilt of {}°; its intensities refer to that position.",
@@ -73,6 +86,13 @@ pub(crate) fn read(text: &str, lamp_set: usize) -> Result<Photometry, Photometry
     }
     let opening = header.opening(&mut warnings);
     let absolute = lamps.count < 0.0;
+    if header.output_ratio <= 0.0 && !absolute {
+        let ratio = header.output_ratio;
+        warnings.push(format!("The light output ratio {ratio} % is ignored; it should be above 0."));
+    }
+    if lamps.watts < 0.0 {
+        warnings.push(format!("The electric power {} W is negative, and ignored.", lamps.watts));
+    }
     Ok(Photometry {
         format: "EULUMDAT".to_owned(),
         name: header.name,
@@ -89,5 +109,31 @@ pub(crate) fn read(text: &str, lamp_set: usize) -> Result<Photometry, Photometry
         opening,
         tilt: None,
         warnings,
+    })
+}
+
+/// Checks that the number of sets of lamps is right. If it is not, all that follows is read from wrong lines: angles do not
+/// ascend, and there are too many intensities or too few.
+///
+/// # Errors
+///
+/// If both are the case.
+fn check_sets(
+    header: &Header,
+    planes: &[f64],
+    gammas: &[f64],
+    reader: &Reader<'_>,
+) -> Result<(), PhotometryError> {
+    let is_ascending = ascending("", planes).is_ok() && ascending("", gammas).is_ok();
+    if is_ascending || reader.words_left() == measured_count(header.symmetry, planes.len()) * gammas.len() {
+        return Ok(());
+    }
+    Err(PhotometryError::Value {
+        line: SETS_LINE,
+        column: 1,
+        what: "the number of lamp sets".to_owned(),
+        found: header.sets.to_string(),
+        expected: "that of the sets in the file; the angles after them do not ascend, and the intensities are too many or \
+                   too few",
     })
 }

@@ -34,17 +34,19 @@ pub(crate) struct Header {
 }
 
 impl Header {
-    pub(crate) fn read(reader: &mut Reader<'_>) -> Result<Self, PhotometryError> {
+    pub(crate) fn read(reader: &mut Reader<'_>, warnings: &mut Vec<String>) -> Result<Self, PhotometryError> {
         let company = line(reader, "the company")?;
         line(reader, "the type indicator")?;
         let indicator = |x: f64| (0.0..=4.0).contains(&x) && x.fract() == 0.0;
         let symmetry =
             field(reader, "the symmetry indicator", "a whole number from 0 to 4", indicator)? as u8;
         let count = |x: f64| (1.0..=1e9).contains(&x) && x.fract() == 0.0;
-        let planes = field(reader, "the number of planes", "a whole number from 1", count)? as usize;
+        let planes =
+            field(reader, "the number of planes", "a whole number from 1 to 1000000000", count)? as usize;
         let plane_step = optional(reader, "the step between planes")?;
         let gammas =
-            field(reader, "the number of angles in a plane", "a whole number from 1", count)? as usize;
+            field(reader, "the number of angles in a plane", "a whole number from 1 to 1000000000", count)?
+                as usize;
         let gamma_step = optional(reader, "the step between angles in a plane")?;
         line(reader, "the number of the report")?;
         let luminaire = line(reader, "the name of the luminaire")?;
@@ -56,7 +58,12 @@ impl Header {
         line(reader, "the date")?;
         let mut sizes = [0.0; 9];
         for size in &mut sizes {
-            *size = optional(reader, "a dimension")?.abs();
+            let line = reader.place().line;
+            *size = optional(reader, "a dimension")?;
+            if *size < 0.0 {
+                warnings.push(format!("The dimension {size} mm in line {line} is read without its sign."));
+                *size = size.abs();
+            }
         }
         let [length, width, _, area_length, area_width, heights @ ..] = sizes;
         optional(reader, "the downward flux fraction")?;

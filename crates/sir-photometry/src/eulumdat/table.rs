@@ -18,16 +18,24 @@ pub(crate) fn regular_if_broken(
     (0..angles.len()).map(|i| i as f64 * step).collect()
 }
 
+/// Returns the number of planes whose intensities are in a file with `all` planes around the full circle.
+pub(crate) fn measured_count(symmetry: u8, all: usize) -> usize {
+    match symmetry {
+        0 => all,
+        1 => 1,
+        2 | 3 => all / 2 + 1,
+        _ => all / 4 + 1,
+    }
+}
+
 /// Returns the angles of the planes whose intensities are in the file.
 pub(crate) fn measured_planes(symmetry: u8, all: &[f64]) -> Result<Vec<f64>, PhotometryError> {
-    let count = all.len();
-    let (start, planes) = match symmetry {
-        0 => (0, count),
+    let (count, planes) = (all.len(), measured_count(symmetry, all.len()));
+    let start = match symmetry {
         1 => return Ok(vec![0.0]),
-        2 => (0, count / 2 + 1),
         // From C270 through C0 to C90.
-        3 => (3 * count / 4, count / 2 + 1),
-        _ => (0, count / 4 + 1),
+        3 => 3 * count / 4,
+        _ => 0,
     };
     let angles: Vec<f64> =
         (start..start + planes).map(|i| all[i % count] + 360.0 * (i / count) as f64).collect();

@@ -12,6 +12,14 @@ pub(crate) enum Type {
     A,
 }
 
+/// Lines in which the parts of a table begin.
+#[derive(Clone, Copy)]
+pub(crate) struct Lines {
+    pub(crate) verticals: usize,
+    pub(crate) horizontals: usize,
+    pub(crate) values: usize,
+}
+
 /// Makes the distribution from the vertical angles \[°\] and the planes of constant horizontal angle.
 ///
 /// # Errors
@@ -21,36 +29,40 @@ pub(crate) fn distribution(
     kind: Type,
     vertical: Vec<f64>,
     planes: Planes,
+    lines: Lines,
     warnings: &mut Vec<String>,
 ) -> Result<IntensityDistribution, PhotometryError> {
-    ascending("vertical angles", &vertical)?;
-    ascending("horizontal angles", &planes.angles)?;
+    let [of_verticals, of_horizontals, of_values] =
+        [lines.verticals, lines.horizontals, lines.values].map(PhotometryError::from_line);
+    ascending("vertical angles", &vertical).map_err(&of_verticals)?;
+    ascending("horizontal angles", &planes.angles).map_err(&of_horizontals)?;
     let from_nadir = |angles: &[f64]| angles.iter().map(|angle| snapped(angle + 90.0)).collect::<Vec<f64>>();
     let table = match kind {
         Type::C => {
             let polars: Vec<f64> = vertical.iter().map(|&angle| snapped(angle)).collect();
-            let planes = around(planes, warnings)?;
-            within("vertical angles", &polars, 0.0, "angles within 0 to 180°")?;
+            let planes = around(planes, warnings).map_err(of_horizontals)?;
+            within("vertical angles", &polars, 0.0, "angles within 0 to 180°").map_err(of_verticals)?;
             warn_of_range(&polars, warnings);
             IntensityDistribution::new(Coordinates::C, &planes.angles, &polars, &planes.values)
         }
         Type::A => {
-            let planes = across(planes, warnings)?;
+            let planes = across(planes, warnings).map_err(&of_horizontals)?;
             let polars = from_nadir(&vertical);
-            within("vertical angles", &polars, 90.0, "angles within -90 to 90°")?;
+            within("vertical angles", &polars, 90.0, "angles within -90 to 90°").map_err(of_verticals)?;
             warn_of_half(&vertical, warnings);
             IntensityDistribution::new(Coordinates::A, &planes.angles, &polars, &planes.values)
         }
         Type::B => {
-            let planes = across(planes, warnings)?;
+            let planes = across(planes, warnings).map_err(&of_horizontals)?;
             let polars = from_nadir(&planes.angles);
-            within("horizontal angles", &polars, 90.0, "angles within -90 to 90°")?;
+            within("horizontal angles", &polars, 90.0, "angles within -90 to 90°")
+                .map_err(&of_horizontals)?;
             warn_of_half(&vertical, warnings);
             // Planes of constant vertical angle share the horizontal axis.
             IntensityDistribution::new(Coordinates::B, &vertical, &polars, &planes.transposed())
         }
     };
-    table.map_err(|problem| PhotometryError::Table { problem })
+    table.map_err(|problem| of_values(PhotometryError::Table { problem }))
 }
 
 /// Checks that polar angles are within 0 to 180°. `offset` is what was added to the angles of the file.
@@ -85,6 +97,11 @@ fn around(mut planes: Planes, warnings: &mut Vec<String>) -> Result<Planes, Phot
         }
     }
     if count <= 1 {
+        if !near(first, 0.0) {
+            warnings.push(format!(
+                "The only horizontal angle is {first}°, not 0; its intensities are those all around."
+            ));
+        }
         return Ok(planes);
     }
     if !(180.0..=360.0).contains(&span) {

@@ -3,7 +3,7 @@
 use std::io;
 
 use crate::error::PhotometryError;
-use crate::ies::angles::{Type, distribution};
+use crate::ies::angles::{Lines, Type, distribution};
 use crate::ies::shape::opening;
 use crate::ies::version::Version;
 use crate::ies::{header, tilt};
@@ -30,8 +30,11 @@ pub(crate) fn read(
     let numbers = Numbers::read(&mut reader)?;
     let Numbers { verticals, horizontals, kind, .. } = numbers;
 
+    let line_of_verticals = reader.line_of_next();
     let vertical = reader.numbers(verticals, "the vertical angle")?;
+    let line_of_horizontals = reader.line_of_next();
     let angles = reader.numbers(horizontals, "the horizontal angle")?;
+    let line_of_values = reader.line_of_next();
     let mut values = Vec::new();
     for angle in &angles {
         let what = format!("the intensity at the horizontal angle {angle}°, number");
@@ -40,16 +43,19 @@ pub(crate) fn read(
     if reader.words_left() > 0 {
         warnings.push("The text after the first luminaire is ignored.".to_owned());
     }
+    numbers.warn(&mut warnings);
     let factor = numbers.factor(header.version, &mut warnings);
     without_negative(&mut values, &mut warnings);
     values.iter_mut().for_each(|value| *value *= factor);
     let opening = opening(header.version, numbers.extents, &mut warnings);
-    let distribution = distribution(kind, vertical, Planes { angles, values }, &mut warnings)?;
+    let lines =
+        Lines { verticals: line_of_verticals, horizontals: line_of_horizontals, values: line_of_values };
+    let distribution = distribution(kind, vertical, Planes { angles, values }, lines, &mut warnings)?;
     Ok(Photometry {
         format: format!("{} type {kind:?}", header.version.name()),
         name: header.name,
         distribution,
-        lamp_flux: (numbers.lumens > 0.0).then_some(numbers.lamps * numbers.lumens),
+        lamp_flux: Some(numbers.lamps * numbers.lumens).filter(|&flux| numbers.lumens > 0.0 && flux > 0.0),
         stated_flux: None,
         watts: (numbers.watts > 0.0).then_some(numbers.watts),
         color_temperature: header.color_temperature,
@@ -117,6 +123,20 @@ impl Numbers {
             ballast_lamp,
             watts,
         })
+    }
+
+    /// Warns about numbers that are ignored.
+    fn warn(&self, warnings: &mut Vec<String>) {
+        let Self { lamps, lumens, watts, .. } = *self;
+        if lumens != -1.0 && (lumens <= 0.0 || lamps <= 0.0) {
+            warnings.push(format!(
+                "The flux of {lamps} × {lumens} lm of the lamps is ignored; it should be above 0, or -1 lm per lamp for \
+                 absolute photometry."
+            ));
+        }
+        if watts < 0.0 {
+            warnings.push(format!("The electric power {watts} W is negative, and ignored."));
+        }
     }
 
     /// Returns the factor of all intensities. The ballast-lamp factor exists until 1991 only: later versions use its place for

@@ -18,12 +18,17 @@ fn message(text: &str) -> String {
     Photometry::parse(text.as_bytes()).unwrap_err().to_string()
 }
 
-/// Returns the message about a EULUMDAT file one of whose lines, from 1, is replaced.
-fn with_line(number: usize, line: &str) -> String {
+/// Returns a EULUMDAT file one of whose lines, from 1, is replaced.
+fn replaced(number: usize, line: &str) -> String {
     let text = ldt();
     let mut lines: Vec<&str> = text.lines().collect();
     lines[number - 1] = line;
-    message(&lines.join("\n"))
+    lines.join("\n")
+}
+
+/// Returns the message about such a file.
+fn with_line(number: usize, line: &str) -> String {
+    message(&replaced(number, line))
 }
 
 #[test]
@@ -56,14 +61,14 @@ fn values_of_ies_are_located() {
         (
             "1 -1 1 3",
             "1 -1 1 2.5",
-            "the number of vertical angles is \"2.5\" (expected a whole number from 1)",
+            "the number of vertical angles is \"2.5\" (expected a whole number from 1 to 1000000000)",
         ),
         ("1 -1 1 3", "1 -1 1 4", "the file ends in line 9 before the intensity at the horizontal angle 1000"),
         ("1 1 0\n", "0 1 0\n", "line 6, column 1: the ballast factor is \"0\""),
         (
             "0 45 90",
             "0 90 45",
-            "the vertical angles go from 90° to 45° (expected each larger than the one before)",
+            "line 7: the vertical angles go from 90° to 45° (expected each larger than the one before)",
         ),
         ("0 45 90", "0 45 200", "the vertical angles go from 0° to 200° (expected angles within 0 to 180°)"),
         (
@@ -120,13 +125,17 @@ fn horizontal_angles_outside_the_standard_are_refused() {
 #[test]
 fn values_of_eulumdat_are_located() {
     for (line, text, expected) in [
-        (4, "2.5", "line 4, column 1: the number of planes is \"2.5\" (expected a whole number from 1)"),
+        (
+            4,
+            "2.5",
+            "line 4, column 1: the number of planes is \"2.5\" (expected a whole number from 1 to 1000000000)",
+        ),
         (6, "", "line 6, column 1: the number of angles in a plane is \"\""),
         (16, "wide", "line 16, column 1: a dimension is \"wide\" (expected a number)"),
         (26, "-1", "line 26, column 1: the number of lamp sets is \"-1\""),
         (29, "1000 lm", "line 29, column 1: the flux of the lamps is \"1000 lm\""),
         (47, "x", "line 47, column 1: the angle γ 1 of 3 is \"x\""),
-        (51, "1e99", "line 51, column 1: the intensity 2 of 3 in plane 1 of 1 is \"1e99\""),
+        (51, "1e99", "the intensity 2 of 3 in plane 1 of 1 is \"1e99\" (expected a number up to 1e12)"),
     ] {
         let error = with_line(line, text);
         assert!(error.contains(expected), "{error}");
@@ -140,6 +149,45 @@ fn values_of_eulumdat_are_located() {
     );
 }
 
+/// With another number of sets, angles and intensities would be read from wrong lines.
+#[test]
+fn a_wrong_number_of_lamp_sets_is_refused() {
+    for (sets, wrong) in [(1, "0"), (1, "2"), (2, "1"), (2, "3")] {
+        let mut file = Ldt::new(4, 15.0, angles(0.0, 90.0, 5.0));
+        file.lamps = vec![[1.0, 1000.0, 0.0]; sets];
+        let text = file.text(cosine);
+        let mut lines: Vec<&str> = text.lines().collect();
+        lines[25] = wrong;
+        let error = message(&lines.join("\n"));
+        let expected = format!("line 26, column 1: the number of lamp sets is \"{wrong}\" (expected that of");
+        assert!(error.starts_with(&expected), "{error}");
+    }
+}
+
+#[test]
+fn a_file_with_the_name_of_eulumdat_is_read_as_that() {
+    let folder = tempfile::tempdir().unwrap();
+    for (line, found, expected) in [
+        (3, "5", "line 3, column 1: the symmetry indicator is \"5\" (expected a whole number from 0 to 4)"),
+        (3, "", "line 3, column 1: the symmetry indicator is \"\""),
+        (4, "0", "line 4, column 1: the number of planes is \"0\" (expected a whole number from 1"),
+    ] {
+        let text = ldt();
+        let mut lines: Vec<&str> = text.lines().collect();
+        lines[line - 1] = found;
+        for name in ["a.ldt", "A.LDT"] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, lines.join("\n")).unwrap();
+            let error = Photometry::read(&path).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+    let path = folder.path().join("folder.ldt");
+    std::fs::create_dir(&path).unwrap();
+    let error = std::error::Error::source(&Photometry::read(&path).unwrap_err()).unwrap().to_string();
+    assert_eq!(error, "this is a folder, not a file");
+}
+
 #[test]
 fn planes_of_eulumdat_fit_their_symmetry() {
     for (symmetry, expected) in [(2, "0 to 180°"), (3, "270 to 450°"), (4, "0 to 90°")] {
@@ -147,7 +195,7 @@ fn planes_of_eulumdat_fit_their_symmetry() {
         file.planes.truncate(10);
         let error = message(&file.text(cosine));
         let expected = format!("(expected {expected} for the symmetry indicator {symmetry}); correct");
-        assert!(error.starts_with("the angles C go from ") && error.contains(&expected), "{error}");
+        assert!(error.starts_with("line 43: the angles C go from ") && error.contains(&expected), "{error}");
     }
 }
 
@@ -172,7 +220,7 @@ fn other_formats_are_named() {
 #[test]
 fn a_dark_file_is_refused() {
     let dark = Ies::new(1, angles(0.0, 90.0, 45.0), vec![0.0]).text(|_| 0.0);
-    assert_eq!(message(&dark), "all intensities are zero; correct the file, or export it again");
+    assert_eq!(message(&dark), "line 9: all intensities are zero; correct the file, or export it again");
 }
 
 #[test]
@@ -205,6 +253,14 @@ fn doubtful_files_are_read_with_a_warning() {
             ies().replace("0 45 90", "0 45 80"),
             "There is no light outside of the vertical angles from 0° to 80°.",
         ),
+        (ies().replace("\n0\n", "\n90\n"), "The only horizontal angle is 90°"),
+        (ies().replace("1 -1 1", "2 -500 1"), "The flux of 2 × -500 lm of the lamps is ignored;"),
+        (ies().replace("1 -1 1", "1 0 1"), "The flux of 1 × 0 lm of the lamps is ignored;"),
+        (ies().replace("1 1 0\n", "1 1 -15\n"), "The electric power -15 W is negative"),
+        (ldt().replacen("\r\n100\r\n", "\r\n0\r\n", 1), "The light output ratio 0 % is ignored;"),
+        (ldt().replace("LED\r\n1000", "LED\r\n-4000"), "The flux of the lamps -4000 lm is negative;"),
+        (ldt().replace("1B\r\n0", "1B\r\n-40"), "The electric power -40 W is negative"),
+        (replaced(16, "-5"), "The dimension -5 mm in line 16 is read without its sign."),
         (ldt() + "\r\n7\r\n8", "2 numbers after the intensities are ignored."),
         (
             ldt().lines().take(51).collect::<Vec<_>>().join("\n"),

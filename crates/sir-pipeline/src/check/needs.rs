@@ -43,6 +43,9 @@ const TEXEL_BYTES: [usize; 2] = [90, 45];
 /// Bytes per side of a triangle while surfaces are unfolded: measured, rounded up.
 const UNFOLD_BYTES: usize = 1_000;
 
+/// Bytes per light of the scene without a surface, besides its source: measured, rounded up.
+const LIGHT_BYTES: usize = 700;
+
 /// Share of a page that charts fill, at least.
 const FILLED: f64 = 0.4;
 
@@ -160,7 +163,14 @@ pub(super) fn memory(prepared: &Prepared, pipeline: &Pipeline) -> (Vec<(&'static
     // The light of a group, read from its file, is added to that of the others.
     let mixing = 2 * group_file_bytes(prepared, pipeline) / results.max(1);
     let memory = vec![
-        ("scene", size_of_val(scene.vertices()) + size_of_val(scene.triangles()) + scene.appearance_bytes()),
+        (
+            "scene",
+            size_of_val(scene.vertices())
+                + size_of_val(scene.triangles())
+                + scene.appearance_bytes()
+                + scene.lights().len() * LIGHT_BYTES
+                + size_of_val(prepared.sources.as_slice()),
+        ),
         ("patches", mesh.bytes() + mesh.paint_bytes() + surfaces * SURFACE_BYTES * scene.triangles().len()),
         ("acceleration structure", accel.bytes()),
         ("computing the light", sides * tracing + sums.sum::<usize>() + measured),

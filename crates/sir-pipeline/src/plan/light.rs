@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sir_geom::{LightKind, Rgb};
 
+use crate::format::grouped;
 use crate::plan::light_group::{FileLights, group};
 use crate::plan::luminaire::Luminaire;
 use crate::plan::panel::Panel;
@@ -14,6 +15,9 @@ use crate::text::formats::{Color, Direction};
 use crate::text::reader::Reader;
 use crate::text::record::{Body, Choose as _, choice, list_items, record, write_list};
 use crate::text::ron_tree::Node;
+
+/// Largest number of luminaires of a pipeline.
+const MAX_LUMINAIRES: u64 = 1_000_000;
 
 /// Stage that adds lights to the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,6 +111,20 @@ impl Body for Light {
             for other in skies {
                 let message = format!("a second sky; the first is in line {}", reader.line(first.text));
                 reader.problem(other.name(), message, "keep one `Sky` or `Environment`");
+            }
+        }
+        let (mut count, mut is_reported) = (0u64, false);
+        for (lamp, item) in lamps.iter().zip(items) {
+            let Some(Lamp::Luminaire(luminaire)) = lamp else { continue };
+            count += luminaire.count();
+            if count > MAX_LUMINAIRES && !is_reported {
+                let message = format!(
+                    "the pipeline has {} luminaires up to this one (at most {} are possible)",
+                    grouped(count),
+                    grouped(MAX_LUMINAIRES)
+                );
+                reader.problem(item.name(), message, "choose fewer `columns` or `rows`");
+                is_reported = true;
             }
         }
         lamps.into_iter().collect::<Option<_>>().map(|lamps| Self { lamps })

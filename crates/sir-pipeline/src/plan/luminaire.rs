@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use sir_geom::{Light, LightKind, Rgb, Spread, Tabulated};
+use sir_geom::{Light, LightKind, Rgb, Spread, Tabulated, luminance};
 use sir_photometry::OpeningLight;
 
 use crate::plan::light_color::{TEMPERATURES, of_black_body, of_unit_luminance};
@@ -14,9 +14,19 @@ use crate::text::field::Format as _;
 use crate::text::formats::{Choice, Color, Direction, Text, Vector, count, number, positive};
 use crate::text::reader::{Fields, Reader};
 use crate::text::record::record;
+use crate::text::span::{Span, Spanned, WithSpan};
 
 /// Largest number of luminaires along a row or column.
 const MAX_COPIES: u64 = 10_000;
+
+/// Bytes per luminaire that is a point, with its source: measured, rounded up.
+const POINT_BYTES: usize = 1_000;
+
+/// Bytes per triangle of the opening of a luminaire, with its materials, patches and sources: measured, rounded up.
+const OPENING_BYTES: usize = 500;
+
+/// The `dimming` without a position.
+const FULL: Spanned<f64> = Spanned { value: 1.0, span: Span(0..0) };
 
 const OPENINGS: Choice<OpeningChoice> =
     Choice(&[("Point", OpeningChoice::Point), ("FromFile", OpeningChoice::FromFile)]);
@@ -47,7 +57,8 @@ record! {
         /// Flux of one luminaire before `dimming` and `maintenance`.
         pub flux: Option<f64> = positive(3600.0).optional("that of the intensities in the file").unit("lm");
         /// Factor of the light, to dim it.
-        pub dimming: f64 = number(0.8).with_range(|x| (0.0..=1.0).contains(&x), "from 0 to 1").or(1.0);
+        pub dimming: Spanned<f64> =
+            WithSpan(number(0.8).with_range(|x| (0.0..=1.0).contains(&x), "from 0 to 1")).or(FULL);
         /// Maintenance factor: the share of the initial light that is left before maintenance.
         pub maintenance: f64 = number(0.8).with_range(|x| x > 0.0 && x <= 1.0, "above 0, at most 1").or(1.0);
         /// Color of the light; the flux is the same for all colors.
@@ -82,6 +93,46 @@ impl Luminaire {
         self.name.clone().unwrap_or_else(|| self.file.stem())
     }
 
+    /// Returns the number of luminaires in the array.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        u64::from(self.columns) * u64::from(self.rows)
+    }
+
+    /// Returns an estimate of the memory that the luminaires take in a scene \[bytes\].
+    pub(crate) fn bytes_in_scene(&self) -> usize {
+        let of_one = match self.opening {
+            OpeningChoice::Point => POINT_BYTES,
+            OpeningChoice::FromFile => {
+                let faces = self.file.contents.opening.faces();
+                OPENING_BYTES * faces.iter().map(|face| face.corners.len().saturating_sub(2)).sum::<usize>()
+            }
+        };
+        usize::try_from(self.count()).map_or(usize::MAX, |count| count.saturating_mul(of_one))
+    }
+
+    /// Returns the factor of its flux if its light has a factor per band.
+    pub(crate) fn dimming_by(&self, factor: Rgb) -> f64 {
+        self.unit_color().map_or(1.0, |color| luminance(color * factor))
+    }
+
+    /// Returns the color of its light, with a luminance of 1; `None` if it is black.
+    fn unit_color(&self) -> Option<Rgb> {
+        match self.temperature {
+            Some(temperature) => Some(of_black_body(temperature)),
+            None => of_unit_luminance(self.color),
+        }
+    }
+
+    /// Returns the direction of the aim of the luminaire at a position, of unit length; `None` if that is its target.
+    pub(crate) fn aim_at(&self, position: DVec3, up: DVec3) -> Option<DVec3> {
+        let aim = match (self.target, self.aim) {
+            (Some(target), _) => target - position,
+            (None, aim) => aim.unwrap_or(-up),
+        };
+        aim.try_normalize()
+    }
+
     /// Returns the positions of all luminaires of the array \[m\], row by row.
     pub fn positions(&self) -> impl Iterator<Item = DVec3> {
         let Self { position, columns, column_step, rows, row_step, .. } = *self;
@@ -95,7 +146,7 @@ impl Luminaire {
     #[must_use]
     pub fn flux_of_one(&self) -> f64 {
         let flux = self.flux.unwrap_or_else(|| self.file.contents.distribution.flux());
-        flux * self.dimming * self.maintenance
+        flux * self.dimming.value * self.maintenance
     }
 
     /// Returns the electric power of one luminaire \[W\], if it is known. Dimming does not change it.
@@ -107,10 +158,7 @@ impl Luminaire {
     /// Converts all luminaires for a scene with this up direction, of unit length. Returns `None` if its numbers contradict
     /// each other.
     pub(crate) fn to_scene(&self, up: DVec3) -> Option<Vec<SceneLight>> {
-        let color = match self.temperature {
-            Some(temperature) => of_black_body(temperature),
-            None => of_unit_luminance(self.color)?,
-        };
+        let color = self.unit_color()?;
         let contents = &self.file.contents;
         // Per candela of the file.
         let factor = color * (self.flux_of_one() / contents.distribution.flux());
@@ -143,11 +191,7 @@ impl Luminaire {
     /// Returns the axes of a luminaire at a position. Aimed down, with a rotation of 0, its length is along +x, or along +y if x
     /// is up. It is turned from there to its aim on the shortest way; to be aimed up, about its length.
     fn frame(&self, position: DVec3, up: DVec3) -> Option<DMat3> {
-        let aim = match (self.target, self.aim) {
-            (Some(target), _) => target - position,
-            (None, aim) => aim.unwrap_or(-up),
-        };
-        let aim = aim.try_normalize()?;
+        let aim = self.aim_at(position, up)?;
         let guide = if up.x.abs() > 0.9 { DVec3::Y } else { DVec3::X };
         let length = guide.reject_from_normalized(up).try_normalize()?;
         let upright = DMat3::from_cols(length, up.cross(length), up);
@@ -167,9 +211,15 @@ impl Luminaire {
         };
         both("aim", "target");
         both("color", "temperature");
-        for (many, step, name) in
-            [(self.columns, self.column_step, "column_step"), (self.rows, self.row_step, "row_step")]
-        {
+        for (many, counts, step, name) in [
+            (self.columns, "columns", self.column_step, "column_step"),
+            (self.rows, "rows", self.row_step, "row_step"),
+        ] {
+            if many == 1 && step != DVec3::ZERO {
+                let help = format!("give the number of luminaires as `{counts}`, or leave out `{name}`");
+                let message = format!("`{name}` has no effect (`{counts}` is 1)");
+                reader.problem(fields.place_of(name), message, help);
+            }
             if many > 1 && step == DVec3::ZERO {
                 let message = format!("{many} luminaires are at the same place (`{name}` is zero)");
                 reader.problem(

@@ -1,5 +1,6 @@
 //! Photometric files of luminaires.
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -8,6 +9,7 @@ use sir_photometry::{Photometry, PhotometryError};
 use crate::text::back_slashes::{path_help, printable};
 use crate::text::field::Format;
 use crate::text::formats::{Text, quoted};
+use crate::text::paths::similar_file;
 use crate::text::reader::Reader;
 use crate::text::ron_tree::Node;
 
@@ -45,6 +47,11 @@ impl Format for Photometric {
         match Photometry::read(&path) {
             Ok(contents) => Some(PhotometricFile { path, contents: Arc::new(contents) }),
             Err(error) => {
+                let is_missing = matches!(
+                    &error,
+                    PhotometryError::Read { source, .. } if source.kind() == ErrorKind::NotFound
+                );
+                let similar = is_missing.then(|| similar_file(&path)).flatten();
                 // Without the path, which the message has already.
                 let why = match error {
                     PhotometryError::Read { source, .. } => source.to_string(),
@@ -53,7 +60,7 @@ impl Format for Photometric {
                 };
                 let message = format!("cannot read the photometric file {}: {why}", printable(&path));
                 let help = "use an IES (LM-63) or EULUMDAT file; paths are relative to the folder of the pipeline file";
-                reader.problem(node.text, message, path_help(node.text, help));
+                reader.problem(node.text, message, path_help(node.text, similar.as_deref().unwrap_or(help)));
                 None
             }
         }

@@ -9,6 +9,7 @@ use sir_radiosity::Points;
 
 use crate::error::Error;
 use crate::plan::light::Lamp;
+use crate::plan::luminaire::Luminaire;
 use crate::plan::save::{Output, Save};
 use crate::plan::sensors::Place;
 use crate::plan::stage::{Action, Stage, StageList};
@@ -161,6 +162,15 @@ impl Pipeline {
     /// Returns all stages. The stages of a `Repeat` replace it, once.
     pub fn flat_stages(&self) -> impl Iterator<Item = &Stage> {
         self.stages.iter().flat_map(Stage::flat)
+    }
+
+    /// Returns all luminaires, with arrays as one, in the order of the file.
+    pub fn luminaires(&self) -> impl Iterator<Item = &Luminaire> {
+        let lamps = self.stages.iter().flat_map(|stage| match &stage.action {
+            Action::Light(light) => light.lamps.as_slice(),
+            _ => &[],
+        });
+        lamps.filter_map(|lamp| if let Lamp::Luminaire(luminaire) = lamp { Some(luminaire) } else { None })
     }
 
     /// Returns all outputs of `Save` stages, in the order of the file.

@@ -30,7 +30,9 @@ fn ratio(example: f64) -> Number {
 impl Require {
     fn check(&self, reader: &mut Reader<'_>, fields: &Fields<'_>) {
         let Self { mean, minimum, uniformity, diversity, daylight_factor, ugr } = self;
-        if [mean, minimum, uniformity, diversity, daylight_factor, ugr].into_iter().all(Option::is_none) {
+        let is_empty =
+            [mean, minimum, uniformity, diversity, daylight_factor, ugr].into_iter().all(Option::is_none);
+        if is_empty && !fields.has_unknown() {
             let help = "write for instance `require: (mean: 500, uniformity: 0.6)`";
             reader.problem(fields.place, "`require` states no requirement", help);
         }

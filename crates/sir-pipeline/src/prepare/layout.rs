@@ -183,7 +183,7 @@ fn extent(scene: &Scene, axis: DVec3) -> [f64; 2] {
 
 /// Returns true if a point is in the room, and not inside of a piece of furniture. There must be a surface below the
 /// point, and the first surfaces below and above must not show the back of a one-sided surface. (The sky may be above.)
-fn is_inside(point: DVec3, up: DVec3, model: &Model, tracer: &mut Tracer<'_>) -> bool {
+pub(super) fn is_inside(point: DVec3, up: DVec3, model: &Model, tracer: &mut Tracer<'_>) -> bool {
     let Some(sensor) = Sensor::new(point, up) else { return false };
     let start = SensorStart::of(&sensor, model, tracer);
     let is_active = |triangle, side| model.scene.is_active(triangle, side);

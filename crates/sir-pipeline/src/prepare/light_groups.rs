@@ -90,7 +90,7 @@ pub(crate) fn light_groups(
             _ => sorting.group_of.extend(added.iter().map(|&emitter| (emitter, group))),
         }
     }
-    sorting.groups(model, span)
+    sorting.groups(model, lamps, span)
 }
 
 /// Groups, as far as they are known.
@@ -170,8 +170,13 @@ impl<'s> Sorting<'s> {
         self.problems.push(Diagnostic { span: span.0.clone(), message, help });
     }
 
-    /// Returns the groups. `span` is the place of the stage `Light`.
-    fn groups(mut self, model: &Model, span: &Span) -> Result<Vec<LightGroup>, Vec<Diagnostic>> {
+    /// Returns the groups. `lamps` are those of the stage `Light`, and `span` is its place.
+    fn groups(
+        mut self,
+        model: &Model,
+        lamps: &[Lamp],
+        span: &Span,
+    ) -> Result<Vec<LightGroup>, Vec<Diagnostic>> {
         // A group may be empty only because of these problems.
         if !self.problems.is_empty() {
             return Err(self.problems);
@@ -202,11 +207,25 @@ impl<'s> Sorting<'s> {
             match power {
                 Ok(power) => lit.push(LightGroup { power, ..group }),
                 Err(SolveError::NoLight) if group.name == OTHER => {}
-                Err(SolveError::NoLight) => self.problem(
-                    span,
-                    format!("the light group \"{}\" emits nothing", group.name),
-                    "give one of its lights a power above zero, or leave the group out".into(),
-                ),
+                Err(SolveError::NoLight) => {
+                    let name = &group.name;
+                    let off = lamps.iter().find_map(|lamp| match lamp {
+                        Lamp::Luminaire(luminaire) if lamp.group() == Some(name) => {
+                            Some(&luminaire.dimming).filter(|dimming| dimming.value == 0.0)
+                        }
+                        _ => None,
+                    });
+                    let (span, why, help) = match off {
+                        Some(dimming) => (
+                            &dimming.span,
+                            " (the `dimming` of this luminaire is 0)",
+                            "choose a `dimming` above 0",
+                        ),
+                        None => (span, "", "make one of its lights emit"),
+                    };
+                    let message = format!("the light group \"{name}\" emits nothing{why}");
+                    self.problem(span, message, format!("{help}, or leave the group out"));
+                }
                 Err(error) => self.problem(
                     span,
                     format!("the light group \"{}\" has an impossible power", group.name),

@@ -5,6 +5,7 @@ mod daylight;
 mod glare;
 pub(crate) mod layout;
 pub(crate) mod light_groups;
+mod outside;
 pub(crate) mod prepared;
 pub(crate) mod probe_grid;
 pub(crate) mod sources;

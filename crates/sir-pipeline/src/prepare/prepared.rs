@@ -18,7 +18,7 @@ use crate::text::diagnostic::Diagnostic;
 use crate::plan::{Action, Lamp, Pipeline, Stage, Transport};
 use crate::prepare::layout::Placed;
 use crate::prepare::light_groups::{LightGroup, dimming, light_groups};
-use crate::prepare::{daylight, glare};
+use crate::prepare::{daylight, glare, outside};
 use crate::progress::Progress;
 use crate::report::luminaires;
 use crate::report::luminaires::LuminaireReport;
@@ -92,16 +92,20 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
                 options = LoadOptions { sides: load.sides, scale: load.scale };
                 stated_up = load.up;
             }
-            Action::Light(light) => {
-                if light.lamps.iter().any(|lamp| lamp.to_scene(DVec3::Y).is_none()) {
-                    return Err(pipeline.diagnostics(vec![impossible_light(stage)]).into());
-                }
-                lamps.extend(&light.lamps);
-            }
+            Action::Light(light) => lamps.extend(&light.lamps),
             Action::Subdivide(subdivide) => subdivision = (subdivide.subdivision(), stage.span.0.clone()),
             Action::Focus(focus) => requested_focus = Some((focus.bounds(), focus.share)),
             _ => {}
         }
+    }
+    // The sum saturates: an array may have any size here.
+    let needed = lamps.iter().filter_map(|lamp| match lamp {
+        Lamp::Luminaire(luminaire) => Some(luminaire.bytes_in_scene()),
+        _ => None,
+    });
+    refuse_more_than_available(needed.fold(0, usize::saturating_add))?;
+    if lamps.iter().any(|lamp| lamp.to_scene(DVec3::Y).is_none()) {
+        return Err(pipeline.diagnostics(impossible_lights(pipeline)).into());
     }
     let watch = Stopwatch::start();
     let built = sir_geom::load_with(pipeline.scene_path(), &options, |builder| {
@@ -121,7 +125,7 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     progress.warn(&warnings);
 
     if !emits(&built.scene) {
-        return Err(SolveError::NoLight.into());
+        return Err(no_light(pipeline));
     }
     let mut problems = camera_problems(pipeline, &built.scene);
     let watch = Stopwatch::start();
@@ -139,7 +143,10 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
         Ok(model) if problems.is_empty() => {
             let build_seconds = watch.seconds();
             let sources = sources(&model.scene, &model.mesh);
-            total_power(&sources)?;
+            match total_power(&sources) {
+                Err(SolveError::NoLight) => return Err(no_light(pipeline)),
+                other => drop(other?),
+            }
             let Up { direction: up, why: up_from, doubt } =
                 Up::of(pipeline.scene_path(), &model.scene, stated_up);
             let inside = FocusSides::of(&model, focus.as_ref());
@@ -158,6 +165,8 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
             suspicions.extend(doubt);
             suspicions.extend(sky_doubt(&model.scene, up));
             suspicions.extend(bent_patches(pipeline, &model));
+            suspicions.extend(outside::luminaires(pipeline, &model, up, &added));
+            suspicions.extend(outside::grids(pipeline, &placed, &model, up));
             progress.warn(&suspicions);
             Ok(Prepared {
                 model,
@@ -184,15 +193,32 @@ pub fn prepare(pipeline: &Pipeline, progress: &dyn Progress) -> Result<Prepared,
     }
 }
 
-/// Returns the problem of a light with contradictory numbers, which can only come from a pipeline that was not read
-/// from a file.
-fn impossible_light(stage: &Stage) -> Diagnostic {
-    Diagnostic {
-        span: stage.span.0.clone(),
-        message: "a light of this stage has contradictory numbers".into(),
-        help: "use directions of nonzero length, an `outer` that is not less than `inner`, and colors that are not negative"
-            .into(),
-    }
+/// Returns the problem of lights with contradictory numbers, which can only come from a pipeline that was not read from a
+/// file.
+fn impossible_lights(pipeline: &Pipeline) -> Vec<Diagnostic> {
+    let stages = pipeline.stages.iter().filter(|stage| matches!(stage.action, Action::Light(_)));
+    stages
+        .map(|stage| Diagnostic {
+            span: stage.span.0.clone(),
+            message: "a light of this stage has contradictory numbers".into(),
+            help: "use directions of nonzero length, an `outer` that is not less than `inner`, and colors that are not negative"
+                .into(),
+        })
+        .collect()
+}
+
+/// Returns the error that nothing emits, at the luminaires that are turned off if there are any.
+fn no_light(pipeline: &Pipeline) -> Error {
+    let off: Vec<Diagnostic> = pipeline
+        .luminaires()
+        .filter(|luminaire| luminaire.dimming.value == 0.0)
+        .map(|luminaire| Diagnostic {
+            span: luminaire.dimming.span.0.clone(),
+            message: "nothing emits light (the `dimming` of this luminaire is 0)".into(),
+            help: "choose a `dimming` above 0, or add another light".into(),
+        })
+        .collect();
+    if off.is_empty() { SolveError::NoLight.into() } else { pipeline.diagnostics(off).into() }
 }
 
 /// Returns the problem that no patch is in the focus, at the stage `Focus`.

@@ -215,7 +215,7 @@ impl SensorsReport {
             text += &format!(", {}", glare.in_short());
         }
         if let Some(density) = self.power_density {
-            text += &format!(", {density:.1} W/m² of electric power");
+            text += &format!(", {density:.1} W/m² of installed electric power");
         }
         text
     }

@@ -1,8 +1,8 @@
 //! Files of light groups: the light of a group after each stage, and its measurements, as exact numbers.
 //!
-//! A file consists of a line with the version of its layout, a line with the fingerprint of the run, and records in the
-//! order of the stages: the kind, the number of the stage, and the content, all as 64-bit little-endian words. The
-//! SHA-256 of all of this ends it.
+//! A file consists of a line with the version of its layout, a line with the fingerprint of the run, a line with the number
+//! of the group, and records in the order of the stages: the kind, the number of the stage, and the content, all as 64-bit
+//! little-endian words. The SHA-256 of all of this ends it.
 
 use std::fs::File;
 use std::io::{self, BufRead as _, BufReader, Read, Seek as _, Write};
@@ -15,7 +15,7 @@ use sir_radiosity::{Measurement, ProbeMeasurement, Solution, SpreadOfMean};
 use crate::error::Error;
 
 /// First line: the file type and the version of its layout.
-const MAGIC: &str = "SIR light group 1";
+const MAGIC: &str = "SIR light group 2";
 
 /// Length of a SHA-256 \[bytes\].
 const HASH: u64 = 32;
@@ -72,10 +72,10 @@ pub(super) struct GroupWriter<'w> {
 }
 
 impl<'w> GroupWriter<'w> {
-    /// Begins a file.
-    pub(super) fn new(out: &'w mut dyn Write, fingerprint: &str) -> io::Result<Self> {
+    /// Begins the file of the group with a number, from 0, in a run.
+    pub(super) fn new(out: &'w mut dyn Write, number: usize, fingerprint: &str) -> io::Result<Self> {
         let mut writer = Self { out, hash: Sha256::new() };
-        writer.write(format!("{MAGIC}\n{fingerprint}\n").as_bytes())?;
+        writer.write(format!("{MAGIC}\n{fingerprint}\n{}\n", number + 1).as_bytes())?;
         Ok(writer)
     }
 
@@ -160,13 +160,13 @@ impl GroupReader {
     ///
     /// # Errors
     ///
-    /// If it cannot be read, is damaged, or belongs to a run with another fingerprint.
+    /// If it cannot be read, is damaged, or belongs to another group or to a run with another fingerprint.
     pub(super) fn open(directory: &Path, number: usize, fingerprint: &str) -> Result<Self, Error> {
         let path = path_of(directory, number);
         let refuse = |why: String| Error::GroupFile { path: path.clone(), why };
         let content = verified(&path).map_err(|error| refuse(error.to_string()))?;
         let Some(mut file) = content else { return Err(refuse("it is incomplete or damaged".into())) };
-        let mut lines = [String::new(), String::new()];
+        let mut lines = [const { String::new() }; 3];
         for line in &mut lines {
             file.read_line(line).map_err(|error| refuse(error.to_string()))?;
         }
@@ -177,6 +177,10 @@ impl GroupReader {
             return Err(refuse(
                 "it belongs to another run, or the pipeline or the scene has changed since".into(),
             ));
+        }
+        let of = lines[2].trim_end();
+        if of != (number + 1).to_string() {
+            return Err(refuse(format!("it is that of the light group {of}, not {}", number + 1)));
         }
         let mut reader = Self { path, file, next: None };
         reader.advance().map_err(|error| reader.damaged(&error))?;
@@ -318,7 +322,7 @@ mod tests {
 
     fn write(directory: &Path) {
         let mut out = Vec::new();
-        let mut writer = GroupWriter::new(&mut out, "abc").unwrap();
+        let mut writer = GroupWriter::new(&mut out, 0, "abc").unwrap();
         writer.light(4, &light()).unwrap();
         writer.sensors(5, &measurements()).unwrap();
         let probes = Measurements { all: vec![ProbeMeasurement::default()], spread: None };
@@ -353,6 +357,11 @@ mod tests {
         assert_eq!(why("abc"), "");
         assert!(why("abd").contains("another run"));
         let path = path_of(folder.path(), 0);
+        std::fs::copy(&path, path_of(folder.path(), 1)).unwrap();
+        match GroupReader::open(folder.path(), 1, "abc") {
+            Err(Error::GroupFile { why, .. }) => assert_eq!(why, "it is that of the light group 1, not 2"),
+            _ => panic!("the file of another group is not refused"),
+        }
         let mut bytes = std::fs::read(&path).unwrap();
         bytes[100] ^= 1;
         std::fs::write(&path, &bytes).unwrap();

@@ -102,7 +102,7 @@ impl Run<'_> {
         repeating: &mut RepeatSums<'_>,
     ) -> io::Result<()> {
         let fingerprint = self.head.fingerprint.clone();
-        let mut writer = GroupWriter::new(file, &fingerprint)?;
+        let mut writer = GroupWriter::new(file, self.head.group, &fingerprint)?;
         for (number, stage) in self.pipeline.stages.iter().enumerate().skip(first) {
             let mut report = StageReport::of(stage.action.name(), Time::of(0.0));
             if stage.action.lines() > 0 {

@@ -14,8 +14,9 @@ use crate::fingerprint::PROGRAM;
 use crate::format::list;
 use crate::memory::largest_peak;
 use crate::plan::Pipeline;
-use crate::prepare::prepared::prepare;
+use crate::prepare::prepared::{Prepared, prepare};
 use crate::progress::{NoProgress, Progress};
+use crate::report::luminaires::LuminaireReport;
 use crate::report::result::{Report, Time};
 use crate::run::directory::{absolute, check_given, make_given, make_new};
 use crate::run::execute::{Run, RunOptions, RunResult, read_report, scene_report, write_report};
@@ -26,10 +27,13 @@ use crate::run::resume::Head;
 use crate::stopwatch::Stopwatch;
 use crate::text::suggest::did_you_mean;
 
+/// Largest factor of a light group. It is far above every use, and keeps sums of light finite.
+const MAX_FACTOR: f64 = 1e6;
+
 /// Options of [`mix`]. Only the factors change the result.
 #[derive(Clone, Debug)]
 pub struct MixOptions {
-    /// Names of light groups with their factors per band, finite and not negative. Other groups have the factor 1.
+    /// Names of light groups with their factors per band, from 0 to 1,000,000. Other groups have the factor 1.
     pub factors: Vec<(String, Rgb)>,
     /// Directory for the files, or `None` for a new one beside that of the run.
     pub out: Option<PathBuf>,
@@ -78,9 +82,10 @@ pub fn mix(directory: &Path, options: &MixOptions) -> Result<RunResult, Error> {
     progress.note(&format!("Load: {}", pipeline.scene_path().display()));
     // The warnings were shown by the run.
     let whole = prepare(&pipeline, &NoProgress)?;
-    let prepared = whole.dimmed(&factors);
     let mut groups = of_run.groups.clone();
     groups.iter_mut().zip(&factors).for_each(|(group, factor)| group.factor = factor.to_array());
+    let luminaires = LuminaireReport::mixed(&pipeline, &groups);
+    let prepared = Prepared { luminaires, ..whole.dimmed(&factors) };
     let fingerprint = fingerprint::hex(fingerprint::of_run(&pipeline, of_run.seed, &whole));
     let sum = Sum::open(directory, &groups, &fingerprint)?;
     let (out, lock) = match &options.out {
@@ -160,8 +165,8 @@ fn factors(directory: &Path, report: &Report, given: &[(String, Rgb)]) -> Result
         if given[..i].iter().any(|(before, _)| before == name) {
             return refuse("it has a factor already; give one factor for each group".into());
         }
-        if !factor.is_finite() || factor.min_element() < 0.0 {
-            return refuse("its factor must be finite and not negative".into());
+        if !factor.to_array().iter().all(|band| (0.0..=MAX_FACTOR).contains(band)) {
+            return refuse("its factor must be from 0 to 1,000,000".into());
         }
         factors[number] = *factor;
     }

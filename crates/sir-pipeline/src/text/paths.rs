@@ -32,15 +32,8 @@ impl Format for SceneFile {
         if path.is_file() {
             return Some(path);
         }
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut neighbors: Vec<String> = std::fs::read_dir(folder)
-            .map(|entries| entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).collect())
-            .unwrap_or_default();
-        neighbors.sort();
         let what = if path.exists() { "is not a file" } else { "does not exist" };
-        neighbors.retain(|neighbor| *neighbor != name);
-        let help = did_you_mean(&name, &neighbors);
+        let help = similar_file(&path);
         let help = path_help(
             node.text,
             help.as_deref().unwrap_or("paths are relative to the folder of the pipeline file"),
@@ -60,6 +53,18 @@ impl Format for SceneFile {
     fn example(&self) -> String {
         Self::TEXT.example()
     }
+}
+
+/// Returns "did you mean …?" if the folder of a path has a file with a similar name.
+pub(crate) fn similar_file(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_string_lossy();
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).ok()?.flatten();
+    let mut neighbors: Vec<String> =
+        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    neighbors.retain(|neighbor| *neighbor != name);
+    neighbors.sort();
+    did_you_mean(&name, &neighbors)
 }
 
 /// Path of a file in the run directory, with one of these extensions. No other output may have the same path.

@@ -33,6 +33,8 @@ pub(crate) struct Fields<'a> {
     /// Fields that another problem explains the lack of; `None` if it explains the lack of all.
     excused: Option<Vec<String>>,
     fields: Vec<(&'a str, Node<'a>)>,
+    /// True if it has fields that the record does not know.
+    has_unknown: bool,
 }
 
 impl<'a> Fields<'a> {
@@ -45,6 +47,11 @@ impl<'a> Fields<'a> {
     /// Returns true if another problem explains why a field is missing.
     pub(crate) fn is_excused(&self, name: &str) -> bool {
         self.excused.as_ref().is_none_or(|names| names.iter().any(|n| n == name))
+    }
+
+    /// Returns true if a problem with a field of an unknown name was reported.
+    pub(crate) fn has_unknown(&self) -> bool {
+        self.has_unknown
     }
 
     /// Returns the text of a field, or that of its record if the field is missing.
@@ -97,7 +104,7 @@ impl<'a> Reader<'a> {
         let name = node.name();
         let place = if name.is_empty() { &node.text[..node.text.len().min(1)] } else { name };
         let mut fields: Vec<(&'a str, Node<'a>)> = Vec::new();
-        let mut excused = Some(Vec::new());
+        let (mut excused, mut has_unknown) = (Some(Vec::new()), false);
         match &node.value {
             Value::Fields(given) => {
                 for (key, value) in given {
@@ -111,6 +118,7 @@ impl<'a> Reader<'a> {
                             (None, None) => has_fields(owner, allowed),
                         };
                         self.problem(key, format!("unknown field `{key}` in `{owner}`"), help);
+                        has_unknown = true;
                     } else if let Some((first, _)) = fields.iter().find(|(k, _)| k == key) {
                         let help =
                             format!("remove one of the two; the first is in line {}", self.line(first));
@@ -131,7 +139,7 @@ impl<'a> Reader<'a> {
                 excused = None;
             }
         }
-        Fields { owner, place, excused, fields }
+        Fields { owner, place, excused, fields, has_unknown }
     }
 
     /// Returns the name of a node `Name(…)` if it is in `known`. Otherwise reports a problem; `what` is a noun for what

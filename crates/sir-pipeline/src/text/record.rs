@@ -199,6 +199,7 @@ macro_rules! choice {
     ) => {
         $(#[doc = $about])*
         #[derive(Clone, Debug, PartialEq)]
+        #[allow(clippy::large_enum_variant, reason = "a pipeline has few of them")]
         pub enum $choice {
             $( $(#[doc = $meaning])+ $variant $(($body))?, )*
         }
