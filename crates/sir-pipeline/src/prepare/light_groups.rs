@@ -221,7 +221,7 @@ impl<'s> Sorting<'s> {
                             " (the `dimming` of this luminaire is 0)",
                             "choose a `dimming` above 0",
                         ),
-                        None => (span, "", "make one of its lights emit"),
+                        None => (span, "", "give one of its lights a power above zero"),
                     };
                     let message = format!("the light group \"{name}\" emits nothing{why}");
                     self.problem(span, message, format!("{help}, or leave the group out"));
