@@ -200,7 +200,7 @@ fn a_scene_is_lit_by_one_command_which_ends_with_the_page() {
     for (args, expected) in [
         (&["room.ron"][..], "`sir run room.ron` runs it"),
         (&["room.obj", "--error", "0.02"], "with a per cent sign"),
-        (&["room.obj", "--minutes", "0"], "a number of minutes above 0"),
+        (&["room.obj", "--minutes", "0"], "a number of minutes from 0.001"),
         (&["room.obj", "--out", "results/room"], "already holds a result"),
     ] {
         let (code, stdout, stderr) = light(args);

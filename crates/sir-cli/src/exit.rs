@@ -9,6 +9,7 @@ use sir_study::experiment::ExperimentError;
 use sir_study::scaling::ScalingError;
 
 use crate::error::CliError;
+use crate::output::quoted;
 
 /// Exit code of an interrupted program.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -51,7 +52,14 @@ fn hint(error: &CliError) -> Option<String> {
 fn pipeline_hint(error: &Error) -> Option<String> {
     Some(match error {
         Error::NotText { .. } | Error::LongPipeline { .. } => "`sir --help` shows an example pipeline".into(),
-        Error::IsPipeline { path } => format!("`sir run {}` runs it", path.display()),
+        Error::OtherPipeline { path } => format!(
+            "`sir run {}` runs it, `--out DIR` chooses another directory, `--force` replaces it",
+            quoted(path)
+        ),
+        Error::OutputExists { .. } => {
+            "`--out DIR` chooses another directory, `--force` replaces the existing files".into()
+        }
+        Error::IsPipeline { path } => format!("`sir run {}` runs it", quoted(path)),
         Error::Exists { .. } | Error::ViewFactors(ViewFactorsError::Exists { .. }) => {
             "`--out DIR` chooses another directory, `--force` replaces the existing result".into()
         }

@@ -12,8 +12,8 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
 
 /// Parses a time in minutes.
 pub(crate) fn minutes(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|minutes| *minutes > 0.0 && *minutes <= 1e6);
-    number.ok_or_else(|| "write a number of minutes above 0, such as 2".into())
+    let number = text.parse().ok().filter(|minutes| (0.001..=100_000.0).contains(minutes));
+    number.ok_or_else(|| "write a number of minutes from 0.001 to 100000, such as 2".into())
 }
 
 /// Parses a share in per cent, such as `2%`.

@@ -3,6 +3,7 @@
 use std::fmt::Display;
 use std::io;
 use std::io::Write as _;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Prints a line to standard error: progress, a warning or an error. Nobody may be reading, for example after
@@ -10,6 +11,12 @@ use std::process::ExitCode;
 pub(crate) fn print_note(line: impl Display) {
     // One write, so that lines of several ranks do not mix.
     let _ = io::stderr().write_all(format!("{line}\n").as_bytes());
+}
+
+/// Returns a path as a shell reads it.
+pub(crate) fn quoted(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    shlex::try_quote(&text).map_or_else(|_| text.to_string(), |quoted| quoted.into_owned())
 }
 
 /// Prints the text of a command to standard output, and returns the exit code of a command that succeeded. If the text

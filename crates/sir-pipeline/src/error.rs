@@ -51,6 +51,12 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
+    /// A run directory has a pipeline that differs from the drafted one.
+    #[error("{} exists, and differs from the pipeline for this scene and these options", path.display())]
+    OtherPipeline {
+        /// The file.
+        path: PathBuf,
+    },
     /// The run does not fit the memory of this machine.
     #[error(
         "the run needs {needed} of memory in addition to its scene, but only {available} are available (of the machine, or \
@@ -295,6 +301,7 @@ impl Error {
             | Self::LongPipeline { .. }
             | Self::Exists { .. }
             | Self::IsPipeline { .. }
+            | Self::OtherPipeline { .. }
             | Self::ExistsInterrupted { .. }
             | Self::OutputExists { .. }
             | Self::OutputIsInput { .. }

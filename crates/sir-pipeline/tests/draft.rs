@@ -69,12 +69,12 @@ fn a_dark_room_gets_a_lamp_and_an_open_one_the_sky() {
     let closed = draft(&room(folder.path(), 1.0, 0), &options(folder.path())).unwrap();
     assert!(matches!(lamps(&closed)[..], [Lamp::Panel(_)]));
     assert_eq!(closed.pipeline.units, Units::Photometric);
-    assert!(closed.choices[0].doubt.contains("daylight would be `Light([Sky("), "{:?}", closed.choices);
+    assert!(closed.choices[1].doubt.contains("no openings, so a lamp was added"), "{:?}", closed.choices);
 
     let folder = tempfile::tempdir().unwrap();
     let open = draft(&room(folder.path(), 1.0, 1), &options(folder.path())).unwrap();
     assert!(matches!(lamps(&open)[..], [Lamp::Sky(_)]));
-    assert!(open.choices[0].doubt.contains("a lamp would be `Light([Panel("), "{:?}", open.choices);
+    assert!(open.choices[1].doubt.contains("a lamp would be `Light([Panel("), "{:?}", open.choices);
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn an_edited_pipeline_is_not_replaced() {
     let edited = drafted.pipeline.text.replace("power: 10_000", "power: 20_000");
     fs::write(&path, &edited).unwrap();
     let refused = draft(&scene, &options);
-    assert!(matches!(refused, Err(Error::OutputExists { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(Error::OtherPipeline { .. })), "{refused:?}");
     assert_eq!(fs::read_to_string(&path).unwrap(), edited);
     draft(&scene, &DraftOptions { force: true, ..options }).unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap(), drafted.pipeline.text);

@@ -41,7 +41,7 @@ pub(crate) fn command(
     let drafted = draft(scene, &options)?;
     let path = drafted.directory.join(PIPELINE_FILE);
     if *dry_run {
-        return Ok(if how.json { to_json(&drafted) } else { text::drafted(&drafted) });
+        return Ok(if how.json { to_json(&drafted) } else { text::drafted(&drafted, *force) });
     }
     if !how.quiet {
         print_note(format!("Pipeline: {}", path.display()));
@@ -49,6 +49,9 @@ pub(crate) fn command(
     let options =
         RunOptions { out: Some(drafted.directory.clone()), force: *force, ..how.options(stop, comm)? };
     let result = run_pipeline(&drafted.pipeline, &options)?;
+    if how.json && !drafted.choices.is_empty() {
+        print_note(text::doubts(&drafted).trim());
+    }
     Ok(if how.json { result.report.to_json() } else { summary(&result) + &text::finished(&drafted, &result) })
 }
 

@@ -35,12 +35,17 @@ pub struct LightArgs {
     /// result or another pipeline, unless --force is given.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Replace the result and the pipeline in the directory given with --out.
-    #[arg(long)]
+    /// Replace the result, the pipeline and files of the same names in the directory given with --out.
+    #[arg(long, requires = "out")]
     pub force: bool,
     /// Options of the execution.
     #[command(flatten)]
     pub how: HowArgs,
+}
+
+/// Returns a time in seconds, rounded to milliseconds, so that a pipeline has few digits.
+fn seconds(minutes: f64) -> f64 {
+    (60_000.0 * minutes).round() / 1000.0
 }
 
 impl LightArgs {
@@ -48,9 +53,7 @@ impl LightArgs {
     pub(super) fn goal(&self) -> Goal {
         match (self.minutes, self.error) {
             (None, None) => Goal { relative_error: Some(ERROR), seconds: Some(60.0 * MINUTES) },
-            (minutes, error) => {
-                Goal { relative_error: error, seconds: minutes.map(|minutes| 60.0 * minutes) }
-            }
+            (minutes, error) => Goal { relative_error: error, seconds: minutes.map(seconds) },
         }
     }
 

@@ -4,14 +4,17 @@ use sir_pipeline::RunResult;
 use sir_pipeline::draft::{Choice, Draft, PIPELINE_FILE};
 use sir_pipeline::run::absolute;
 
+use crate::output::quoted;
+
 /// Returns the path of the pipeline, what to check in it, and how to run it.
-pub(super) fn drafted(drafted: &Draft) -> String {
-    let (directory, path) = (drafted.directory.display(), drafted.directory.join(PIPELINE_FILE));
+pub(super) fn drafted(drafted: &Draft, force: bool) -> String {
+    let path = drafted.directory.join(PIPELINE_FILE);
+    let (directory, force) = (quoted(&drafted.directory), if force { " --force" } else { "" });
     format!(
-        "{}{}\nrun it: sir run {} --out {directory}\n",
-        line(&absolute(&path).display().to_string()),
+        "{}\n{}\nrun it: sir run {} --out {directory}{force}\n",
+        absolute(&path).display(),
         doubts(drafted),
-        path.display(),
+        quoted(&path),
     )
 }
 
@@ -26,11 +29,11 @@ pub(super) fn finished(drafted: &Draft, result: &RunResult) -> String {
         true => "other settings",
         false => "after a change",
     };
-    format!("{}\n{other}: sir run {}\n{page}", doubts(drafted), path.display())
+    format!("{}\n{other}: sir run {}\n{page}", doubts(drafted), quoted(&path))
 }
 
 /// Returns the doubtful choices with their places.
-fn doubts(drafted: &Draft) -> String {
+pub(super) fn doubts(drafted: &Draft) -> String {
     let path = drafted.directory.join(PIPELINE_FILE);
     let doubts = drafted.choices.iter().map(|Choice { line: number, set, doubt }| {
         let set = if set.is_empty() { String::new() } else { format!("    {set}\n") };
@@ -38,10 +41,6 @@ fn doubts(drafted: &Draft) -> String {
     });
     let text: String = doubts.collect();
     if text.is_empty() { text } else { format!("\ncheck what was chosen:\n{}", clean(&text)) }
-}
-
-fn line(text: &str) -> String {
-    format!("{text}\n")
 }
 
 /// Returns a text without control characters: names in files may contain some, which would change the terminal's state.

@@ -11,7 +11,7 @@ use crate::draft::text::{Choice, Goal, text};
 use crate::error::Error;
 use crate::info::inspect::inspect_for;
 use crate::plan::Pipeline;
-use crate::run::directory::{check_empty, make_new, run_name};
+use crate::run::directory::{check_empty, check_given, make_new, run_name};
 
 /// Name of a drafted pipeline in its run directory.
 pub const PIPELINE_FILE: &str = "pipeline.ron";
@@ -72,9 +72,10 @@ pub fn draft(scene: &Path, options: &DraftOptions) -> Result<Draft, Error> {
     let path = directory.join(PIPELINE_FILE);
     let has_other = fs::read(&path).is_ok_and(|bytes| bytes != text.as_bytes());
     if has_other && !force {
-        return Err(Error::OutputExists { path });
+        return Err(Error::OtherPipeline { path });
     }
-    write_atomically(&path, |file| file.write_all(text.as_bytes()))?;
     let pipeline = Pipeline::parse(&text, &path)?;
+    check_given(&directory, *force, &pipeline)?;
+    write_atomically(&path, |file| file.write_all(text.as_bytes()))?;
     Ok(Draft { directory, pipeline, choices })
 }

@@ -65,10 +65,12 @@ fn winding(info: &Info, survey: &Survey) -> Option<String> {
 }
 
 /// Returns a share of the light: of the light from emitting surfaces before or after its first reflection, whichever is
-/// larger. Without emitting surfaces, returns the share of lines from all fronts, including hidden ones.
+/// larger. Without emitting surfaces, returns the share of lines from what lines from fronts hit, so that hidden fronts do not
+/// count, or of lines from all fronts if they hit nothing.
 pub(super) fn of_light(info: &Info, share: fn(Fates) -> f64) -> f64 {
     let Lines { from_fronts, from_emitters, reflected, .. } = info.lines;
-    from_emitters.map_or(share(from_fronts), |emitted| share(emitted).max(reflected.map_or(0.0, share)))
+    let without = share(reflected.unwrap_or(from_fronts));
+    from_emitters.map_or(without, |emitted| share(emitted).max(reflected.map_or(0.0, share)))
 }
 
 /// Returns true if fronts face the outside only. (In a room with thick walls, about half of the fronts do, and in a building

@@ -9,6 +9,7 @@ use crate::info::advice::{NEGLIGIBLE, SIGNIFICANT, looks_outward, of_light};
 use crate::info::facts::{Info, Setting};
 use crate::info::lines::Fates;
 use crate::info::survey::Survey;
+use crate::prepare::up::UNKNOWN;
 
 /// Share of the reflected light that leaves a scene, above which the scene is open.
 const OPEN: f64 = 0.5;
@@ -110,6 +111,12 @@ fn load(info: &Info, survey: &Survey, path: &str) -> Setting {
     }
     let is_usual = reasons.is_empty();
     doubts.extend(info.doubt_of_up.clone());
+    if info.up_from == UNKNOWN {
+        doubts.push(
+            "nothing shows which direction is up; if it is z, write `up: (0, 0, 1)`, and place lights anew"
+                .into(),
+        );
+    }
     Setting {
         set: format!("Load({})", fields.join(", ")),
         why: reasons.join("; "),
@@ -153,6 +160,10 @@ fn light(info: &Info, survey: &Survey, scale: f64) -> Setting {
                 sky(info)
             )
         });
+        // What `sides` mends is said there.
+        let has_both = sides(info, survey).is_some_and(|(sides, _)| sides == "Both");
+        let lamps_doubts =
+            survey.lamp_suspicions().filter(|doubt| !(has_both && doubt.contains("`Load(sides: Both)`")));
         let lamps = info.sources.iter().map(|lights| {
             let [r, g, b] = lights.power.map(length);
             format!("{} (red {r}, green {g}, blue {b})", lights.what)
@@ -161,14 +172,18 @@ fn light(info: &Info, survey: &Survey, scale: f64) -> Setting {
         return Setting {
             set: String::new(),
             why: format!("the light sources are those of the file: {}", lamps.join(", ")),
-            doubt: joined(survey.lamp_suspicions().chain(lost).collect()),
+            doubt: joined(lamps_doubts.chain(lost).collect()),
             is_usual: true,
         };
     }
     let outward = looks_outward(info);
-    let open = escaped > SIGNIFICANT || outward;
+    let has_ground = info.dominant.is_some();
+    let open = escaped > SIGNIFICANT || outward || has_ground;
     let why = match escaped {
         _ if outward => "nothing emits; daylight, if this is an object or its openings are windows".into(),
+        _ if has_ground => {
+            "nothing emits, and the rest is small beside one part, such as a ground: daylight".into()
+        }
         share if share > OPEN => "nothing emits, and most of the light leaves the scene: daylight".into(),
         share if open => format!(
             "nothing emits, and {} of reflected light leaves through openings: windows?",
@@ -178,12 +193,10 @@ fn light(info: &Info, survey: &Survey, scale: f64) -> Setting {
     };
     let (sky, panel) = (sky(info), panel(survey, scale));
     let (set, doubt) = match (open, panel) {
-        (false, Some(panel)) => {
-            let doubt = format!("the file has no light, so a lamp was added; daylight would be `{sky}`");
-            (panel, doubt)
-        }
+        (false, Some(panel)) => (panel, "the file has no light and no openings, so a lamp was added".into()),
         (_, panel) => {
-            let lamp = panel.map_or(String::new(), |panel| format!("; a lamp would be `{panel}`"));
+            let lamp = panel
+                .map_or(String::new(), |panel| format!("; if this is a room, a lamp would be `{panel}`"));
             (sky, format!("the file has no light, so an overcast sky was added{lamp}"))
         }
     };
@@ -201,7 +214,7 @@ fn sky(info: &Info) -> String {
 
 /// Returns a `Light` stage with a panel in free space, whose power lights the floor.
 fn panel(survey: &Survey, scale: f64) -> Option<String> {
-    let place = survey.lamp_place?;
+    let place = survey.lamp_place.filter(|place| place.edges.iter().all(|edge| edge.length() > 0.0))?;
     let power = two_digits((FLUX_PER_AREA * scale * scale * place.floor).ceil() as usize);
     let point = |v: DVec3| {
         let [x, y, z] = (scale * v).to_array().map(length);

@@ -6,6 +6,9 @@ use glam::DVec3;
 use sir_geom::{Scene, SceneBuilder};
 use sir_view::{more_faces_along_z, up_clues};
 
+/// Reason for the up direction if nothing shows it.
+pub(crate) const UNKNOWN: &str = "as usual in OBJ; nothing in the scene shows it";
+
 /// Up direction of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Up {
@@ -48,7 +51,7 @@ impl Up {
             return Self { doubt: is_doubtful.then(|| doubt(&up, &why_not(DVec3::Y))), ..up };
         }
         let Some(first) = clues.first() else {
-            return without_doubt(DVec3::Y, "as usual in OBJ; nothing in the scene shows it");
+            return without_doubt(DVec3::Y, UNKNOWN);
         };
         let up = without_doubt(first.up, first.why);
         let mut objections = why_not(up.direction);
