@@ -5,7 +5,6 @@ use sir_geom::Rgb;
 
 use crate::format::grouped;
 use crate::plan::{Luminaire, OTHER, Pipeline};
-use crate::report::result::GroupReport;
 
 /// Equal luminaires of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,12 +44,13 @@ impl LuminaireReport {
         pipeline.luminaires().map(Self::of).collect()
     }
 
-    /// Returns the same for a mix of light groups: the flux of each luminaire times the factor of its group.
-    pub(crate) fn mixed(pipeline: &Pipeline, groups: &[GroupReport]) -> Vec<Self> {
+    /// Returns the same for a mix of light groups, given as names and factors: the flux of each luminaire times the factor of
+    /// its group.
+    pub(crate) fn mixed(pipeline: &Pipeline, factors: &[(&str, Rgb)]) -> Vec<Self> {
         let of_group = |luminaire: &Luminaire| {
             let name = luminaire.group.as_deref().unwrap_or(OTHER);
             let factor =
-                groups.iter().find(|group| group.name == name).map_or(Rgb::ONE, GroupReport::dimming);
+                factors.iter().find(|(group, _)| *group == name).map_or(Rgb::ONE, |(_, factor)| *factor);
             let report = Self::of(luminaire);
             Self { flux: report.flux * luminaire.dimming_by(factor), ..report }
         };
@@ -149,14 +149,11 @@ mod tests {
     #[test]
     fn the_flux_follows_the_factors_of_a_mix() {
         let pipeline = pipeline(IES);
-        let group = |name: &str, factor| GroupReport {
-            name: name.into(),
-            power: [1.0; 3],
-            factor,
-            stages: Vec::new(),
-        };
         let fluxes = |red, other| {
-            let mixed = LuminaireReport::mixed(&pipeline, &[group("red", red), group(OTHER, other)]);
+            let mixed = LuminaireReport::mixed(
+                &pipeline,
+                &[("red", Rgb::from_array(red)), (OTHER, Rgb::from_array(other))],
+            );
             assert!(mixed.iter().all(|one| one.watts == Some(15.0)), "at full output");
             [mixed[0].flux, mixed[1].flux]
         };

@@ -84,7 +84,8 @@ pub fn mix(directory: &Path, options: &MixOptions) -> Result<RunResult, Error> {
     let whole = prepare(&pipeline, &NoProgress)?;
     let mut groups = of_run.groups.clone();
     groups.iter_mut().zip(&factors).for_each(|(group, factor)| group.factor = factor.to_array());
-    let luminaires = LuminaireReport::mixed(&pipeline, &groups);
+    let by_name: Vec<_> = groups.iter().map(|group| (group.name.as_str(), group.dimming())).collect();
+    let luminaires = LuminaireReport::mixed(&pipeline, &by_name);
     let prepared = Prepared { luminaires, ..whole.dimmed(&factors) };
     let fingerprint = fingerprint::hex(fingerprint::of_run(&pipeline, of_run.seed, &whole));
     let sum = Sum::open(directory, &groups, &fingerprint)?;
