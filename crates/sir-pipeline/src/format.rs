@@ -84,6 +84,12 @@ pub fn dimensions(size: DVec3) -> String {
     format!("{} × {} × {} m", length(size.x), length(size.y), length(size.z))
 }
 
+/// Returns a number rounded up to two digits.
+pub(crate) fn rounded_up(x: f64) -> u64 {
+    let unit = 10u64.pow((x.max(10.0).log10().floor() as u32).saturating_sub(1));
+    (x / unit as f64).ceil() as u64 * unit
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

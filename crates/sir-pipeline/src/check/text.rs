@@ -21,20 +21,16 @@ impl Ending {
     fn cost(self, once: f64) -> (&'static str, f64, Option<String>) {
         let most = self.at_most.map_or(f64::INFINITY, |most| most as f64);
         let limited_seconds = self.at_most_seconds.unwrap_or(f64::INFINITY).max(once);
-        let limits = [
-            self.at_most.map(|most| format!(", {} times at most", grouped(most))),
-            self.at_most_seconds.map(|most| format!(", for {} at most", duration(most))),
-        ];
-        let limit: String = limits.into_iter().flatten().collect();
+        let in_time = self.at_most_seconds.map(|most| format!(", for {} at most", duration(most)));
+        let in_time = in_time.unwrap_or_default();
+        let in_number = self.at_most.map(|most| format!(", {} times at most", grouped(most)));
+        let limit = in_number.unwrap_or_default() + &in_time;
         match self.until {
             Until::Times(times) => {
                 let times = most.min(times as f64);
-                let (bound, limit) = match self.at_most_seconds {
-                    Some(most) => (" at most", format!(", for {} at most", duration(most))),
-                    None => (" in total", String::new()),
-                };
+                let bound = if self.at_most_seconds.is_some() { " at most" } else { " in total" };
                 let seconds = (times * once).min(limited_seconds);
-                (bound, seconds, Some(format!("{} times{limit}", grouped(times as u64))))
+                (bound, seconds, Some(format!("{} times{in_time}", grouped(times as u64))))
             }
             Until::Seconds(budget) => {
                 let seconds = budget.min(most * once).min(limited_seconds).max(once);

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::format::length;
+use crate::format::{grouped, length};
 use crate::info::choices::Choices;
 use crate::info::{Info, Setting};
 use crate::prepare::up::name;
@@ -96,7 +96,7 @@ pub(super) fn text(info: &Info, choices: Choices, goal: Goal, command: &str) -> 
     page.choice(stage, "", subdivide);
     let (fields, meaning) = ending(goal);
     page.comment(stage, &meaning);
-    let lines = crate::format::grouped(lines as u64);
+    let lines = grouped(lines);
     page.line(&format!("{stage}Repeat({fields}, stages: [Solve(lines: {lines})]),"));
     page.comment(
         stage,

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use crate::format::{grouped, length, percent};
+use crate::format::{grouped, length, percent, rounded_up};
 use crate::info::advice::{NEGLIGIBLE, SIGNIFICANT, looks_outward, of_light};
 use crate::info::facts::{Info, Setting};
 use crate::info::lines::Fates;
@@ -41,21 +41,23 @@ pub(crate) struct Choices {
     pub focus: Option<Setting>,
     pub subdivide: Setting,
     /// Number of lines of a repeat.
-    pub lines: usize,
+    pub lines: u64,
 }
 
 impl Choices {
     /// Returns the choices for a scene, which a pipeline finds at `path`.
     pub(crate) fn new(info: &Info, survey: &Survey, path: &str) -> Self {
-        let scale = survey.likely_unit().map_or(1.0, |unit| unit.meters);
+        let scale = survey.likely_unit().map_or(1.0, |unit| unit.scale);
         let (subdivide, patches) = patches(info, scale);
+        let sides = sides(info, survey);
+        let has_both = sides.as_ref().is_some_and(|(sides, _)| *sides == "Both");
         Self {
             units: units(info),
-            load: load(info, survey, path),
-            light: light(info, survey, scale),
+            load: load(info, survey, path, sides),
+            light: light(info, survey, scale, has_both),
             focus: focus(info),
             subdivide,
-            lines: two_digits((LINES_PER_PATCH * patches).max(FEWEST_LINES)),
+            lines: rounded_up((LINES_PER_PATCH * patches).max(FEWEST_LINES) as f64),
         }
     }
 
@@ -86,7 +88,7 @@ fn units(info: &Info) -> Setting {
 }
 
 /// Returns the stage `Load` with the suggested scale and sides.
-fn load(info: &Info, survey: &Survey, path: &str) -> Setting {
+fn load(info: &Info, survey: &Survey, path: &str, sides: Option<(&'static str, String)>) -> Setting {
     let mut fields = vec![format!("path: {}", serde_json::Value::from(path))];
     let (mut reasons, mut doubts) = (Vec::new(), Vec::new());
     if let Some(unit) = survey.likely_unit() {
@@ -100,7 +102,7 @@ fn load(info: &Info, survey: &Survey, path: &str) -> Setting {
     } else {
         doubts.extend(survey.unit());
     }
-    if let Some((sides, why)) = sides(info, survey) {
+    if let Some((sides, why)) = sides {
         fields.push(format!("sides: {sides}"));
         if sides == "Both" {
             doubts.push(format!(
@@ -149,7 +151,7 @@ fn sides(info: &Info, survey: &Survey) -> Option<(&'static str, String)> {
 }
 
 /// Returns the stage `Light`: none if the scene has light, the sky if it is open, or else a lamp.
-fn light(info: &Info, survey: &Survey, scale: f64) -> Setting {
+fn light(info: &Info, survey: &Survey, scale: f64, has_both: bool) -> Setting {
     // The outer sides of walls do not count, so the light of interest is the light after its first hit.
     let escaped = info.lines.reflected.unwrap_or(info.lines.from_fronts).escaped;
     if !info.sources.is_empty() {
@@ -160,10 +162,6 @@ fn light(info: &Info, survey: &Survey, scale: f64) -> Setting {
                 sky(info)
             )
         });
-        // What `sides` mends is said there.
-        let has_both = sides(info, survey).is_some_and(|(sides, _)| sides == "Both");
-        let lamps_doubts =
-            survey.lamp_suspicions().filter(|doubt| !(has_both && doubt.contains("`Load(sides: Both)`")));
         let lamps = info.sources.iter().map(|lights| {
             let [r, g, b] = lights.power.map(length);
             format!("{} (red {r}, green {g}, blue {b})", lights.what)
@@ -172,7 +170,7 @@ fn light(info: &Info, survey: &Survey, scale: f64) -> Setting {
         return Setting {
             set: String::new(),
             why: format!("the light sources are those of the file: {}", lamps.join(", ")),
-            doubt: joined(lamps_doubts.chain(lost).collect()),
+            doubt: joined(survey.lamp_suspicions(has_both).chain(lost).collect()),
             is_usual: true,
         };
     }
@@ -215,7 +213,7 @@ fn sky(info: &Info) -> String {
 /// Returns a `Light` stage with a panel in free space, whose power lights the floor.
 fn panel(survey: &Survey, scale: f64) -> Option<String> {
     let place = survey.lamp_place.filter(|place| place.edges.iter().all(|edge| edge.length() > 0.0))?;
-    let power = two_digits((FLUX_PER_AREA * scale * scale * place.floor).ceil() as usize);
+    let power = rounded_up((FLUX_PER_AREA * scale * scale * place.floor).ceil());
     let point = |v: DVec3| {
         let [x, y, z] = (scale * v).to_array().map(length);
         format!("({x}, {y}, {z})")
@@ -224,7 +222,7 @@ fn panel(survey: &Survey, scale: f64) -> Option<String> {
     Some(format!(
         "Light([Panel(corner: {}, edges: ({a}, {b}), power: {})])",
         point(place.corner),
-        grouped(power as u64)
+        grouped(power)
     ))
 }
 
@@ -250,7 +248,7 @@ fn patches(info: &Info, scale: f64) -> (Setting, usize) {
     let area = rest * info.area * scale * scale;
     // Flat surfaces need few, however many triangles they have.
     let fine = (area / (PATCH_WIDTH * PATCH_WIDTH)) as usize;
-    let patches = two_digits(info.triangles.max(fine).clamp(PATCHES.0, PATCHES.1));
+    let patches = rounded_up(info.triangles.max(fine).clamp(PATCHES.0, PATCHES.1) as f64) as usize;
     let setting = Setting {
         set: format!("Subdivide(patches: {})", grouped(patches as u64)),
         why: format!(
@@ -262,12 +260,6 @@ fn patches(info: &Info, scale: f64) -> (Setting, usize) {
         is_usual: info.largest_triangle < 0.002,
     };
     (setting, patches)
-}
-
-/// Returns a number rounded up to two digits.
-fn two_digits(x: usize) -> usize {
-    let unit = 10usize.pow(x.max(10).ilog10() - 1);
-    x.div_ceil(unit) * unit
 }
 
 fn joined(parts: Vec<String>) -> Option<String> {

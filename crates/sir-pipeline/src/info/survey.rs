@@ -67,9 +67,7 @@ pub(crate) struct LikelyUnit {
     /// Name of the unit.
     pub name: &'static str,
     /// Length of the unit \[m\], as a pipeline has it.
-    pub scale: &'static str,
-    /// The same as a number.
-    pub meters: f64,
+    pub scale: f64,
 }
 
 impl Survey {
@@ -95,7 +93,7 @@ impl Survey {
         [self.unit(), self.far_from_origin(), self.remote.as_ref().map(coarse), dominated]
             .into_iter()
             .flatten()
-            .chain(self.lamp_suspicions())
+            .chain(self.lamp_suspicions(false))
             .collect()
     }
 
@@ -103,16 +101,17 @@ impl Survey {
     pub(crate) fn likely_unit(&self) -> Option<LikelyUnit> {
         let height = self.height()?;
         match height {
-            h if h > 1000.0 => Some(LikelyUnit { name: "millimeters", scale: "0.001", meters: 0.001 }),
-            h if h > 200.0 => Some(LikelyUnit { name: "centimeters", scale: "0.01", meters: 0.01 }),
-            h if h > 100.0 => Some(LikelyUnit { name: "inches", scale: "0.0254", meters: 0.0254 }),
+            h if h > 1000.0 => Some(LikelyUnit { name: "millimeters", scale: 0.001 }),
+            h if h > 200.0 => Some(LikelyUnit { name: "centimeters", scale: 0.01 }),
+            h if h > 100.0 => Some(LikelyUnit { name: "inches", scale: 0.0254 }),
             _ => None,
         }
     }
 
-    /// Returns what is suspicious about the light of lamps, one line each.
-    pub(crate) fn lamp_suspicions(&self) -> impl Iterator<Item = String> {
-        [self.covered(), self.absorbed(), self.lost()].into_iter().flatten()
+    /// Returns what is suspicious about the light of lamps, one line each. If a pipeline makes backs reflect, they absorb
+    /// nothing.
+    pub(crate) fn lamp_suspicions(&self, backs_reflect: bool) -> impl Iterator<Item = String> {
+        [self.covered(), self.absorbed().filter(|_| !backs_reflect), self.lost()].into_iter().flatten()
     }
 
     /// Returns the height of the scene, if it may be a room: as high as wide, about, while a landscape is flat.
@@ -127,7 +126,7 @@ impl Survey {
         let most = self.dominant.as_ref().map_or(self.extent, |dominant| dominant.rest).size().max_element();
         let lengths = "powers and distances of lights assume meters";
         match (self.likely_unit(), self.height()) {
-            (Some(LikelyUnit { name, scale, .. }), Some(height)) => Some(format!(
+            (Some(LikelyUnit { name, scale }), Some(height)) => Some(format!(
                 "a height of {} m looks like {name}, if this is a room; {lengths}; set `Load(scale: {scale})`",
                 length(height)
             )),

@@ -12,7 +12,7 @@ use sir_parallel::{Checkpoints, Saved, Start, Threads};
 use sir_radiosity::{MIN_REPEATS, Points, ProbeStage, ProbeTask, SensorStage, SensorTask};
 
 use crate::error::Error;
-use crate::format::{duration, grouped};
+use crate::format::{duration, grouped, rounded_up};
 use crate::plan::{Action, Output, Repeat, Save, Sensors, Until};
 use crate::prepare::layout::{Layout, Placed};
 use crate::prepare::probe_grid::ProbeGrid;
@@ -27,7 +27,7 @@ use crate::run::measured::Measured;
 use crate::run::reach::{dark_warning, few_lines_warning};
 use crate::run::repeat_sums::RepeatSums;
 use crate::run::save::view_of;
-use crate::run::sharing::{SHARED, rounded_up};
+use crate::run::sharing::SHARED;
 use crate::run::stages::{large_error_warning, unshot_warning};
 use crate::stopwatch::Stopwatch;
 use crate::watcher::Watcher;

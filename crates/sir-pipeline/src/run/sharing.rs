@@ -2,7 +2,7 @@
 
 use sir_radiosity::{MIN_REPEATS, crossings_per_patch};
 
-use crate::format::grouped;
+use crate::format::{grouped, rounded_up};
 use crate::plan::{Action, Multipath, Transport};
 use crate::prepare::prepared::Prepared;
 
@@ -63,10 +63,4 @@ pub(crate) fn repeats_of(possible: f64) -> u64 {
         repeats @ MIN_REPEATS.. => repeats,
         _ => 1,
     }
-}
-
-/// Returns a number rounded up to two digits.
-pub(crate) fn rounded_up(x: f64) -> u64 {
-    let unit = 10u64.pow((x.max(10.0).log10().floor() as u32).saturating_sub(1));
-    (x / unit as f64).ceil() as u64 * unit
 }
